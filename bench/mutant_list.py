@@ -155,7 +155,7 @@ MUTANTS = (
     Mutant("lamps met by sensors' rays counted in full", "host/renderer/trace/eye_path.cpp",
            "return ray.straight ? power_heuristic(other->density, found) : 1.0f;", "return 1.0f;",
            (("measuring", "an area light gives*,in a furnace*"),)),
-    Mutant("jackknife without its factor", "host/lighting/measuring/grid_statistics.cpp",
+    Mutant("jackknife without its factor", "host/lighting/measuring/measurement.cpp",
            "std::sqrt((count - 1) / count * squares)", "std::sqrt(squares / (count - 1))",
            (("measuring", "standard errors are the spread*"),)),
     Mutant("hash of saved maps not compared", "host/formats/saved_maps/saved_maps.cpp",

@@ -1,13 +1,11 @@
 // Blinds: panes that let less through, and hours in which they close, by hand.
-#include "daylight/blinds.hpp"
-
 #include <catch2/catch.hpp>
 #include <numbers>
 
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
 #include "room_with_window.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 

@@ -9,7 +9,7 @@
 #include "daylight/annual_daylight.hpp"
 #include "room_with_window.hpp"
 #include "trace/distant_light.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 #include "weather/sky_patches.hpp"
 
 namespace photile::test {

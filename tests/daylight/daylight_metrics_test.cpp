@@ -5,8 +5,6 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "daylight/occupancy.hpp"
-
 namespace photile::test {
 
 using namespace photile::daylight;

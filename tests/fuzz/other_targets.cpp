@@ -5,8 +5,8 @@
 
 #include "command/setting_options.hpp"
 #include "command/validators.hpp"
-#include "daylight/blinds.hpp"
-#include "daylight/occupancy.hpp"
+#include "daylight/daylight_metrics.hpp"
+#include "daylight/sky_states.hpp"
 #include "fuzz_files.hpp"
 #include "glare/measure_glare.hpp"
 #include "loading/light_changes.hpp"
@@ -21,7 +21,7 @@
 #include "render/setting.hpp"
 #include "test_scenes.hpp"
 #include "view/moods.hpp"
-#include "walk/frame_names.hpp"
+#include "walk/frames.hpp"
 #include "weather/perez_sky.hpp"
 
 namespace photile::test {

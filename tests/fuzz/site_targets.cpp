@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daylight/occupancy.hpp"
+#include "daylight/daylight_metrics.hpp"
 #include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
 #include "loading/luminaires.hpp"

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "glare/position_index.hpp"
-
 namespace photile::test {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "glare/position_index.hpp"
+#include "glare/ratings.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,10 +1,10 @@
 // Figures of a grid and their errors, against values that are known, and against their own spread.
-#include "measuring/grid_statistics.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+
+#include "measuring/measurement.hpp"
 
 namespace photile::test {
 

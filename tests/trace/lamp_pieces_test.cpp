@@ -9,7 +9,7 @@
 #include "trace/direct_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "uniform.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 

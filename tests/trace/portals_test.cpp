@@ -14,7 +14,7 @@
 #include "statistical_tests.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/portal_search.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 

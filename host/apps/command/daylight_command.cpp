@@ -19,7 +19,7 @@
 #include "command/validators.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
-#include "measuring/measure_grids.hpp"
+#include "measuring/measurement.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"

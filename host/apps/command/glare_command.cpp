@@ -23,7 +23,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
-#include "report/glare_tables.hpp"
+#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {

@@ -16,7 +16,7 @@
 #include "glare/ugr_table.hpp"
 #include "loading/light_changes.hpp"
 #include "photile/errors.hpp"
-#include "report/glare_tables.hpp"
+#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {

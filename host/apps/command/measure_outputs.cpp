@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
+#include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/output_file.hpp"
 #include "common/run_files.hpp"
@@ -19,10 +19,9 @@
 #include "photile/ray_scene.hpp"
 #include "report/honeybee_files.hpp"
 #include "report/plan_drawing.hpp"
-#include "report/plan_surroundings.hpp"
-#include "report/print_page.hpp"
+#include "report/plan_lines.hpp"
 #include "report/report.hpp"
-#include "report/sensor_tables.hpp"
+#include "report/tables.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {

@@ -6,9 +6,7 @@
 #include <optional>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
-#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "command/picture_outputs.hpp"
+#include "command/output_files.hpp"
 #include "command/quality_options.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"

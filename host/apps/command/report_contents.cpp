@@ -7,14 +7,14 @@
 #include <memory>
 #include <utility>
 
-#include "command/number_format.hpp"
 #include "command/scene_report.hpp"
+#include "command/terminal_progress.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
-#include "report/false_colour_picture.hpp"
-#include "report/plan_surroundings.hpp"
-#include "report/print_page.hpp"
+#include "report/false_colour.hpp"
+#include "report/plan_lines.hpp"
+#include "report/report.hpp"
 #include "scene/material_reflectance.hpp"
 #include "view/moods.hpp"
 

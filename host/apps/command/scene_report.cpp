@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "command/number_format.hpp"
+#include "command/terminal_progress.hpp"
 #include "scene/material_reflectance.hpp"
 #include "scene/open_glass.hpp"
 

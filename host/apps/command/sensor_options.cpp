@@ -7,7 +7,7 @@
 
 #include "command/validators.hpp"
 #include "common/run_files.hpp"
-#include "measuring/furniture.hpp"
+#include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"

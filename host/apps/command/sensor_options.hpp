@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "measuring/measure_grids.hpp"
+#include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"

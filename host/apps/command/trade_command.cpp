@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"

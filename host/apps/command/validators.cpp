@@ -11,7 +11,7 @@
 
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
-#include "walk/frame_names.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::app {
 namespace {

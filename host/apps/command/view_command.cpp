@@ -8,7 +8,6 @@
 
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
-#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/saved_maps_option.hpp"

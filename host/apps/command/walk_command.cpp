@@ -14,7 +14,6 @@
 
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
-#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/run_record.hpp"
@@ -31,8 +30,7 @@
 #include "photile/renderer.hpp"
 #include "reading/camera_path.hpp"
 #include "view/display.hpp"
-#include "walk/contact_sheet.hpp"
-#include "walk/frame_names.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::app {
 namespace {

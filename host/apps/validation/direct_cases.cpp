@@ -1,9 +1,7 @@
 // Light straight from lamps.
 #include <cmath>
 
-#include "validation/analytic_case.hpp"
-#include "validation/form_factors.hpp"
-#include "validation/room.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::validation {
 namespace {

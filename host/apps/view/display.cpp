@@ -7,7 +7,7 @@
 #include "image/pixel_lights.hpp"
 #include "image/srgb.hpp"
 #include "photile/image.hpp"
-#include "report/false_colour_picture.hpp"
+#include "report/false_colour.hpp"
 
 namespace photile::view {
 

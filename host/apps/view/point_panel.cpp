@@ -6,7 +6,7 @@
 
 #include "measuring/requirements.hpp"
 #include "photile/errors.hpp"
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 #include "view/panel_parts.hpp"
 #include "view/photon_map_overlay.hpp"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"

@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
 #include "photile/defaults.hpp"
 #include "photile/image.hpp"

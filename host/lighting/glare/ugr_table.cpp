@@ -5,7 +5,6 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
 
 namespace photile::glare {

@@ -1,12 +1,10 @@
-#include "report/glare_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 
 namespace photile::report {
 namespace {

@@ -11,7 +11,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
-#include "report/false_colour_picture.hpp"
+#include "report/false_colour.hpp"
 #include "report/palette.hpp"
 #include "report/sheet.hpp"
 

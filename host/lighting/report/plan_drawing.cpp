@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/ascii_text.hpp"
-#include "report/isolines.hpp"
-#include "report/number_text.hpp"
+#include "report/plan_lines.hpp"
+#include "report/tables.hpp"
 
 namespace photile::report {
 namespace {

@@ -1,13 +1,12 @@
-#include "report/sensor_tables.hpp"
+#include "report/tables.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
 
-#include "report/number_text.hpp"
-
 namespace photile::report {
+
 namespace {
 
 using Json = nlohmann::ordered_json;

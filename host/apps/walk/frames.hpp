@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "photile/image.hpp"
+
 namespace photile::walk {
 
 /// A file's name with a place for the number of a frame: a run of '#', as long as the number is
@@ -35,5 +37,25 @@ struct FrameRange {
 /// "7", "1-240" or "1-240x10", as render farms write it. Nothing if it is none: numbers are whole,
 /// the last is not below the first, and the step is above 0.
 std::optional<FrameRange> parse_frame_range(std::string_view text);
+
+// All frames of a walk on one picture.
+
+/// Small pictures side by side, left to right and top to bottom, on grey.
+class ContactSheet {
+ public:
+  /// Room for `frames` (1 to 10,000) of width x height pixels, each drawn
+  /// defaults::contact_sheet_width wide, or less where the sheet would be larger than a picture may
+  /// be.
+  ContactSheet(int frames, int width, int height);
+
+  /// Frame `index`, from 0: display-referred R, G, B of the size that was announced.
+  void add(int index, const Image& displayed);
+
+  const Image& image() const { return image_; }
+
+ private:
+  int columns_, width_, height_;  ///< frames, pixels of a small picture
+  Image image_;
+};
 
 }  // namespace photile::walk
