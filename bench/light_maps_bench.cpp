@@ -23,7 +23,6 @@
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 #include "view/viewpoint.hpp"

@@ -11,7 +11,7 @@
 #include "fuzz_files.hpp"
 #include "photile/light_maps.hpp"
 #include "saved_maps/saved_maps.hpp"
-#include "scene/scene_hash.hpp"
+#include "scene/scene_queries.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

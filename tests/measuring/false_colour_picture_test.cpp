@@ -2,7 +2,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "image/srgb.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "report/false_colour.hpp"
 #include "report/palette.hpp"

@@ -6,7 +6,6 @@
 
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/diffuse_part.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 

@@ -7,7 +7,7 @@
 #include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 
 namespace photile::test {
 

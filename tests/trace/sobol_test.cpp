@@ -1,6 +1,4 @@
 // Scrambled Sobol points: nets, uniformity, known integrals, errors.
-#include "trace/sobol.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -10,6 +8,7 @@
 
 #include "statistical_tests.hpp"
 #include "trace/direct_light.hpp"
+#include "trace/random_stream.hpp"
 
 namespace photile::test {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "image/display.hpp"
 #include "image/glare.hpp"
-#include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "report/palette.hpp"
 #include "report/tables.hpp"

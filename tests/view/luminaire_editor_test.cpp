@@ -8,7 +8,7 @@
 #include <sstream>
 #include <thread>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"

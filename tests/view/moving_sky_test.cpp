@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"

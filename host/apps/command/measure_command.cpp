@@ -18,7 +18,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"

@@ -11,7 +11,7 @@
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"

@@ -15,7 +15,7 @@
 #include "report/false_colour.hpp"
 #include "report/plan_lines.hpp"
 #include "report/report.hpp"
-#include "scene/material_reflectance.hpp"
+#include "scene/surface_models.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {

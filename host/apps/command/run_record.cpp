@@ -13,7 +13,7 @@
 #include "common/content_hash.hpp"
 #include "photile/errors.hpp"
 #include "render/render_costs.hpp"
-#include "scene/scene_hash.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::app {
 

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "view/moods.hpp"

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command/terminal_progress.hpp"
-#include "scene/material_reflectance.hpp"
-#include "scene/open_glass.hpp"
+#include "scene/scene_queries.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"

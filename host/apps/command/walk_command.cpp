@@ -21,7 +21,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "gltf/cameras.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"

@@ -7,7 +7,7 @@
 
 #include "photile/device/bsdf.h"
 #include "photile/scene_builder.hpp"
-#include "trace/diffuse_part.hpp"
+#include "trace/opaque_bsdf.hpp"
 
 namespace photile::validation {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "image/display.hpp"
 #include "image/glare.hpp"
-#include "image/pixel_lights.hpp"
-#include "image/srgb.hpp"
+#include "image/light_layers.hpp"
 #include "photile/image.hpp"
 #include "report/false_colour.hpp"
 

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

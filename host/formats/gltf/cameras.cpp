@@ -16,8 +16,7 @@
 #include "gltf/accessor.hpp"
 #include "gltf/document.hpp"
 #include "photile/scene.hpp"
-#include "scene/coordinate_limit.hpp"
-#include "scene/interpolation.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::gltf {
 
@@ -92,12 +91,12 @@ struct Channel {
 
   glm::dvec4 at(double time) const {
     if (times.size() < 2) return key(0);
-    const auto [i, share] = scene::between(times, time);
+    const auto [i, share] = reading::between(times, time);
     if (interpolation == "STEP") return key(share < 1 ? i : i + 1);
     if (interpolation == "CUBICSPLINE") {
       const double length = times[i + 1] - times[i];
-      return scene::hermite(element(3 * i + 1), length * element(3 * i + 2), element(3 * i + 4),
-                            length * element(3 * i + 3), share);
+      return reading::hermite(element(3 * i + 1), length * element(3 * i + 2), element(3 * i + 4),
+                              length * element(3 * i + 3), share);
     }
     if (path != "rotation") return glm::mix(key(i), key(i + 1), share);
     const glm::dvec4 a = key(i), b = key(i + 1);

@@ -14,9 +14,9 @@
 #include "gltf/document.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
-#include "scene/coordinate_limit.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::gltf {
 

@@ -15,7 +15,7 @@
 #include "photometry/photometric_file.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
-#include "scene/material_reflectance.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile {
 

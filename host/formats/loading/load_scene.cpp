@@ -22,7 +22,7 @@
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
-#include "scene/default_camera.hpp"
+#include "scene/camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "trace/portal_search.hpp"

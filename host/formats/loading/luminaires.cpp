@@ -12,19 +12,17 @@
 #include <string>
 #include <utility>
 
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "common/json_object.hpp"
-#include "common/output_file.hpp"
 #include "files/scene_files.hpp"
 #include "gltf/panels.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
-#include "scene/default_camera.hpp"
+#include "scene/camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
 

@@ -1,5 +1,3 @@
-#include "obj/obj_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +7,13 @@
 #include <map>
 
 #include "files/scene_files.hpp"
+#include "obj/obj_reader.hpp"
 #include "photile/limits.hpp"
 #include "pictures/textures.hpp"
 #include "reading/import_context.hpp"
 #include "reading/triangles.hpp"
-#include "scene/coordinate_limit.hpp"
 #include "scene/mesh_builder.hpp"
+#include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile::obj {

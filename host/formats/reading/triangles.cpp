@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "scene/coordinate_limit.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::reading {
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "files/scene_files.hpp"
 #include "photile/errors.hpp"
 #include "writing/edited_scene.hpp"

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "files/scene_files.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"

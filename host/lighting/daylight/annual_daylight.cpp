@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::daylight {
 namespace {

@@ -8,11 +8,10 @@
 #include <memory>
 
 #include "daylight/surface_cells.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/scatter.hpp"
-#include "trace/sobol.hpp"
 
 namespace photile::daylight {
 

@@ -10,9 +10,9 @@
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/sensors.hpp"
-#include "trace/photometer.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/sensors.hpp"
 #include "weather/sky_patches.hpp"
 
 namespace photile::daylight {

@@ -11,8 +11,7 @@
 
 #include "photile/defaults.hpp"
 #include "photile/ray_scene.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 

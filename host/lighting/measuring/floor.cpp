@@ -12,12 +12,10 @@
 #include <vector>
 
 #include "photile/ray_scene.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
-#include "trace/triangle_hit.hpp"
 
 namespace photile::measuring {
 

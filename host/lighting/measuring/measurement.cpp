@@ -17,7 +17,6 @@
 #include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 #include "photile/sensors.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/portal_search.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"

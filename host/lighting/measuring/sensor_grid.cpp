@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/ascii_text.hpp"
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"

@@ -13,7 +13,6 @@
 #include "measuring/floor.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "image/pixel_lights.hpp"
-#include "image/srgb.hpp"
+#include "image/display.hpp"
+#include "image/light_layers.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
 #include "report/sheet.hpp"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::report {

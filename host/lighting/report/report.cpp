@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/tables.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/srgb.hpp"
+#include "image/display.hpp"
 
 namespace photile::report {
 

@@ -19,9 +19,9 @@
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/hemisphere_rays.hpp"
-#include "trace/hit_point.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/receiver.hpp"
 
 namespace photile::cache {
 namespace {

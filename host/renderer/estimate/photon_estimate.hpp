@@ -12,7 +12,7 @@
 #include "estimate/seen_photons.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_maps.hpp"
-#include "trace/hit_order.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile::estimate {
 

@@ -1,8 +1,11 @@
 // What a picture may ask for, and what is looked at before a decoder sees it.
 #pragma once
 
+#include <OpenEXR/ImfIO.h>
+
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "image/decoder.hpp"
 #include "photile/limits.hpp"
@@ -31,5 +34,26 @@ inline constexpr std::uint64_t unchecked_bytes = 1ull << 20;
 #else
 inline constexpr std::uint64_t unchecked_bytes = limits::unchecked_image_bytes;
 #endif
+
+// The headers of an EXR, looked through before OpenEXR believes them, and how much of it is pixels.
+
+/// OpenEXR reserves what an attribute and a table of the rows are said to take, and reads
+/// attributes of types that it knows by their type, whatever their size says: its own limits would
+/// hold for the whole process. Leaves the stream at its beginning. `bytes` are those of the file.
+/// Returns where the headers end.
+/// Errors: DecodeError where an attribute is not as large as it has to be, announces more than the
+/// file holds, or the picture is larger than limits.hpp.
+std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
+
+/// Bytes of the tables of a file and of the blocks of pixels that they point at, compressed as they
+/// are: without attributes, and without what lies between and behind the blocks. Leaves the stream
+/// where it was.
+///   table     where the tables begin, as check_exr_headers returns it
+///   bytes     those of the file
+///   entries   of the tables: one a block, of all parts
+///   tiled     whether a part has tiles in place of rows, per part
+/// Errors: DecodeError where a block is not within the file.
+std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
+                              std::uint64_t entries, const std::vector<bool>& tiled);
 
 }  // namespace photile::image

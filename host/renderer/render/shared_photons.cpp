@@ -10,8 +10,8 @@
 
 #include "common/byte_stream.hpp"
 #include "geometry/box.hpp"
-#include "groups/photon_blocks.hpp"
-#include "groups/photon_sample.hpp"
+#include "groups/automatic_radius.hpp"
+#include "groups/merge_patches.hpp"
 #include "maps/build_maps.hpp"
 #include "photile/defaults.hpp"
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "photile/defaults.hpp"
-#include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"

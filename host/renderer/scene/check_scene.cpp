@@ -12,7 +12,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene_builder.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile {
 namespace {

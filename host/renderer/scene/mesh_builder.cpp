@@ -10,7 +10,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::scene {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/coordinate_limit.hpp"
-#include "scene/default_camera.hpp"
+#include "scene/camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
+#include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile {

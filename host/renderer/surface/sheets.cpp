@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "photile/neighbour_groups.hpp"
-#include "surface/disjoint_sets.hpp"
 #include "surface/lone_edges.hpp"
 
 namespace photile::surface {
+
 namespace {
 
 /// The parts of several tasks, one after the other.

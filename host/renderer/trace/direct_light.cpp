@@ -3,11 +3,11 @@
 #include <glm/gtc/constants.hpp>
 
 #include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
-#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {

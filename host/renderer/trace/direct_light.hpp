@@ -27,8 +27,8 @@ struct LampNumbers {
   RandomBlock lamp, place;  ///< which lamp, and where on it
 };
 
-/// The places of scrambled sequences (sobol.hpp) that a receiver's looks take: point `first` and
-/// those after it.
+/// The places of scrambled sequences (random_stream.hpp) that a receiver's looks take: point
+/// `first` and those after it.
 class LookSamples {
  public:
   /// `sequences`: receivers that share them, as the samples of a pixel do, take others of their

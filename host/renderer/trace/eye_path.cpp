@@ -6,12 +6,11 @@
 
 #include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
-#include "trace/sobol.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {

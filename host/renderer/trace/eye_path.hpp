@@ -13,7 +13,7 @@
 #include "trace/distant_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/random_stream.hpp"
-#include "trace/ray_scene_impl.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {

@@ -6,12 +6,12 @@
 #include <glm/gtc/constants.hpp>
 
 #include "photile/defaults.hpp"
-#include "trace/diffuse_part.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/hit_point.hpp"
+#include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
-#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {

@@ -15,7 +15,7 @@ namespace photile::trace {
 
 struct HemisphereParameters {
   int batches;  ///< of a point: independent of each other
-  int rays;     ///< of a batch: spread evenly (sobol.hpp)
+  int rays;     ///< of a batch: spread evenly (random_stream.hpp)
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
   const LightSampler* lamps;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "photile/photons.hpp"
 #include "photile/scene.hpp"
 #include "trace/random_stream.hpp"
 
@@ -88,5 +89,10 @@ class LampPieces {
   std::vector<std::uint32_t> of_triangle_;  ///< pieces of those of the scene
   float far_;                               ///< 1 / squared radius of the scene, 1/m2
 };
+
+// How lights share what is drawn from all of them.
+
+/// Share of each light, summing to 1 up to rounding; above 0 unless `quota` is `power`.
+std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota quota);
 
 }  // namespace photile::trace

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "photile/defaults.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/sampling.hpp"
-#include "trace/spot_falloff.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {

@@ -7,9 +7,8 @@
 #include <optional>
 
 #include "photile/scene.hpp"
-#include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"

@@ -7,8 +7,8 @@
 
 #include "photile/defaults.hpp"
 #include "photile/ray_scene.hpp"
-#include "trace/lamp_intensity.hpp"
-#include "trace/photon_quota.hpp"
+#include "trace/emission_sampling.hpp"
+#include "trace/lamp_pieces.hpp"
 
 namespace photile::trace {
 

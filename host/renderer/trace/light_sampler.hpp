@@ -8,8 +8,8 @@
 
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
-#include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/lamp_pieces.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"

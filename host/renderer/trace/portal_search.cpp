@@ -17,7 +17,6 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"

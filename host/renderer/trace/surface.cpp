@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "photile/device/bsdf.h"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/sampling.hpp"
 
 namespace photile::trace {

@@ -1,4 +1,4 @@
-// A point on a triangle, with everything scattering asks about it.
+// Where a ray meets a triangle.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,16 @@
 
 #include "photile/scene.hpp"
 #include "scene/surface_models.hpp"
-#include "trace/triangle_hit.hpp"
 
 namespace photile::trace {
+
+/// A point of a triangle of the scene.
+struct TriangleHit {
+  std::uint32_t triangle;
+  float u, v;  ///< barycentric weights of the second and third corner
+};
+
+// A point on a triangle, with everything scattering asks about it.
 
 /// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
 /// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
