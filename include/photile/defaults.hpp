@@ -82,7 +82,8 @@ inline constexpr double weight_of_parents = 3;
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
 inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
-/// Those from a hit to the photons of its estimate run above it by this part of the radius.
+/// Rays from a hit to the photons of its estimate are offset from the surface by this part of the
+/// radius.
 inline constexpr float photon_sight_lift = 0x1p-4f;
 
 // Glass

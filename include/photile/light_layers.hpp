@@ -55,12 +55,12 @@ struct LightLayers {
   LightLayers() = default;
   /// Black layers in the order of the names, sparse where they are many.
   LightLayers(int width, int height, const std::vector<std::string>& names);
-  /// Those of a scene, in the order of LightGroups::groups.
+  /// The layers of a scene, in the order of LightGroups::groups.
   LightLayers(int width, int height, const Scene& scene);
 
   bool sparse() const { return !rows.empty(); }
   std::uint64_t bytes() const;
-  /// The same with a plane per light: 16 bytes per pixel and light.
+  /// The layers with a plane per light: 16 bytes per pixel and light.
   LightLayers dense() const;
 };
 

@@ -44,8 +44,8 @@ struct NodeBatch {
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its place alone, below 2^48
   std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
-  /// Of each node: the numbers of those of coarser levels between which it lies, two or four, one
-  /// of two twice. All `no_parent` at the coarsest level.
+  /// For each cache sample the numbers of those of coarser levels between which it lies, two or
+  /// four, one of two twice. All `no_parent` at the coarsest level.
   std::vector<std::array<std::uint64_t, 4>> parents;
   static constexpr std::uint64_t no_parent = ~std::uint64_t{0};
   /// Point i of the coarsest lattice, or node i, is linked to neighbour[first_neighbour[i] ..

@@ -88,11 +88,11 @@ inline constexpr int max_image_side = 16'384;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
 inline constexpr int max_cube_map_side = max_image_side / 4;  ///< of a face: four of them go round
 inline constexpr int max_image_channels = 1'024;              ///< of a picture in memory
-/// Of an EXR in a single part, which every program reads. OpenEXR compresses blocks of 16 rows of a
-/// part, two for each thread: with more lights they would take as much memory as the picture, and
-/// from 1,024 channels on other programs refuse the file.
+/// The most channels of an EXR in a single part, which every program reads. OpenEXR compresses
+/// blocks of 16 rows of a part, two for each thread: with more lights they would take as much
+/// memory as the picture, and from 1,024 channels on other programs refuse the file.
 inline constexpr std::size_t max_single_part_lights = 64;
-/// Of a picture that is read a few rows at a time: a root and all lights.
+/// The most channels of a picture that is read a few rows at a time: a root and all lights.
 inline constexpr std::size_t max_layered_channels = 4 + 4 * max_lights;
 inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// Decoded bytes for each encoded one, in pictures above the size that is not worth a check: a
@@ -109,7 +109,7 @@ inline constexpr int max_samples_per_pixel = 65'536;
 /// Beyond, 2^stops times a bright pixel leaves the range of a float.
 inline constexpr double max_exposure_stops = 64;
 
-/// Of a text beside the scene: points, planes, camera paths, moods.
+/// The most bytes of a text beside the scene: points, planes, camera paths, moods.
 inline constexpr std::uint64_t max_input_text_bytes = 256ull << 20;
 
 // Measuring

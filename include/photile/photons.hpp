@@ -46,11 +46,12 @@ struct Photons {
   std::vector<std::uint32_t> first_of;
   std::vector<std::uint64_t> emitted_per_light;  ///< paths started
 
-  /// Of all photons, where these are the part that one process holds; null: these are all.
+  /// What is known of all photons where these are the part that one process holds; null: these are
+  /// all.
   std::shared_ptr<const PhotonsOfAll> of_all;
 
   std::size_t size() const { return position.size(); }
-  /// Of all processes.
+  /// The number of photons of all processes.
   std::uint64_t total() const { return of_all ? of_all->count : size(); }
   std::uint64_t bytes() const;
 };
@@ -89,9 +90,9 @@ struct PhotonTracerParameters {
   bool keep_caustics = false;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
-  /// Of all paths, in the order light, path: what is traced. Flux and Photons::emitted_per_light
-  /// are those of all paths, so that the photons of all shards together (merge_runs) are those of
-  /// one process, bit for bit.
+  /// The part of all paths, in the order light, path, that is traced. Flux and
+  /// Photons::emitted_per_light are those of all paths, so that the photons of all shards together
+  /// (merge_runs) are those of one process, bit for bit.
   Shard shard = {};
 };
 

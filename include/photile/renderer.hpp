@@ -173,7 +173,7 @@ struct PreparedPhotons {
   Photons photons;
   NeighbourGroups groups;  ///< empty: found when maps are built
   double radius = 0;       ///< metres: of the maps; 0 where groups are not there
-  /// Of them, those that came by mirrors and glass alone; where rays gather.
+  /// The photons that came by mirrors and glass alone; where rays gather.
   std::optional<Photons> caustics = std::nullopt;
   /// What light maps of these photons held, if they are kept. Where its settings are those of the
   /// rendering, maps are built from the photons when an estimate is first needed.

@@ -159,7 +159,8 @@ class Texture {
   /// it repeats outside [0,1).
   glm::vec3 sample(glm::vec2 uv) const;
 
-  /// The same of the bytes as they are, RGBA in [0,1]: alpha, normals and factors are no colours.
+  /// The texel from the bytes as they are, RGBA in [0,1]: alpha, normals and factors are no
+  /// colours.
   glm::vec4 sample_data(glm::vec2 uv) const;
 
   /// Whether every alpha is 1.
@@ -258,15 +259,15 @@ struct Light {
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, where the light shines to
   float inner_cone_angle = 0.0f;           ///< radians, spot
   float outer_cone_angle = 0.7853982f;     ///< radians, spot
-  /// Of a point or area light: into Scene::distributions; `none` = the same intensity, or radiance,
-  /// everywhere.
+  /// The intensities of a point or area light: an index into Scene::distributions; `none` = the
+  /// same intensity, or radiance, everywhere.
   std::uint32_t distribution = none;
   /// Unit, perpendicular to `direction`: the x axis of a lamp whose -z axis is `direction`.
   glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
   float angular_diameter = 0.0f;  ///< radians, of a directional light's disc; 0 = parallel light
-  /// Of a directional light that is an even patch of the sky in place of a disc: azimuths from and
-  /// to, radians clockwise from -z as seen from above, and the sines of the elevations from and to.
-  /// All 0 = none.
+  /// The bounds of a directional light that is an even patch of the sky in place of a disc:
+  /// azimuths from and to, radians clockwise from -z as seen from above, and the sines of the
+  /// elevations from and to. All 0 = none.
   glm::vec4 sky_patch{0.0f};
 
   std::uint32_t environment = none;  ///< of an environment light: into Scene::environments
@@ -408,7 +409,7 @@ BoundingSphere bounding_sphere(const Scene& scene);
 struct SceneLoadOptions {
   float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
-  /// Of the scenes in a glTF file: name or index; "" = the file's default, else its first.
+  /// Which of the scenes in a glTF file: name or index; "" = the file's default, else its first.
   std::string scene = {};
   /// Which axis of the file points up: "x", "y", "z", "-x", "-y" or "-z"; the scene is turned so
   /// that it becomes y. "" = y, and a warning where the geometry looks as if it were z.

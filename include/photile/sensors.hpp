@@ -43,7 +43,7 @@ Sensor in_scene(const Scene& scene, Sensor sensor);
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress = Progress::none());
 
-/// The same by `trace_paths`, from `paths` paths of each sensor.
+/// Measures the sensors by `trace_paths`, from `paths` paths of each sensor.
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress = Progress::none());
 
@@ -64,7 +64,7 @@ RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress = Progress::none());
 
-/// The same by `trace_paths`: unbiased, a path from where each ray ends.
+/// Gathers by `trace_paths`: unbiased, a path from where each ray ends.
 PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sensors,
                                  const GatherParameters& gathering, std::uint64_t seed,
                                  Progress& progress = Progress::none());

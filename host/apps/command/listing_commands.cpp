@@ -73,8 +73,8 @@ void run_compilation(const DevicesOptions& options) {
   }
 }
 
-/// Of the devices that the selector means, or of all but the simulator. Errors: DeviceError where
-/// one does not pass.
+/// Tests the devices that the selector means, or of all but the simulator. Errors: DeviceError
+/// where one does not pass.
 void run_tests(const DevicesOptions& options) {
   handle_signals();
   const std::string selector = options.selector.empty() ? "all" : options.selector;

@@ -107,7 +107,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
   return facts;
 }
 
-/// Of each grid.
+/// The surroundings of each grid.
 std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
                                                       const MeasureRun& run) {
   const RayScene rays(run.scene);

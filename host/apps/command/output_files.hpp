@@ -43,7 +43,7 @@ void add_view_option(CLI::App& command, DisplayView& view, const std::string& gr
 /// Adds --exposure and --view.
 void add_tone_mapping_options(CLI::App& command, ToneMapping& parameters, const std::string& group);
 
-/// As typed, checked against the limits.
+/// The options of false colour as typed, checked against the limits.
 struct FalseColourOptions {
   report::FalseColour colours;  ///< but for the top of the scale; no label: the unit
   std::string scale;            ///< top, or "auto"

@@ -27,7 +27,7 @@ namespace photile::app {
 /// What estimates the light that reaches a surface.
 enum class Integrator { photon_map, path };
 
-/// As typed; each value is within its range.
+/// The options as typed; each value is within its range.
 struct RenderOptions {
   QualityOptions quality_options() { return {quality, parameters}; }
 

@@ -16,7 +16,7 @@ namespace photile::app {
 /// world and powers. Lights of the sky have no place.
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 
-/// Of each opaque material that a triangle has: the luminous reflectance in percent.
+/// A row for each opaque material that a triangle has, with its luminous reflectance in percent.
 report::ReportTable reflectances(const Scene& scene);
 
 /// The file of moods for a report: the one that is given, else the scene's, "" where there is none.

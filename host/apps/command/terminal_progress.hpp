@@ -97,7 +97,7 @@ std::string format_number(double value, int digits);
 /// "800 lm" or "5 W"
 std::string format_power(double power, PowerUnit unit);
 
-/// The same power in both units: "800 lm (1.171 W)".
+/// A power in both units: "800 lm (1.171 W)".
 std::string format_power_in_both(double power, PowerUnit unit, double lumen_per_watt);
 
 /// "lm" or "W"

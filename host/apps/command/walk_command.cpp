@@ -178,7 +178,7 @@ class Walk {
            (options_.quick ? " quick" : "");
   }
 
-  /// Of each frame that is to be made.
+  /// Whether each frame that is to be made exists already.
   std::vector<bool> find_finished() const {
     std::vector<bool> finished(frames_.size(), false);
     if (!to_exr_) return finished;
@@ -283,7 +283,8 @@ class Walk {
     if (on_sheet) sheet_->add(place_on_sheet(frame), displayed);
   }
 
-  /// Of a long walk the sheet shows frames at even distances. -1: not this one.
+  /// The number of a frame on the sheet, or -1: of a long walk the sheet shows frames at even
+  /// distances.
   int place_on_sheet(int frame) const {
     if (count_ <= most_on_sheet) return frame;
     const auto place = static_cast<int>(std::int64_t{frame} * most_on_sheet / count_);

@@ -32,11 +32,11 @@ struct AnalyticCase {
   std::string source;  ///< what it follows, and the closed form
   Scene scene;         ///< one light
   std::vector<Reading> readings;
-  /// Of the photons asked for, what this case needs: those whose readings are means over whole
-  /// rooms need few.
+  /// The fraction of the requested photons that this case needs: cases whose readings are means
+  /// over whole rooms need few.
   double photon_share = 1;
-  /// Of the neighbours asked for, what an estimate takes: the mean over many sensors is quiet with
-  /// few, whose small discs see no curvature of the irradiance.
+  /// The fraction of the requested neighbours that an estimate takes: the mean over many sensors is
+  /// quiet with few, whose small discs see no curvature of the irradiance.
   double neighbour_share = 1;
 };
 

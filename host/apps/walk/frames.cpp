@@ -15,7 +15,7 @@ namespace photile::walk {
 
 namespace {
 
-/// Of a number in a name.
+/// The position of a number in a name.
 struct Place {
   std::size_t length = 0;  ///< 0: none is there
   int width = 1;

@@ -304,7 +304,7 @@ class JsonCheck {
     return true;
   }
 
-  /// Of the elements of an array of the outermost object.
+  /// Checks the number of elements of an array of the outermost object.
   bool check_count() {
     const std::string& array = levels_.front().key;
     const std::uint64_t most = array == "nodes"       ? limits::max_nodes

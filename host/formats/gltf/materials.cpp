@@ -87,7 +87,7 @@ TextureReference reference_of(const tinygltf::OcclusionTextureInfo& info) {
   return reference(info);
 }
 
-/// Of the member `name` of an extension; not given where it is absent.
+/// The texture that the member `name` of an extension refers to; not given where it is absent.
 TextureReference reference_of(const tinygltf::Value& extension, const std::string& name) {
   if (!extension.Has(name) || !extension.Get(name).IsObject()) return {};
   const tinygltf::Value& info = extension.Get(name);

@@ -29,7 +29,7 @@ struct TextureCoordinates {
   bool operator==(const TextureCoordinates& other) const = default;
 };
 
-/// Those of a material's emission, and those that its other textures share.
+/// The texture coordinates of a material's emission, and those that its other textures share.
 struct MaterialCoordinates {
   TextureCoordinates surface, emission;
 };

@@ -128,8 +128,8 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-/// As the file has them, one after another: 3 floats a vertex, of tangents 4, of coordinates 2. All
-/// but the positions are empty where they are absent or not wanted.
+/// The attributes as the file has them, one after another: 3 floats a vertex, 4 of tangents, 2 of
+/// coordinates. All but the positions are empty where they are absent or not wanted.
 struct VertexAttributes {
   std::vector<float> positions, normals, tangents, uv, emission_uv;
 };
@@ -169,7 +169,7 @@ scene::Corner PlacedVertices::operator[](std::uint32_t vertex) const {
   if (!normals.empty()) corner.normal = normal_matrix_ * vector_at(normals, 3 * i);
   if (tangents.empty()) return corner;
   corner.tangent = glm::dmat3(world_) * vector_at(tangents, 4 * i);
-  // Of a mirrored node the cofactors turn the normal round, and with it the bitangent.
+  // The cofactors of a mirrored node turn the normal round, and with it the bitangent.
   corner.handedness = double{tangents[4 * i + 3]};
   return corner;
 }

@@ -66,7 +66,7 @@ class VisitCounter {
  public:
   explicit VisitCounter(const tinygltf::Model& model) : model_(model), below_(model.nodes.size()) {}
 
-  /// Of the node and all below it, at most one more than the limit. What counts as nothing here
+  /// Counts the node and all below it, at most one more than the limit. What counts as nothing here
   /// (cycles, deep trees, missing nodes) ends the walk, which comes by in the same order.
   std::uint64_t count(int node, int depth = 0) {
     if (node < 0 || static_cast<std::size_t>(node) >= below_.size()) return 0;

@@ -33,7 +33,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double below_ceiling = 0.005;  // metres
-/// Of a lamp's flux: what shines to the other side of its opening.
+/// The least fraction of a lamp's flux that counts as light to the other side of its opening.
 constexpr double least_uplight = 1e-3;
 constexpr int most_in_a_row = 1'000;
 

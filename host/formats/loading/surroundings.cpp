@@ -122,7 +122,8 @@ namespace {
 using std::numbers::pi;
 constexpr int rows = 512;  // a third of a degree each
 constexpr int columns = 1024;
-/// Of what does not depend on the azimuth: portals show some of them more than others.
+/// Columns of a map that does not depend on the azimuth: portals show some of them more than
+/// others.
 constexpr int even_columns = 64;
 
 /// Luminance of a clear sky over a factor that is the same everywhere: ISO 15469, type 12.
@@ -191,7 +192,8 @@ void check_lux(const char* light, double lux) {
                                limits::max_illuminance));
 }
 
-/// Of the light that was added last; `what` has said too much of it.
+/// Refuses the light that was added last where its power is beyond the limit; `what` names its
+/// origin.
 template <class Refusal>
 void check_flux(const Scene& scene, const std::string& what, const char* remedy) {
   const Light& light = scene.lights.back();

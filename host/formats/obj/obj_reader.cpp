@@ -230,7 +230,7 @@ ObjTextFindings examine_obj_text(std::string& text) {
 
 namespace {
 
-/// As written on Windows or elsewhere.
+/// A file's name as written on Windows or elsewhere, with slashes.
 std::string with_slashes(std::string name) {
   std::replace(name.begin(), name.end(), '\\', '/');
   return name;

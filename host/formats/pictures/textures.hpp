@@ -59,8 +59,8 @@ class TextureStore {
   /// Index in Scene::textures of a picture file named by the scene. Errors: ResourceError.
   std::uint32_t from_file(const std::string& name, TextureContent content = TextureContent::color);
 
-  /// The same for a picture inside the scene file; `name` tells it from others. Errors:
-  /// ResourceError.
+  /// Index in Scene::textures of a picture inside the scene file; `name` tells it from others.
+  /// Errors: ResourceError.
   std::uint32_t from_memory(const std::string& name, std::span<const unsigned char> bytes,
                             TextureContent content = TextureContent::color);
 

@@ -36,7 +36,8 @@ struct Between {
   double share;  ///< in [0, 1]
 };
 
-/// Of ascending times; before the first and after the last it stays there. One time: share 0 of it.
+/// The keyframes around a time among ascending ones; before the first and after the last time it
+/// stays there. With one keyframe the fraction is 0.
 Between between(std::span<const double> times, double time);
 
 /// Cubic Hermite curve: from value a with tangent at_a, per unit of share, to b.

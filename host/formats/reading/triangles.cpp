@@ -228,7 +228,7 @@ std::vector<glm::uvec3> kept_triangles(const LocalMesh& local, const std::vector
   return triangles;
 }
 
-/// Of the triangles alone: vertices that belong to none may be anything.
+/// The centre of the triangles' corners: vertices that belong to no triangle may be anything.
 glm::dvec3 centre_of(const LocalMesh& local, const std::vector<glm::uvec3>& triangles) {
   glm::dvec3 low = local.positions[triangles.front().x], high = low;
   for (const glm::uvec3& triangle : triangles) {

@@ -24,8 +24,8 @@ struct Occupancy {
   void set_days(const std::string& text);
 };
 
-/// Of a schedule's file those are occupied whose value is more than 0: a line for each hour of the
-/// year, whose last field is the value, and perhaps a line of names first.
+/// The hours of a schedule's file are occupied where their value is more than 0: a line for each
+/// hour of the year, whose last field is the value, and perhaps a line of names first.
 /// Errors: those of read_input_text; InputError naming the file, its line and the remedy.
 std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupancy& occupancy);
 
@@ -34,7 +34,7 @@ std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupa
 /// The half of all hours with the most diffuse light, the daylight hours of EN 17037: 4,380.
 std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);
 
-/// Of one sensor. Shares are of the occupied hours.
+/// The daylight of one sensor. Fractions are of the occupied hours.
 struct PointDaylight {
   double mean_lux = 0;             ///< over the whole year
   double autonomy = 0;             ///< DA: share with the wanted lux or more
@@ -48,7 +48,7 @@ PointDaylight point_daylight(std::span<const float> lux, std::span<const float> 
                              const std::vector<bool>& occupied, const std::vector<bool>& daylight,
                              double wanted_lux);
 
-/// Of all sensors of a room.
+/// The daylight of all sensors of a room.
 struct RoomDaylight {
   double mean_lux = 0;
   double autonomy = 0;             ///< mean of the points'

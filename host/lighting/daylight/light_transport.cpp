@@ -117,12 +117,12 @@ namespace {
 
 /// Rows whose rays are held at once.
 constexpr std::size_t rows_at_once = 256;
-/// Of the median distance from a sensor to what its rays meet.
+/// The size of a cell over the median distance from a sensor to what its rays meet.
 constexpr double cell_of_distance = 0.1;
 constexpr int most_generations = 16;
-/// Of the first generation from cells, about: however few sensors there are.
+/// The rays of the first generation from cells, about, however few sensors there are.
 constexpr std::size_t least_rays = 65'536;
-/// Of a cell, for each batch: as many as ends there, up to this part of a sensor's.
+/// A cell has, for each batch, as many rays as end there, up to this part of a sensor's.
 constexpr int rays_of_cell = 16;
 
 /// What a row's rays saw, but for the cells of surfaces.

@@ -262,8 +262,8 @@ int crossings(const RayScene& rays, glm::dvec3 from, const glm::dvec3& direction
   return count;
 }
 
-/// Of each of six rays, along and across the sensor's direction, whether it crosses an odd number
-/// of surfaces.
+/// Tells of each of six rays, along and across the sensor's direction, whether it crosses an odd
+/// number of surfaces.
 using Parities = std::bitset<6>;
 constexpr std::size_t rays_turned_inside = 5;
 

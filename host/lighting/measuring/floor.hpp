@@ -17,7 +17,7 @@ struct Floor {
   double height = 0;  ///< along `up`, metres: half of its area is not higher
   std::vector<std::uint32_t> triangles;
 };
-/// Of `room`, or of the whole scene where that is null.
+/// The floor of `room`, or of the whole scene where that is null.
 Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room);
 
 /// The floor as seen from above.

@@ -19,8 +19,8 @@ namespace photile::measuring {
 ///   repeats   per repeat the values of all sensors; at least 2
 std::vector<Measured> means_of(std::span<const std::vector<float>> repeats);
 
-/// Of the sensors first .. first + count - 1. Standard errors are those of the jackknife over
-/// repeats (Tukey, "Bias and confidence in not-quite large samples", 1958), which knows that
+/// Statistics of the sensors first .. first + count - 1. Standard errors are those of the jackknife
+/// over repeats (Tukey, "Bias and confidence in not-quite large samples", 1958), which knows that
 /// sensors share photons. It holds the darkest and the brightest sensor of all repeats: a jackknife
 /// that chose them anew would converge to nothing where several are nearly as dark. The square of
 /// the error of a minimum is then the variance of the reading of the sensor that looks darkest. In
@@ -60,11 +60,11 @@ class Readings {
   std::size_t repeats() const { return repeats_.size(); }
   const std::vector<std::string>& lights() const { return lights_; }
 
-  /// Of one light in one repeat, per sensor.
+  /// The lux of one light in one repeat, per sensor.
   const std::vector<float>& of_light(std::size_t repeat, std::size_t light) const {
     return repeats_[repeat][light];
   }
-  /// Of all lights together.
+  /// The lux of all lights together.
   std::vector<float> total(std::size_t repeat) const;
 
  private:

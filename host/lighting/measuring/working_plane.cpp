@@ -180,7 +180,7 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
   return grid;
 }
 
-/// Of the ceiling over the cut, where most of it is.
+/// The height of the ceiling over the cut, where most of it is.
 double ceiling_height(const RayScene& rays, const PlanAxes& axes, const Room& room) {
   const trace::FlushDenormals flush_denormals;
   std::vector<double> heights;

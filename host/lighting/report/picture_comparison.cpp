@@ -173,7 +173,8 @@ double rounded_up(double value) {
   return 10 * power;
 }
 
-/// Of the pixels that see no lamp in `b`: a lamp that moved would leave nothing else to see.
+/// The 99th percentile of the pixels that see no light in `b`: a light that moved would leave
+/// nothing else to see.
 double automatic_scale(const std::vector<double>& all, const Image& b) {
   const RelativeErrorWeights weights(b);
   std::vector<double> differences;

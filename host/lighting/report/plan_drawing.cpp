@@ -22,7 +22,7 @@ struct Sizes {
 constexpr Sizes whole_sizes{560, 130, 22, 200}, small_sizes{190, 75, 14, 130};
 constexpr double margin = 20, title_height = 48, foot_height = 40;
 constexpr double title_baseline = 20, title_size = 14;
-/// Of a mean letter in ems: what the fonts of screens differ little from.
+/// The width of a mean letter in ems, from which the fonts of screens differ little.
 constexpr double letter_width = 0.6;
 constexpr std::size_t most_numbered_cells = 400;
 
@@ -174,7 +174,7 @@ class Plan {
     return options_.contours == Contours::none || options_.contours == Contours::steps;
   }
 
-  /// Of bands, their levels are numbered as isolines are.
+  /// The levels of bands are numbered as isolines are.
   void add_bands() {
     const std::vector<double> levels = scale_.levels();
     const auto bands = scale_.bands();
@@ -199,7 +199,8 @@ class Plan {
     }
   }
 
-  /// Of a plan in colours, at the steps of the standard; of isolines alone, as falsecolor has them.
+  /// A plan in colours has isolines at the steps of the standard; a plan of isolines alone has them
+  /// as falsecolor does.
   std::vector<double> isoline_levels() const {
     if (options_.contours == Contours::lines) return scale_.levels();
     double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -248,7 +249,7 @@ class Plan {
     }
   }
 
-  /// Of two corners, in the scene's world.
+  /// Writes the coordinates of two corners, in the scene's world.
   void add_coordinates() {
     const auto write = [&](const glm::dvec2& place, const char* anchor, const glm::dvec3& world) {
       add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"8\" text-anchor=\"{}\">"

@@ -121,7 +121,7 @@ std::vector<Polygon> isoband(std::span<const double> values, int columns, int ro
 namespace {
 
 constexpr double shown_around = 1.0;  ///< metres
-/// Of a detailed scene the longest cuts are drawn: the rest are ornaments of less than a pixel.
+/// The longest cuts of a detailed scene are drawn: the rest are ornaments of less than a pixel.
 constexpr std::size_t most_walls = 20'000;
 constexpr int looks_along = 300;  ///< that find furniture, along the longer side
 

@@ -23,7 +23,7 @@ std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all);
 /// errors, ratings. Fields of what is not known are empty.
 std::string glare_csv(std::span<const glare::ObserverGlare> all);
 
-/// The same with the luminaires and the sources of pictures.
+/// The ratings with the luminaires and the sources of pictures.
 nlohmann::ordered_json glare_json(std::span<const glare::ObserverGlare> all);
 
 /// A UGR table as data sheets have it: rooms in rows, five reflectances crosswise and endwise.

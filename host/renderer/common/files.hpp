@@ -19,7 +19,7 @@ std::string why_no_regular_file(const std::filesystem::path& file);
 /// regular file or larger than limits::max_input_text_bytes; those of note_input.
 std::string read_input_text(const std::filesystem::path& file);
 
-/// The same for a file that the run may write again: it is not noted as an input.
+/// The content of a file that the run may write again: it is not noted as an input.
 std::string read_own_text(const std::filesystem::path& file);
 
 /// What `work` finds wrong with what a file holds, or with what is asked of it, by the file's name;

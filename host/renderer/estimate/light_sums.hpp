@@ -32,11 +32,11 @@ struct LightSums {
 
   /// The symbols of sums.clh.
   void set_defines(device::Defines& defines) const;
-  /// Of the hash table.
+  /// Bytes of the hash table.
   std::size_t table_bytes() const;
-  /// Of the arrays that a work-item keeps in private memory.
+  /// Bytes of the arrays that a work-item keeps in private memory.
   std::size_t private_bytes() const;
-  /// Of EstimateBuffers.
+  /// Bytes that EstimateBuffers has for a hit.
   EstimateBytes bytes_per_hit() const;
 };
 

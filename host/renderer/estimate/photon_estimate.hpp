@@ -33,7 +33,8 @@ class PhotonEstimate : public LightAtPoints {
   struct Parts {
     std::vector<PhotonMaps> maps;            ///< the same on each device
     std::vector<EstimateParameters> levels;  ///< ascending in k: points choose one, each its own
-    /// Of the photons of these maps: what a point does not see does not count. Null: all count.
+    /// Tells which photons of these maps are visible from a point: hidden ones do not count. Null:
+    /// all count.
     std::shared_ptr<const SeenPhotons> seen = nullptr;
   };
   /// References are kept.

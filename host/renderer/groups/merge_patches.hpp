@@ -104,7 +104,7 @@ class HeldPhotons {
   std::span<const std::uint32_t> of(std::uint32_t map) const {
     return {photons_.data() + first_of_[map], photons_.data() + first_of_[map + 1]};
   }
-  /// Of both maps of a patch.
+  /// The number of photons in both maps of a patch.
   std::uint32_t of_patch(std::uint32_t patch) const {
     return first_of_[2 * patch + 2] - first_of_[2 * patch];
   }

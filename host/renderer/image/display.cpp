@@ -37,7 +37,7 @@ class CodeTable {
     for (int code = 1; code < 256; ++code) least_[code] = least_value_of(code);
   }
 
-  /// Of a value in (0, 1].
+  /// The code of a value in (0, 1].
   std::uint8_t operator()(float linear) const {
     std::uint8_t code = code_at_[std::bit_cast<std::uint32_t>(linear) >> 16];
     while (code < 255 && linear >= least_[code + 1]) ++code;

@@ -330,8 +330,8 @@ class HeaderCheck {
   const std::uint64_t bytes_;
 };
 
-/// Of the block at a place, with what is before its pixels: its part where a file may have several,
-/// its row or its tile and level, its size.
+/// Bytes of the block at an offset, with what is before its pixels: its part where a file may have
+/// several, its row or its tile and level, its size.
 std::uint64_t block_bytes(Imf::IStream& stream, std::uint64_t place, bool several,
                           const std::vector<bool>& tiled) {
   stream.seekg(place);

@@ -24,8 +24,8 @@ std::string too_large(std::size_t channels, std::uint64_t bytes);
 /// Errors: DecodeError.
 void check_shape(const PictureShape& shape, std::size_t encoded);
 
-/// Of a picture that OpenImageIO is to open, what its reader would take memory for first, read as
-/// another picture, or leave the memory for. Errors: DecodeError.
+/// Refuses a picture for OpenImageIO for which its reader would reserve too much memory, which it
+/// would read as another picture, or past whose bytes it would read. Errors: DecodeError.
 void check_encoded(PictureFormat format, Encoded bytes);
 
 /// Decoded bytes that are not worth a check. Fuzzers take fewer: an input is to take microseconds.

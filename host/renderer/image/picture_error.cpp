@@ -99,7 +99,7 @@ void find_worst_region(const Image& picture, const Image& reference,
   }
 }
 
-/// Of what a screen, whose white is 1, shows of the pixels that count; black elsewhere.
+/// The error of what a screen, whose white is 1, shows of the pixels that count; black elsewhere.
 double psnr(const Image& picture, const Image& reference, const RelativeErrorWeights& weights) {
   const Planes a = planes_of(picture), b = planes_of(reference);
   const double factor = middle_grey / weights.mean();

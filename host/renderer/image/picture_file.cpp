@@ -80,7 +80,7 @@ std::string unreadable(const fs::path& file) {
   return {};
 }
 
-/// Of pixels in memory.
+/// Bytes of pixels in memory.
 std::uint64_t decoded_bytes(int width, int height, std::size_t channels) {
   return static_cast<std::uint64_t>(width) * height * channels * sizeof(float);
 }

@@ -25,7 +25,7 @@ class ChannelRows {
   virtual std::vector<float> read(std::size_t channel, int first, int end) = 0;
 };
 
-/// Those of a picture in memory.
+/// The rows of a picture in memory.
 class ImageRows : public ChannelRows {
  public:
   explicit ImageRows(std::shared_ptr<const Image> image) : image_(std::move(image)) {}

@@ -73,8 +73,8 @@ class SurfacePath {
     }
   }
 
-  /// Of light that the path met, where looking at lamps finds it with density `other`. Lamps seen
-  /// in mirrors or through refracting glass are found by following alone.
+  /// The weight of light that the path met, where sampling lights finds it with density `other`.
+  /// Lights seen in mirrors or through refracting glass are found by following alone.
   float weight_against(float other) const {
     return density_ > 0.0f ? power_heuristic(density_, other) : 1.0f;
   }

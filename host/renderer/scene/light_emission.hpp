@@ -28,7 +28,7 @@ class EmissionCells {
   /// Numbers in [0, 1) to a place: a cell by its luminance times its area, then evenly over the
   /// cell. No cell is left out: each counts at least a fiftieth of the mean luminance.
   Place sample(double cell, double u1, double u2) const;
-  /// Of `sample` at a place, per square metre.
+  /// The density of `sample` at a position, per square metre.
   double density(const Place& place) const;
 
  private:

@@ -59,7 +59,7 @@ struct SceneBuilder::Impl {
 
 namespace {
 
-/// Of unit length; zero where there is no direction.
+/// The direction as a unit vector; zero where there is no direction.
 glm::vec3 unit_or_zero(const glm::vec3& direction) {
   const double length = glm::length(glm::dvec3(direction));
   if (!(length > 0) || !std::isfinite(length)) return glm::vec3(0.0f);

@@ -31,7 +31,7 @@ struct Neighbours {
   float weight;
 };
 
-/// Of a number that fits an int.
+/// The floor of a number that fits an int.
 float floor_of(float x) {
   const auto whole = static_cast<float>(static_cast<int>(x));
   return whole > x ? whole - 1.0f : whole;

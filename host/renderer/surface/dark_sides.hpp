@@ -40,7 +40,7 @@ std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& ph
 
 // What the area of a disc is put together from: border edges of facets, and triangles.
 
-/// As PhotileSurfaceLeaf describes it, and its box.
+/// A piece of surface as PhotileSurfaceLeaf describes it, with its box.
 struct SurfacePiece {
   geometry::Box box = {};
   glm::vec3 a{0.0f}, b{0.0f}, c{0.0f};

@@ -32,7 +32,7 @@ class LoneEdges {
   /// after it, once or more; of the two the first in the order of the edges comes first.
   template <class Visit>
   void visit_along(std::uint32_t i, const Visit& visit) const {
-    // Of two edges that run along each other the shorter has an end on the longer.
+    // The shorter of two edges that run along each other has an end on the longer.
     for (const bool second : {false, true}) {
       const glm::vec3 end(second ? edges_[i].to : edges_[i].from);
       tree_.visit_within({end, end}, reach_ * reach_, [&](std::uint32_t piece) {
@@ -57,7 +57,7 @@ class LoneEdges {
     const float a = headings_[i].length, b = headings_[j].length;
     return a != b ? a < b : i < j;
   }
-  /// Of all but a few pairs it says that they do not, at the cost of a product.
+  /// Excludes all but a few pairs of edges that do not, at the cost of a product.
   bool may_run_along(std::uint32_t shorter, std::uint32_t longer) const {
     const glm::vec3 across = glm::cross(headings_[shorter].direction, headings_[longer].direction);
     return !(glm::dot(across, across) > headings_[shorter].most_sine_square);

@@ -92,7 +92,7 @@ SurfaceMesh::SurfaceMesh(const Scene& from)
                        from_corner < to_corner});
     }
   }
-  // Those of equal corners are in the order of their triangles, and stay so.
+  // Edges of equal corners are in the order of their triangles, and stay so.
   const int bits = std::bit_width(scene.vertices.size());
   geometry::radix_sort(edges, 2 * bits, [bits](const MeshEdge& edge) {
     return std::uint64_t{edge.low} << bits | edge.high;

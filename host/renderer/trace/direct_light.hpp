@@ -88,7 +88,7 @@ class LampLooks {
     glm::vec3 irradiance;  ///< weighed, lm/m2
     glm::vec3 direction;   ///< towards the lamp, unit
   };
-  /// Of all looks, in their order, those that nothing hides.
+  /// The light samples that nothing occludes, in their order.
   std::span<const Found> found(const RayScene& rays);
 
  private:

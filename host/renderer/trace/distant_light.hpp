@@ -35,7 +35,7 @@ class EnvironmentSampler {
   float density(const glm::vec3& direction) const;
 
  private:
-  /// Of a texel: luminance x factor.
+  /// The weight of a texel: luminance x factor.
   double weight(int column, int row) const;
 
   const EnvironmentMap* map_;
@@ -76,7 +76,7 @@ class DistantLights {
   auto end() const { return lights_.end(); }
   const DistantLight& operator[](std::size_t index) const { return lights_[index]; }
 
-  /// Those that may shine from a unit direction, as indices; all that do are among them.
+  /// The lights that may shine from a unit direction, as indices; all that do are among them.
   std::span<const std::uint32_t> towards(const glm::vec3& direction) const {
     return cells_.size() == 1 ? cells_.front() : cells_[cell_towards(direction)];
   }

@@ -67,7 +67,7 @@ SurfacePoint AreaSampler::sample_front_of(std::size_t number, const RandomBlock&
   return point;
 }
 
-/// Of the triangles, by area.
+/// One of the triangles, chosen by area.
 std::size_t AreaSampler::chosen(const RandomBlock& random) const {
   const double target = random.uniform_double(0) * area_up_to_.back();
   // The last entry is larger than the target, so there always is one.

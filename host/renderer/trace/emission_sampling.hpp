@@ -23,11 +23,11 @@ class AreaSampler {
   /// A point of the light: uniformly, or of a textured light about in proportion to its luminance.
   /// Uses all words.
   TriangleHit sample(const RandomBlock& random) const;
-  /// The same on the front of the surface.
+  /// A sample on the front of the surface.
   SurfacePoint sample_front(const RandomBlock& random) const;
   /// Uniformly on the front of triangle `number` of the light, which has no texture.
   SurfacePoint sample_front_of(std::size_t number, const RandomBlock& random) const;
-  /// Of `sample` at a point of the light, per square metre of one side.
+  /// The density of `sample` at a point of the light, per square metre of one side.
   double density(const TriangleHit& where) const;
 
  private:
@@ -61,7 +61,7 @@ struct SpotFalloff {
     if (t <= 0) return 0;
     return t < edge ? (t / edge) * (t / edge) : 1;
   }
-  /// Of the intensity over the cosine; times 2 pi it is the flux.
+  /// The integral of the intensity over the cosine; times 2 pi it is the flux.
   double integral() const { return edge / 3.0 + 1.0 - (outer + edge); }
 
   double outer;  ///< cosine

@@ -37,7 +37,7 @@ struct HemisphereRays {
   /// `emission` is the same of lamps, weighed.
   /// `direct` is light that lamps send to near surface, by layer.
   EyeRecord ends;
-  /// Of the run's point i are [first[i], first[i + 1]): ends, lamps that its rays saw and light
+  /// Point i of the run has [first[i], first[i + 1]): ray hits, lights that its rays met and light
   /// that reached near surface.
   std::vector<std::size_t> first, first_emission, first_direct;
   /// Where each ray left its point to, unit, by its number (`pixel`); empty unless the scene has

@@ -74,10 +74,10 @@ PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace
 PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
                          std::span<const std::uint32_t> map_of);
 
-/// Of trace_primary_hits, with the same samples, what comes by a mirror, by glass that bends or
-/// reflects it, or by a glossy lobe: hits behind those as they are, hits that are seen directly (or
-/// through panes of thin glass) with their lobe alone, and lamps in neither case. Added to what is
-/// left out it is the whole.
+/// The part of trace_primary_hits, with the same samples, that comes by a mirror, by glass that
+/// bends or reflects it, or by a glossy lobe: hits behind those as they are, hits that are seen
+/// directly (or through panes of thin glass) with their lobe alone, and lamps in neither case.
+/// Added to what is left out it is the whole.
 PrimaryHitBatch trace_reflected_hits(const RayScene& scene, const Camera& camera,
                                      const PrimaryHitParameters& parameters, int first_row,
                                      int last_row, std::span<const std::uint32_t> map_of = {});

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t most_pieces = 64;
 /// Beyond so many lamps to weigh each would cost more than it saves.
 constexpr std::size_t most_lamps = 1024;
-/// Of the looks go by shares alone.
+/// The fraction of light samples that are chosen by power alone.
 constexpr double everywhere = 0.5;
 
 /// Cosine of a - b, or 1 where b is larger, by cosines and sines of angles up to pi.
@@ -143,7 +143,7 @@ void LampPieces::enclose(const Scene& scene, Piece& piece) const {
   piece.cone_sine = sine_of(piece.cone_cosine);
 }
 
-/// Of the triangles of a piece, in their order.
+/// Sums the areas of the triangles of a piece, in their order.
 void LampPieces::sum_areas(const Scene& scene, const Piece& piece) {
   double area = area_before(piece);
   for (std::uint32_t i = piece.first; i < piece.last; ++i) {
@@ -153,7 +153,7 @@ void LampPieces::sum_areas(const Scene& scene, const Piece& piece) {
   }
 }
 
-/// Of the pieces of the light before this one.
+/// The area of the clusters of the light before this one.
 double LampPieces::area_before(const Piece& piece) const {
   return piece.first == 0 ? 0.0 : triangles_[piece.first - 1].area_up_to;
 }

@@ -36,7 +36,8 @@ class LampPieces {
   ///   shares   of the lights, summing to 1: what looks from everywhere go by
   LampPieces(const Scene& scene, std::span<const double> shares, const BoundingSphere& bounds);
 
-  /// Of looks from a point of a surface; empty where there are no pieces.
+  /// The selection probabilities of light samples from a point of a surface; empty where there are
+  /// no clusters.
   ///   normal   unit, to the side from which is looked
   void weigh(const glm::vec3& position, const glm::vec3& normal, LampChances& chances) const;
 
@@ -53,9 +54,9 @@ class LampPieces {
 
   /// That a light is, if it cannot be cut; else `none`.
   std::uint32_t whole(std::uint32_t light) const { return whole_[light]; }
-  /// Of a triangle of a light that can be cut.
+  /// The cluster of a triangle of a light that can be cut.
   std::uint32_t piece_of(std::uint32_t triangle) const { return of_triangle_[triangle]; }
-  /// Of one side of the piece of such a light, square metres.
+  /// The area of one side of a cluster of such a light, square metres.
   double area(std::uint32_t piece) const {
     return triangles_[pieces_[piece].last - 1].area_up_to - area_before(pieces_[piece]);
   }

@@ -100,7 +100,7 @@ EmittedRay LightEmitter::emit_through_portals(const RandomStream& random) const 
   const glm::dvec3 travel(-from.direction);
   glm::vec3 origin = entrance(bounds_, glm::vec3(travel), numbers.uniform(0), numbers.uniform(1));
   if (through) {
-    // Of a disc or a patch a part may lie behind all portals.
+    // A part of a disc or a patch may lie behind all portals.
     if (!(portals_->area_facing(travel) > 0)) return {origin, -glm::vec3(travel), glm::vec3(0.0f)};
     const glm::dvec3 point = portals_->entrance(
         travel, double{place.uniform(2)}, double{numbers.uniform(0)}, double{numbers.uniform(1)});

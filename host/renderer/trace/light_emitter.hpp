@@ -56,7 +56,7 @@ class LightEmitter {
   std::optional<DistantSampler> distant_;      ///< of environments and suns with a disc
   BoundingSphere bounds_;
   std::shared_ptr<const Portals> portals_;
-  /// Of photons that start through portals; 0 where the light reaches none.
+  /// The fraction of photons that start through portals; 0 where the light reaches none.
   double portal_share_ = 0;
   std::optional<EnvironmentSampler> towards_portals_;  ///< of environments
 };

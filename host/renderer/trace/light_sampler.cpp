@@ -38,7 +38,7 @@ LightSampler::LightSampler(const Scene& scene)
   if (!portals_.empty()) portal_share_ = defaults::portal_looks * std::min(1.0, beyond);
 }
 
-/// Of a light that is chosen as a whole.
+/// The selection probability of a light that is chosen as a whole.
 float LightSampler::chance(std::uint32_t light, const LampChances& chances) const {
   const double others = 1 - portal_share_;
   if (!chances.up_to.empty()) return static_cast<float>(others * chances.of(pieces_.whole(light)));

@@ -25,8 +25,8 @@ struct LightSample {
   /// What a surface receives for each unit of its cosine: radiance / density, or, of lamps without
   /// size, the illuminance of a surface that faces them. The layer's lights have power 1 together.
   glm::vec3 received;
-  /// Of the direction, per steradian, the choice of the lamp included. 0 for lamps without size,
-  /// which no other technique can find.
+  /// The density of the direction, per steradian, the choice of the light included. 0 for lights
+  /// without size, which no other technique can find.
   float density;
   bool distant = false;  ///< from beyond the scene
 };

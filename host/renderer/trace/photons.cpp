@@ -105,7 +105,8 @@ struct Share {
   std::vector<std::uint32_t> next;  ///< per sided triangle: its photons, then the place of the next
 };
 
-/// As many as there are threads, unless their counts would take more memory than the photons.
+/// Parts of the runs, as many as there are threads, unless their counts would take more memory than
+/// the photons.
 std::vector<Share> shares_of(std::span<const LayerRun> runs, std::size_t sided_triangle_count) {
   std::size_t photons = 0;
   for (const LayerRun& run : runs) photons += run.photons->size();

@@ -60,7 +60,7 @@ class RandomBlock {
   bool bit(int word) const { return words_[word] >> 31; }
   std::uint32_t word(int word) const { return words_[word]; }
 
-  /// The same block but for one word: its uniform() is `number`, in [0, 1), to 2^-24.
+  /// The block with one word replaced: its uniform() is `number`, in [0, 1), to 2^-24.
   RandomBlock with(int word, double number) const {
     RandomBlock block = *this;
     block.words_[word] = static_cast<std::uint32_t>(std::min(number * 0x1p32, 0x1p32 - 1));
@@ -158,7 +158,7 @@ inline glm::uvec2 sobol_words(std::uint32_t index, const RandomBlock& scramble) 
           reversed_bits(scrambled_digits(second_sobol_digits(place), scramble.word(2)))};
 }
 
-/// The same point in [0, 1)^2.
+/// The Sobol point in [0, 1)^2.
 inline glm::dvec2 sobol_point(std::uint32_t index, const RandomBlock& scramble) {
   return glm::dvec2(sobol_words(index, scramble)) * 0x1p-32;
 }

@@ -51,8 +51,8 @@ struct LineOfSight {
   glm::vec3 from, to;
 };
 
-/// The same of lines that begin close together: packets of sixteen, twice as fast. The answer for a
-/// line may depend, in its roundings, on those beside it.
+/// Whether lines that begin close together are occluded: packets of sixteen, twice as fast. The
+/// answer for a line may depend, in its roundings, on those beside it.
 ///   hidden   of each line: set to 1, or 0
 void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
               std::span<std::uint8_t> hidden);

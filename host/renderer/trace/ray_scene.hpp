@@ -30,7 +30,7 @@ struct RayScene::Impl {
   /// Whether anything lies on the straight line between two points. Thread-safe. A line with a NaN
   /// or infinity meets nothing.
   bool occluded(const glm::vec3& from, const glm::vec3& to) const;
-  /// The same of up to `packet` lines at once.
+  /// Tests up to `packet` lines at once.
   void occluded(std::span<const trace::LineOfSight> lines, std::span<std::uint8_t> hidden) const;
   static constexpr std::size_t packet = 16;
 

@@ -53,7 +53,7 @@ class Receiver {
  public:
   Receiver(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
 
-  /// Of light from `direction` (unit, away from the surface), per steradian.
+  /// The weights of light from `direction` (unit, away from the surface), per steradian.
   LightWeights weights(const glm::vec3& direction) const {
     return {glm::vec3(cosine(direction)), bsdf_.reflected(direction)};
   }

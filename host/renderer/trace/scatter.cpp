@@ -68,7 +68,8 @@ Deflected deflect(const Material& material, bool entering, const glm::vec3& dire
   return {boundary.transmitted(material, direction, normal), true};
 }
 
-/// Of a ray that the surface transmits: (index where it comes from / index beyond)^2.
+/// The factor of the radiance of a ray that the surface transmits: (index where it comes from /
+/// index beyond)^2.
 double radiance_factor(const Material& material, bool entering) {
   if (material.thin) return 1;
   const double index{material.index_of_refraction};

@@ -53,7 +53,7 @@ class Photometer {
     // Round the axis all vertical planes are alike: one at random, then as on a plane.
     const glm::vec3 round = Frame(frame_.to_world(direction_at(0.0f, own))).to_world(local);
     if (response_ == SensorResponse::cylindrical) return round;
-    // As often as (1 - cos alpha) / 2 says it goes to the other side, which is seen that much more.
+    // With probability (1 - cos alpha) / 2 it goes to the other side, which is seen that much more.
     const float along = glm::dot(round, normal_);
     const float sine = std::sqrt(std::max(1e-12f, 1.0f - along * along));
     if (side >= 0.5f * (1.0f - glm::dot(round, facing_) / sine)) return round;

@@ -85,14 +85,14 @@ float opacity(const Scene& scene, const SurfacePoint& point);
 /// seen. The geometric one where the file has none, or where the two are more than a right angle
 /// apart.
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
-/// The same at a place, metres, on a side of a triangle.
+/// The shading normal at a position, metres, on a side of a triangle.
 glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
                          const glm::vec3& position);
 
 /// Unit shading normals at a point where a ray arrives, on its side.
 struct ShadingNormals {
-  /// Of the corners; the geometric one where the file has none, or where the ray would arrive at
-  /// the shading normal's back.
+  /// The normal interpolated from the corners; the geometric one where the file has none, or where
+  /// the ray would arrive at the shading normal's back.
   glm::vec3 smooth;
   glm::vec3 mapped;  ///< `smooth` as the material's normal map turns it; the same without one
   glm::vec3 seen;    ///< `mapped`, or `smooth` where the ray would arrive at the mapped one's back
