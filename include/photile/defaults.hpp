@@ -54,7 +54,7 @@ inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on 
 inline constexpr float survival_of_reflectance = 1.5f;
 /// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
 inline constexpr float strong_lobe = 0.2f;
-/// Looks at lamps for each ray of a node; in the open, where light is bright beside dark and the
+/// Light samples for each ray of a node; in the open, where light is bright beside dark and the
 /// sky may be seen through a window, more.
 inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
 /// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
@@ -78,7 +78,7 @@ inline constexpr double known_error = 0.5;
 /// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
 /// mean over many.
 inline constexpr double weight_of_parents = 3;
-/// Lines of sight between places of one surface run above it by this part of their length:
+/// Shadow rays between places of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
 inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
@@ -129,7 +129,7 @@ inline constexpr std::size_t clicked_repeats = 64;
 inline constexpr int view_sky_patches = 145;   ///< Tregenza's, of a sky that hours move
 inline constexpr int view_day = 80;            ///< of the year: the 21st of March
 inline constexpr double view_hour = 12;        ///< of that day, standard time
-inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room without any lamp yet
+inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room without any light yet
 inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that no file states
 
 // Several processes
@@ -155,7 +155,7 @@ inline constexpr double portal_looks = 0.6;
 inline constexpr int sky_patches = 577;            ///< Reinhart's, of a year of daylight
 inline constexpr double ground_reflectance = 0.2;  ///< of the ground that surrounds a scene
 inline constexpr double daylight_lux = 300;        ///< of daylight autonomy: LM-83 and EN 17037
-inline constexpr double lamp_efficacy = 100;       ///< lm/W, of lamps that dim with daylight
+inline constexpr double lamp_efficacy = 100;       ///< lm/W, of luminaires that dim with daylight
 inline constexpr int daylight_rays = 256;          ///< of each sensor and repeat
 inline constexpr int daylight_repeats = 4;
 

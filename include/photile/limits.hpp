@@ -17,7 +17,7 @@ inline constexpr std::uint32_t max_shards = 1'000'000;  ///< parts of all paths,
 inline constexpr int max_passes = 65'536;
 inline constexpr int max_specular_depth = 1'000'000;  ///< mirrors and glass that a ray follows
 inline constexpr int max_neighbours = 1'000'000;      ///< k
-inline constexpr int max_direct_rays = 4096;          ///< looks at lamps from a hit
+inline constexpr int max_direct_rays = 4096;          ///< light samples from a hit
 inline constexpr int max_gathering_rays = 4096;       ///< from a point; each has its random numbers
 
 // Radii of search

@@ -83,7 +83,7 @@ struct PhotonTracerParameters {
   std::uint64_t seed = defaults::seed;
   int max_path_length = defaults::max_path_length;  ///< surface interactions
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
-  /// Whether photons that come straight from a lamp, or through panes of thin glass, are stored.
+  /// Whether photons that come directly from a light, or through panes of thin glass, are stored.
   bool store_direct = true;
   /// Whether photons that came by mirrors, or by glass that bends or reflects them, and nothing
   /// else are stored once more, on their own.

@@ -262,7 +262,7 @@ struct Light {
   /// The intensities of a point or area light: an index into Scene::distributions; `none` = the
   /// same intensity, or radiance, everywhere.
   std::uint32_t distribution = none;
-  /// Unit, perpendicular to `direction`: the x axis of a lamp whose -z axis is `direction`.
+  /// Unit, perpendicular to `direction`: the x axis of a light whose -z axis is `direction`.
   glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
   float angular_diameter = 0.0f;  ///< radians, of a directional light's disc; 0 = parallel light
   /// The bounds of a directional light that is an even patch of the sky in place of a disc:
@@ -383,8 +383,8 @@ inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
 inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
 
 /// A place, and a direction, of the file's world in the scene's own coordinates, and back.
-glm::dvec3 place_in_scene(const Scene& scene, const glm::dvec3& world);
-glm::dvec3 place_in_world(const Scene& scene, const glm::dvec3& place);
+glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world);
+glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& place);
 glm::dvec3 direction_in_scene(const Scene& scene, const glm::dvec3& world);
 glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction);
 
@@ -425,7 +425,8 @@ struct SceneLoadOptions {
   bool lambertian = false;   ///< dielectrics have no specular lobe
   bool may_be_dark = false;  ///< no error where there is no light
   SkySituation situation = {};
-  std::filesystem::path luminaires = {};  ///< lamps to place, JSON (docs/luminaires.md); "" = none
+  std::filesystem::path luminaires =
+      {};  ///< luminaires to place, JSON (docs/luminaires.md); "" = none
   /// What stands for the content of that file while it is edited, "" = the file; a scene without
   /// any light then gets one to see by.
   std::string luminaires_text = {};

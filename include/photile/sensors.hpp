@@ -26,7 +26,7 @@ enum class SensorResponse {
 struct Sensor {
   glm::dvec3 position{0.0};          ///< metres
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from
-  /// `gather` only. False: light straight from lamps within the scene, or through panes, is left
+  /// `gather` only. False: light directly from lights within the scene, or through panes, is left
   /// out: what remains is indirect light, and that of sun and sky.
   bool sees_lamps = true;
   std::optional<SensorResponse> response = std::nullopt;  ///< `gather` only; none = its own
@@ -52,7 +52,7 @@ struct GatherParameters {
   int rays = defaults::measuring_rays;  ///< of each sensor
 };
 
-/// The light at sensors anywhere, on a surface or in the air: lamps by rays to them, reflected
+/// The light at sensors anywhere, on a surface or in the air: lights by rays to them, reflected
 /// light by rays to the surfaces around, whose radiance `render` estimates (final gather: Jensen,
 /// "Realistic image synthesis using photon mapping", 2001, chapter 9). The result's layers are one
 /// pixel wide, sensor i is row i: `radiance` is irradiance / pi, W/(m2 sr) or cd/m2 of a white

@@ -205,7 +205,7 @@ TEST_CASE("in the open an hour has its diffuse lux, and the sun's by its elevati
   builder.add(point_light("lamp", {0, 1, 0}));
   const Scene scene = builder.build();
   const Sensor sensor{{0, 0, 0}, {0, 1, 0}};
-  const StraightLight straight(scene, std::span(&sensor, 1));
+  const DirectLight straight(scene, std::span(&sensor, 1));
   const auto sun_by_rays = sun_profile(straight, hours, 0.4, 1.0);
   const auto by_rays = annual_profile(matrix, hours, patches, sun_by_rays);
   const auto by_patches = annual_profile(matrix, hours, patches, {});

@@ -78,7 +78,8 @@ double coverage_of(const GlareOptions& options, const Scene& scene,
   const RayScene rays(scene);
   const double area = glare::Luminaires(rays, options.parameters.looks).large_area(axes.up);
   if (!(area > 0)) return 1;
-  const auto room = measuring::Room::around(rays, axes, place_in_scene(scene, observer.position));
+  const auto room =
+      measuring::Room::around(rays, axes, position_in_scene(scene, observer.position));
   if (!room) return 1;
   return area / (static_cast<double>(room->places().size()) * room->cell_area());
 }

@@ -1,4 +1,5 @@
-// Files of a run, checked before the long work: outputs that can be written and are no input.
+// Files that a command writes, checked early and written late: outputs that can be written and are
+// no input, and how pictures are shown.
 #pragma once
 
 #include <filesystem>
@@ -28,8 +29,6 @@ void check_outputs(std::span<const std::filesystem::path> outputs);
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace photile::app
-
-// The pictures that a command writes: how they are shown, which files, checked early, written late.
 
 namespace CLI {
 class App;

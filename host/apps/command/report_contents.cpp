@@ -24,7 +24,7 @@ namespace {
 std::string place_text(const Scene& scene, const Light& light) {
   const auto place = report::place_of(scene, light);
   if (!place) return "";
-  const glm::dvec3 world = place_in_world(scene, *place);
+  const glm::dvec3 world = position_in_world(scene, *place);
   return fmt::format("{:.2f}, {:.2f}, {:.2f}", world.x, world.y, world.z);
 }
 

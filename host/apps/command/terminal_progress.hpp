@@ -1,4 +1,5 @@
-// Standard error: single lines, and progress as a bar on a terminal, as plain lines otherwise.
+// Standard error: single lines, progress as a bar on a terminal (as plain lines otherwise), and
+// numbers as people read them.
 #pragma once
 
 #include <atomic>
@@ -79,8 +80,6 @@ class TerminalProgress : public Progress {
   Stopwatch stopwatch_;
   std::jthread drawer_;  // last: it uses all of the above
 };
-
-// Numbers as people read them.
 
 /// 950, "1.9k", "4.0M", "1.2G": three digits at most before the point.
 std::string format_count(double count);

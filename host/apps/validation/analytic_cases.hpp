@@ -1,4 +1,5 @@
-// Scenes whose light is known in closed form.
+// Scenes whose light is known in closed form, and what they are made of: simple rooms built in
+// code, and form factors.
 #pragma once
 
 #include <array>
@@ -49,8 +50,6 @@ std::vector<AnalyticCase> analytic_cases();
 void add_direct_cases(std::vector<AnalyticCase>& cases);
 void add_reflection_cases(std::vector<AnalyticCase>& cases);
 void add_furnace_cases(std::vector<AnalyticCase>& cases);
-
-// Simple scenes, built in code.
 
 inline constexpr double pi = glm::pi<double>();
 
@@ -106,7 +105,7 @@ class Room {
   std::vector<Triangle> triangles_;
 };
 
-// Form factors in closed form, double precision: what the analytic cases are computed from.
+// Form factors in closed form, in double precision.
 
 /// Factor from a small surface at `point` with unit `normal` to a polygon that lies above its
 /// horizon, in [0, 1]: irradiance from the polygon over pi times its radiance. Corners

@@ -1,4 +1,4 @@
-// Names of numbered frames.
+// The numbered frames of a walk: the names of their files, and all of them on one picture.
 #pragma once
 
 #include <filesystem>
@@ -37,8 +37,6 @@ struct FrameRange {
 /// "7", "1-240" or "1-240x10", as render farms write it. Nothing if it is none: numbers are whole,
 /// the last is not below the first, and the step is above 0.
 std::optional<FrameRange> parse_frame_range(std::string_view text);
-
-// All frames of a walk on one picture.
 
 /// Small pictures side by side, left to right and top to bottom, on grey.
 class ContactSheet {

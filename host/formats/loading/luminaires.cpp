@@ -124,7 +124,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
 glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene,
                        Shared& shared) {
   if (!entry.contains("position") || entry["position"] != "ceiling") {
-    return place_in_scene(scene, object.vector("position"));
+    return position_in_scene(scene, object.vector("position"));
   }
   if (!shared.ceiling) shared.ceiling = middle_of_ceiling(scene);
   const auto& middle = *shared.ceiling;

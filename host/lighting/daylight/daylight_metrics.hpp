@@ -1,4 +1,4 @@
-// The hours in which a room is used.
+// What standards ask of a year of daylight, over the hours in which a room is used.
 #pragma once
 
 #include <array>
@@ -28,8 +28,6 @@ struct Occupancy {
 /// hour of the year, whose last field is the value, and perhaps a line of names first.
 /// Errors: those of read_input_text; InputError naming the file, its line and the remedy.
 std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupancy& occupancy);
-
-// What standards ask of a year of daylight.
 
 /// The half of all hours with the most diffuse light, the daylight hours of EN 17037: 4,380.
 std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);

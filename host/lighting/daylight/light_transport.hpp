@@ -1,4 +1,5 @@
-// Rays that find what a place sees of the sky's patches, and of the surfaces around it.
+// How light of the sky's patches reaches sensors, directly and over surface in cells: rays, and the
+// coefficients that are summed from them.
 #pragma once
 
 #include <cstddef>
@@ -69,8 +70,6 @@ class SkyRays {
   SkyRayParameters parameters_;
   trace::Portals portals_;
 };
-
-// How light of the sky's patches reaches sensors: straight, and over surface in cells.
 
 /// A place, as a row of the system E = D L + F E of radiosity (Goral et al. 1984), whose
 /// coefficients rays find.

@@ -110,7 +110,7 @@ SkyState sky_state(const Year& year, const Scene& scene, std::string name, int c
   SkyState state{std::move(name), closed, {}, {}, {}};
   state.matrix = daylight_matrix(scene, year.sensors, year.patches, year.parameters, progress);
   if (year.suns_by_rays) {
-    state.sun = sun_profile(StraightLight(scene, year.sensors), year.hours, year.parameters.north,
+    state.sun = sun_profile(DirectLight(scene, year.sensors), year.hours, year.parameters.north,
                             year.parameters.measuring.maintenance);
   }
   state.lux = annual_profile(state.matrix, year.hours, year.patches, state.sun);

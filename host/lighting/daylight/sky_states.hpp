@@ -1,4 +1,4 @@
-// Blinds that close where the sun comes in, by IES LM-83.
+// A year in each state of the blinds, which close where the sun comes in (IES LM-83).
 #pragma once
 
 #include <cstddef>
@@ -39,8 +39,6 @@ std::vector<Material> materials_with(const Scene& scene, std::span<const BlindGr
 std::vector<std::size_t> blind_schedule(std::span<const std::vector<float>> sun,
                                         std::span<const int> closed, std::size_t sensors,
                                         std::size_t hours);
-
-// A year in each state of the blinds.
 
 /// What is the same in all states.
 struct Year {

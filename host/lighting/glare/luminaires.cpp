@@ -155,7 +155,7 @@ SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& 
   if (lamp.distribution != none) {
     const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
     area = distribution.opening().projected_area(distribution.axes(),
-                                                 trace::LampAxes(lamp).to_lamp(-direction));
+                                                 trace::LightAxes(lamp).to_lamp(-direction));
   }
   seen.projected_area = std::max(area, defaults::small_source_area);
   seen.luminance = candela / seen.projected_area;

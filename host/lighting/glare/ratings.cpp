@@ -79,7 +79,7 @@ Observer Observer::looking(std::string name, const glm::dvec3& position, const g
 }
 
 Observer in_scene(const Scene& scene, Observer observer) {
-  observer.position = place_in_scene(scene, observer.position);
+  observer.position = position_in_scene(scene, observer.position);
   observer.forward = direction_in_scene(scene, observer.forward);
   observer.up = direction_in_scene(scene, observer.up);
   return observer;

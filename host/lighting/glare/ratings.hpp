@@ -1,4 +1,5 @@
-// Discomfort glare as one number, from glare sources and what surrounds them.
+// Discomfort glare as one number, from glare sources, where they lie in the field of view, and what
+// surrounds them.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -43,8 +44,6 @@ double low_light_correction(double illuminance);
 /// Daylight glare index (Hopkinson 1972; the solid angle weighed by the position index):
 /// 10 log10(0.478 sum L^1.6 (omega / p^2)^0.8 / (L_b + 0.07 omega^0.5 L)).
 double dgi(std::span<const Source> sources, double background);
-
-// How much a glare source disturbs by where it lies in the field of view.
 
 /// Somebody who looks somewhere.
 struct Observer {

@@ -1,4 +1,4 @@
-// Where the floor of a room is.
+// Where the floor of a room is, and which points over it furniture stands on.
 #pragma once
 
 #include <cstddef>
@@ -41,8 +41,6 @@ class FloorPlan {
   std::vector<bool> covered_;  ///< width x height
   const Room* room_ = nullptr;
 };
-
-// Points of a grid that furniture stands on.
 
 /// Makes those sensors of a grid blank, and takes the cells of a plane that are theirs:
 /// - with a surface nearer than `clearance` metres, along or against their direction, on walls and

@@ -1,4 +1,5 @@
-// What standards ask of a grid's illuminances, with what the noise of a measurement leaves open.
+// A finished measurement: the values of the sensors of each grid, what standards ask of them, and
+// what the noise of the measurement leaves open.
 #pragma once
 
 #include <cstddef>
@@ -42,8 +43,6 @@ struct GridStatistics {
 };
 GridStatistics statistics_of(std::span<const std::vector<float>> repeats, std::size_t first,
                              std::size_t count);
-
-// A finished measurement: grids with the values of their sensors and what follows from them.
 
 /// Illuminance in lux.
 class Readings {
@@ -91,8 +90,6 @@ using Measurement = std::vector<GridValues>;  ///< lux
 
 /// The values of each grid. `readings` are those of all grids' sensors, one grid after the other.
 Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readings);
-
-// Measures all grids of a run, several times.
 
 /// The readings of all grids' sensors, one grid after the other. Errors: those of `gather`.
 Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,

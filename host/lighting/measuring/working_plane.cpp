@@ -167,11 +167,11 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
       const glm::dvec3 place =
           sensor.position + (look_from - met->distance + before_surface) * sensor.normal;
       grid.sensors.push_back(
-          {place_in_world(scene, place), direction_in_world(scene, sensor.normal)});
+          {position_in_world(scene, place), direction_in_world(scene, sensor.normal)});
       grid.layout->cells.push_back(layout.cells[i]);
     } else {
       grid.blanks.push_back(
-          {{place_in_world(scene, sensor.position), direction_in_world(scene, sensor.normal)},
+          {{position_in_world(scene, sensor.position), direction_in_world(scene, sensor.normal)},
            there ? "glass" : missing,
            grid.sensors.size()});
     }

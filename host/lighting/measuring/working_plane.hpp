@@ -1,4 +1,5 @@
-// The grid of EN 12464-1 over the floor of a room.
+// The grids of EN 12464-1 in a room: over its floor, on its walls and ceiling, and on upright
+// cylinders.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -35,8 +36,6 @@ WorkingPlane parse_working_plane(const std::string& text);
 /// Errors: InputError naming the scene where there is no floor, or none left within the band;
 /// UsageError where the given point is in no room.
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
-
-// Grids on the walls and the ceiling of a room, and on upright cylinders in it.
 
 /// A grid on each of four walls, at the sides of the upright rectangle around the room's plan, from
 /// the floor to the ceiling, facing into the room; names say the direction in which the wall lies,

@@ -1,4 +1,5 @@
-// Colours and steps of illuminances, with the options of Radiance's falsecolor.
+// False colour: the colours and steps of values, with the options of Radiance's falsecolor, and
+// pictures of illuminance and luminance.
 #pragma once
 
 #include <array>
@@ -65,8 +66,6 @@ class ColourScale {
   bool stepped_;
   Palette palette_;
 };
-
-// Pictures of illuminance and luminance in false colour.
 
 /// Illuminance of the surface that each pixel sees, by all lights together: lux, row 0 at the top.
 /// Errors: InputError naming a light whose illuminance is not known; those of `read`.

@@ -1,4 +1,5 @@
-// Lines of equal value over a grid.
+// Lines of a plan: of equal value over a grid of sensors, and walls, furniture and luminaires
+// around them, by which a reader knows the room.
 #pragma once
 
 #include <algorithm>
@@ -45,9 +46,6 @@ inline std::vector<double> illuminance_steps(double low, double high) {
   }
   return steps;
 }
-
-// What the plan of a plane of sensors shows beside their values, so that a reader knows the room:
-// walls, furniture and lamps.
 
 /// A lamp of the schedule.
 struct LampMark {

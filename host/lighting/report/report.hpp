@@ -1,4 +1,4 @@
-// A measurement on one page, for people who plan light.
+// A measurement on one page, for people who plan light, and HTML pages as PDF.
 #pragma once
 
 #include <filesystem>
@@ -53,8 +53,6 @@ struct ReportText {
 std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,
                         const std::vector<PlanSurroundings>& surroundings);
-
-// HTML pages as PDF.
 
 /// The page as PDF, on the paper that its style names, by WeasyPrint in a process of its own
 /// (Debian's package weasyprint). Errors: OutputError where it is missing or fails.

@@ -1,4 +1,4 @@
-// Letters of an installed font, drawn by FreeType.
+// A sheet of paper on which pictures, legends and words are put together.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 
 namespace photile::report {
 
+/// Letters of an installed font, drawn by FreeType.
 class Font {
  public:
   /// DejaVu Sans, of which a process keeps one size: pixels. Without it nothing is drawn.
@@ -33,8 +34,6 @@ class Font {
   struct Face;
   std::unique_ptr<Face> face_;  ///< null without the font
 };
-
-// A sheet of paper on which pictures, legends and words are put together.
 
 /// Pixels between the parts of a sheet, of its title, and of the bar of a legend.
 inline constexpr int gap = 12, title_height = 24, bar_width = 20;

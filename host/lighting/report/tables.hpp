@@ -1,4 +1,5 @@
-// Glare ratings as text for people and programs.
+// Measurements and glare ratings as text for people and programs (lines, CSV, JSON), and numbers as
+// people read them.
 #pragma once
 
 #include <fmt/format.h>
@@ -31,8 +32,6 @@ std::vector<std::string> ugr_table_lines(const glare::UgrTable& table);
 std::string ugr_table_csv(const glare::UgrTable& table);
 nlohmann::ordered_json ugr_table_json(const glare::UgrTable& table);
 
-// Numbers as people read them on plans and legends.
-
 /// A value with so many digits that count; large ones are whole numbers in place of powers of ten:
 /// "12500", not "1.25e+04".
 inline std::string number_text(double value, int digits) {
@@ -61,8 +60,6 @@ inline std::string csv_field(const std::string& text) {
   }
   return quoted + "\"";
 }
-
-// A measurement as text: CSV, JSON, and lines to read.
 
 /// A line for each sensor, with a heading: grid, point (from 0), x, y, z, dx, dy, dz, lux,
 /// standard_error; with several lights also `lux <light>` and `standard_error <light>` of each.

@@ -1,4 +1,5 @@
-// Files that a run reads: whether they can be read, and the content of texts.
+// Files that a run reads and writes: whether they can be read, outputs that appear under their
+// names when they are complete, and no output over an input.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +40,6 @@ auto about_file(const std::filesystem::path& file, const Work& work) {
   }
 }
 
-// A file that appears under its name only when it is complete.
-
 /// Written under a temporary name in the folder of its target, then renamed by `commit`. Destroyed
 /// without a commit, it leaves nothing behind and an earlier file under the name untouched. What a
 /// killed process leaves behind is removed by the next that writes into the folder.
@@ -80,8 +79,6 @@ class OutputFile {
 
 /// Writes a file whole. Errors: those of OutputFile.
 void write_file(const std::filesystem::path& file, std::string_view content);
-
-// Which files a run reads and which it writes, so that no run overwrites what it reads.
 
 /// Lives as long as a run of the command; there is one at a time. A program that calls the library
 /// may write what it has read: without a RunFiles the functions below do nothing.

@@ -139,7 +139,7 @@ constexpr double least_shared = 0.65;
 
 /// At least as large a part must those be of what the joined patch would hold around it. With less,
 /// the queries of either would look at too many photons of the other in vain: of the bright side of
-/// a lamp for a hit on its dark side.
+/// a light for a hit on its dark side.
 constexpr double least_shared_around = 0.5;
 
 /// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map

@@ -1,4 +1,5 @@
-// Patches that are joined, either side by side or turned over.
+// Patches that are merged, side by side or turned over, and a sample of the photons by the maps
+// that hold them.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -64,8 +65,6 @@ void rename_maps(std::vector<Offset>& offsets, std::vector<std::uint32_t>& maps,
   maps.erase(written, maps.end());
   maps.shrink_to_fit();
 }
-
-// A sample of the photons, by the maps that they enter.
 
 /// From one photon of a sample to the next, of so many: about 32,768 are left. The first is half a
 /// step from the first of all.

@@ -1,5 +1,6 @@
-// Whether two triangles are neighbours: cheap bounds first, the exact distance where they leave it
-// open.
+// Neighbour groups: whether two triangles are near each other, by cheap bounds first and the exact
+// distance where they leave it open, and the lists of both sides that one search per triangle
+// gives.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +49,6 @@ class ProximityTest {
   double outer_;          ///< farther than this is certainly outside
   double squared_inner_;  ///< square of the distance that is certainly within; negative if none
 };
-
-// The lists behind neighbour groups: one search per triangle, written out as groups of both sides.
 
 // A neighbour of a triangle (a triangle, or a patch) is kept as 4 * its index + these bits until
 // the groups of both sides are written: equal sides agree, opposite sides agree.

@@ -95,7 +95,7 @@ namespace {
 
 constexpr double mid_grey = 0.18;  ///< reflectance of a photographer's grey card
 
-/// Luminances farther than this factor from the median say nothing about the room: a lamp seen
+/// Luminances farther than this factor from the median say nothing about the room: a light seen
 /// directly, a black background.
 constexpr double outlier_factor = 20.0;
 

@@ -1,4 +1,5 @@
-// The sRGB transfer curve, exact in both pieces (IEC 61966-2-1).
+// What a screen shows: the sRGB transfer curve, exact in both pieces (IEC 61966-2-1), tone-mapped
+// texels, and PNG files.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +28,6 @@ std::vector<std::uint8_t> tone_mapped_texels(std::span<const glm::vec3> rgb, dou
 /// 8-bit texels of display-referred R, G, B, which the picture must have: 3 bytes a pixel, row 0 at
 /// the top. Shared among all cores.
 std::vector<std::uint8_t> srgb8_texels(const Image& display_referred);
-
-// PNGs of 8-bit sRGB.
 
 /// Encodes rows x width x channels texels (3: RGB, 4: RGB and an alpha that colours are not
 /// multiplied with) and writes them to a file that the caller commits.

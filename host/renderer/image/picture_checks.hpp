@@ -1,4 +1,4 @@
-// What a picture may ask for, and what is looked at before a decoder sees it.
+// What a picture may ask for, and what is checked before a decoder sees it, EXR headers among it.
 #pragma once
 
 #include <OpenEXR/ImfIO.h>
@@ -34,8 +34,6 @@ inline constexpr std::uint64_t unchecked_bytes = 1ull << 20;
 #else
 inline constexpr std::uint64_t unchecked_bytes = limits::unchecked_image_bytes;
 #endif
-
-// The headers of an EXR, looked through before OpenEXR believes them, and how much of it is pixels.
 
 /// OpenEXR reserves what an attribute and a table of the rows are said to take, and reads
 /// attributes of types that it knows by their type, whatever their size says: its own limits would

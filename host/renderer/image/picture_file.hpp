@@ -1,4 +1,4 @@
-// The pixels of a picture, a few rows of a channel at a time.
+// A picture file, opened: what it says of itself, and its pixels a few rows at a time.
 #pragma once
 
 #include <cstddef>
@@ -44,8 +44,6 @@ class ImageRows : public ChannelRows {
 /// for. `scales` has one per layer, power x tint.
 void combine_rows(const LightLayers& layers, std::span<const glm::vec3> scales, int row,
                   std::span<glm::vec3> picture);
-
-// A picture file, opened: what it says of itself, and its pixels a few rows at a time.
 
 /// All parts of an EXR as one picture, or a picture of any other format that open_picture reads.
 class PictureFile : public ChannelRows {

@@ -135,7 +135,7 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
     return used_.radius;
   }
   if (photons.total() < 2) {
-    // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
+    // Nothing but lights, mirrors and glass is seen, or rays bring all the light there is.
     if (all_photons(used_).store_direct) {
       progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
     }

@@ -18,7 +18,7 @@
 namespace photile {
 
 /// Whether nodes of light maps gather light for what is asked: with rays of theirs, and unless the
-/// light is not that of nodes, or looks at lamps from the hits replace a part of it.
+/// light is not that of nodes, or light samples from the hits replace a part of it.
 bool nodes_gather(const RenderParameters& asked);
 
 /// Who asks for light: pictures, whose hits lie so close that many share nodes of light maps, or
@@ -32,7 +32,7 @@ class RenderPlan {
   RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits, Progress& progress);
 
   /// What is asked, with what follows from it in place: photon passes that fit in memory, looks at
-  /// lamps where rays gather, discs for naive maps. The radius is 0 where photons tell it.
+  /// lights where rays gather, discs for naive maps. The radius is 0 where photons tell it.
   const RenderParameters& used() const { return used_; }
 
   int passes() const { return used_.passes; }

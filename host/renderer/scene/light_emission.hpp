@@ -1,4 +1,6 @@
-// The surface of a textured lamp, cut into cells of even light.
+// What lights emit, from what people know of them: flux in closed form, colour, and the surface of
+// a textured light in cells of even radiance. SI units: radiance (or luminance) per square metre
+// and steradian, intensity per steradian, irradiance per square metre.
 #pragma once
 
 #include <cstdint>
@@ -50,10 +52,6 @@ class EmissionCells {
 /// Radiance of a textured light at a place, in the unit of Light::texel_radiance.
 glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
                              const EmissionCells::Place& place);
-
-// What lights emit, from what people know of them: flux in closed form, and colour. SI units:
-// radiance (or luminance) per square metre and steradian, intensity per steradian, irradiance per
-// square metre.
 
 /// `light.color` and the luminance of `rgb`, which may be any radiometric colour; false if black.
 bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb);

@@ -28,16 +28,16 @@ glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction) {
   return glm::transpose(scene.turn) * direction;
 }
 
-glm::dvec3 place_in_scene(const Scene& scene, const glm::dvec3& world) {
+glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world) {
   return direction_in_scene(scene, world) - scene.origin;
 }
 
-glm::dvec3 place_in_world(const Scene& scene, const glm::dvec3& place) {
+glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& place) {
   return direction_in_world(scene, place + scene.origin);
 }
 
 Camera in_world(const Scene& scene, Camera camera) {
-  camera.position = place_in_world(scene, camera.position);
+  camera.position = position_in_world(scene, camera.position);
   for (glm::dvec3* axis : {&camera.forward, &camera.up, &camera.right}) {
     *axis = direction_in_world(scene, *axis);
   }
@@ -45,7 +45,7 @@ Camera in_world(const Scene& scene, Camera camera) {
 }
 
 Camera in_scene(const Scene& scene, Camera camera) {
-  camera.position = place_in_scene(scene, camera.position);
+  camera.position = position_in_scene(scene, camera.position);
   for (glm::dvec3* axis : {&camera.forward, &camera.up, &camera.right}) {
     *axis = direction_in_scene(scene, *axis);
   }
@@ -53,7 +53,7 @@ Camera in_scene(const Scene& scene, Camera camera) {
 }
 
 Sensor in_scene(const Scene& scene, Sensor sensor) {
-  sensor.position = place_in_scene(scene, sensor.position);
+  sensor.position = position_in_scene(scene, sensor.position);
   sensor.normal = direction_in_scene(scene, sensor.normal);
   sensor.facing = direction_in_scene(scene, sensor.facing);
   return sensor;

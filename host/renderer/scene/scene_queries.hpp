@@ -1,4 +1,4 @@
-// Solid glass that encloses nothing.
+// Questions about a scene: which positions it can hold, which glass encloses nothing, and its hash.
 #pragma once
 
 #include <cmath>
@@ -18,16 +18,12 @@ namespace photile::scene {
 /// is, to a millionth of the scene's size.
 std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene);
 
-// Which positions a scene can hold.
-
 /// Neither NaN, infinite nor beyond limits::max_coordinate.
 inline bool within_limit(const glm::dvec3& position) {
   constexpr double most = limits::max_coordinate;
   return std::abs(position.x) <= most && std::abs(position.y) <= most &&
          std::abs(position.z) <= most;
 }
-
-// Which scene something was computed from.
 
 /// Adds everything that light depends on: geometry, materials, texels, lights with their groups,
 /// and the unit; not cameras and names of files.

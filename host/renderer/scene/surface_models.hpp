@@ -1,4 +1,4 @@
-// How the material models of the file formats map to photile's.
+// How the material models of the file formats map to photile's, and how much light they reflect.
 #pragma once
 
 #include <optional>
@@ -57,8 +57,6 @@ SceneNeeds needs_of_materials(std::span<const Material> materials);
 /// Lets go of shading normals where none is asked for: all are those of their triangles, or lie on
 /// what scatters no light, and no material that the needs tell of is specular or glossy.
 void drop_flat_normals(Scene& scene, const SceneNeeds& of_materials);
-
-// How much of the light that falls on it a material reflects.
 
 /// The share of light from all directions that an opaque surface sends back, per channel: the
 /// reflectance of lighting tables. Within 2% of what the BSDF scatters, by the fits of its albedo.

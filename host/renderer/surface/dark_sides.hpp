@@ -1,4 +1,5 @@
-// Surface of a lit sheet that no photon reaches: the wall behind a cabinet, or above a ceiling.
+// The unlit sides of smooth components that no photon reaches (the wall behind a cabinet, or above
+// a ceiling), and the pieces that the area of a disc is put together from.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +38,6 @@ std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
 ///   dark      sides that are dark as a whole: have no parts
 std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
                                       std::span<const std::uint8_t> dark, double radius);
-
-// What the area of a disc is put together from: border edges of facets, and triangles.
 
 /// A piece of surface as PhotileSurfaceLeaf describes it, with its box.
 struct SurfacePiece {

@@ -1,4 +1,5 @@
-// Facets: connected triangles in one plane, and the edges that bound them.
+// Facets: connected triangles in one plane, the edges that bound them, and what lies near a
+// triangle in another plane.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,6 @@ struct Facets {
 /// of normals_agree, heights by less than a thousandth of the radius.
 ///   dark   per sided triangle: no facet goes on where that of one of its sides changes; or empty
 Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark = {});
-
-// What lies near a triangle but not in its plane.
 
 /// A hierarchy over the triangles that count, whose nodes know whether all of theirs belong to one
 /// facet: the middle of a large wall is left out at once, however finely it is tessellated.

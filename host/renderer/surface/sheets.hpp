@@ -1,4 +1,4 @@
-// Disjoint sets of numbers (union-find).
+// Sheets: sided triangles that connect over edges which fold by no more than an angle.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,6 @@ class DisjointSets {
  private:
   std::vector<std::uint32_t> parent_;
 };
-
-// Sheets: sided triangles that connect over edges which fold by no more than an angle.
 
 struct Sheets {
   std::vector<std::uint32_t> of;  ///< per sided triangle

@@ -1,4 +1,5 @@
-// Directions towards the surroundings, in proportion to their luminance.
+// Light from beyond the scene that rays can meet (surroundings, the disc of a sun), and directions
+// towards it in proportion to its luminance.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +43,6 @@ class EnvironmentSampler {
   std::vector<double> row_up_to_;  ///< luminance x solid angle of the rows up to and with this one
   std::vector<double> texel_up_to_;  ///< luminance of the texels of a row up to and with this one
 };
-
-// Light from beyond the scene that rays can meet: surroundings, or the disc of a sun.
 
 /// What rays see of a light beyond the scene.
 class DistantLight {

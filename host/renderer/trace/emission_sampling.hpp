@@ -1,4 +1,5 @@
-// Choice of a point on the triangles of an area light by what it emits.
+// Where photons start on a light, and in which direction: points of area lights by what they emit,
+// directions of lights without surface by their intensity.
 #pragma once
 
 #include <algorithm>
@@ -47,9 +48,8 @@ class AreaSampler {
   std::optional<scene::EmissionCells> cells_;  ///< of a textured light
 };
 
-// The cone of a spot light (KHR_lights_punctual): over t = cosine - outer its intensity is
-// (t / edge)^2 up to the edge of the inner cone, then 1.
-
+/// The cone of a spot light (KHR_lights_punctual): over t = cosine - outer its intensity is
+/// (t / edge)^2 up to the edge of the inner cone, then 1.
 struct SpotFalloff {
   explicit SpotFalloff(const Light& light)
       : outer(std::cos(static_cast<double>(light.outer_cone_angle))),
@@ -68,11 +68,9 @@ struct SpotFalloff {
   double edge;   ///< cosine of the inner cone less that of the outer one
 };
 
-// What lamps without surface send in a direction, and where their photons go.
-
-/// A lamp shines along the -z axis of its own space.
-struct LampAxes {
-  explicit LampAxes(const Light& light)
+/// A light shines along the -z axis of its own space.
+struct LightAxes {
+  explicit LightAxes(const Light& light)
       : x(light.x_axis), z(-glm::dvec3(light.direction)), y(glm::cross(z, x)) {}
 
   glm::dvec3 to_world(const glm::dvec3& v) const { return x * v.x + y * v.y + z * v.z; }
@@ -89,7 +87,7 @@ inline double candela_per_lumen(const Scene& scene, const Light& lamp,
                                 const glm::dvec3& direction) {
   if (lamp.distribution != none) {
     const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
-    return distribution.intensity(LampAxes(lamp).to_lamp(direction)) / distribution.flux();
+    return distribution.intensity(LightAxes(lamp).to_lamp(direction)) / distribution.flux();
   }
   if (lamp.kind == LightKind::spot) {
     const SpotFalloff spot(lamp);
@@ -99,7 +97,7 @@ inline double candela_per_lumen(const Scene& scene, const Light& lamp,
   return 0.25 * glm::one_over_pi<double>();
 }
 
-/// Directions of photons from a lamp whose intensities were measured.
+/// Directions of photons from a light whose intensities were measured.
 class IntensitySampler {
  public:
   /// References are kept. `light` has a distribution that emits something.
@@ -111,7 +109,7 @@ class IntensitySampler {
 
  private:
   const IntensityDistribution* distribution_;
-  LampAxes axes_;
+  LightAxes axes_;
   std::vector<double> flux_up_to_;  ///< of the cells up to and with this one, column by column
 };
 

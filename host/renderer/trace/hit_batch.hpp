@@ -1,4 +1,4 @@
-// Hits, or what else belongs to pixels, in the order of the pixels.
+// Primary hits in batches: ordered by photon map and along a Morton curve, and grouped by pixel.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +33,6 @@ struct ByPixel {
   }
 };
 
-// The order of primary hits: by photon map, then along a Morton curve.
-
 /// The cells of a box, equally many along each axis, by which hits on one map are sorted.
 class HitCells {
  public:
@@ -63,8 +61,6 @@ struct HitPlace {
 std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
                                     std::span<const std::uint32_t> map_of);
 
-// What runs of samples saw, as one batch of hits.
-
 /// The hits at these places of the records, in the order of the places.
 PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places);
 
@@ -76,7 +72,7 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
 
 /// The part of trace_primary_hits, with the same samples, that comes by a mirror, by glass that
 /// bends or reflects it, or by a glossy lobe: hits behind those as they are, hits that are seen
-/// directly (or through panes of thin glass) with their lobe alone, and lamps in neither case.
+/// directly (or through panes of thin glass) with their lobe alone, and lights in neither case.
 /// Added to what is left out it is the whole.
 PrimaryHitBatch trace_reflected_hits(const RayScene& scene, const Camera& camera,
                                      const PrimaryHitParameters& parameters, int first_row,

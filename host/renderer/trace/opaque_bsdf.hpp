@@ -1,5 +1,5 @@
-// What an opaque surface reflects but for one facet's reflection, as seen from one side
-// (device/bsdf.h).
+// The BSDF of an opaque surface (device/bsdf.h) at one point, for the ray that arrives there: its
+// value, directions drawn from it, and their density.
 #pragma once
 
 #include <algorithm>
@@ -49,9 +49,6 @@ inline glm::vec3 diffuse_reflectance(const DiffusePart& part, float alpha) {
 inline float most_bump(const glm::vec3& reflectance) {
   return 1.0f / std::clamp(std::max({reflectance.r, reflectance.g, reflectance.b}), 1e-3f, 1.0f);
 }
-
-// The BSDF of an opaque surface (device/bsdf.h) at one point, for the ray that arrives there: its
-// value, directions drawn from it, and their density.
 
 /// Where the rays of a path come from. With a normal map the BSDF is not reciprocal.
 enum class PathStart : std::uint8_t { eye, light };

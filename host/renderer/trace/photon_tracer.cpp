@@ -58,7 +58,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   if (!(largest(flux) > 0.0f)) return;
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
   std::uint32_t holes = 0;
-  bool straight = true;  // but for panes and holes, which looking at lamps sees through
+  bool straight = true;  // but for panes and holes, which sampling lights sees through
   bool specular = true;  // scattered by mirrors and glass alone, if at all
 
   for (int bounce = 1;;) {

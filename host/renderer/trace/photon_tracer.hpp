@@ -1,4 +1,5 @@
-// One photon's path from its light to its end.
+// A photon's path from its light to its end, and the photons of many paths sorted by sided
+// triangle.
 #pragma once
 
 #include <cstddef>
@@ -45,8 +46,6 @@ struct PathSetup {
 /// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
 /// absorption.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
-
-// Photons of many runs, brought into the order of their sided triangles.
 
 /// Photons of lights of one layer.
 struct LayerRun {

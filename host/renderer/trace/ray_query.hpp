@@ -1,4 +1,5 @@
-// Embree asks for denormal numbers to be flushed to zero in every thread that traces rays.
+// Questions to a RayScene, for rooms that do not know Embree: what a ray meets, alpha cutouts and
+// visibility. Thread-safe; the calling thread must hold a FlushDenormals.
 #pragma once
 
 #include <xmmintrin.h>
@@ -36,9 +37,6 @@ class FlushDenormals {
 #endif
 };
 
-// Questions to a RayScene, for rooms that do not know Embree. Thread-safe; the caller's thread must
-// flush denormals (ray_query.hpp).
-
 /// Nearest hit of the ray, or nothing. A ray with a NaN or infinity hits nothing.
 std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
                                      const glm::vec3& direction);
@@ -46,7 +44,7 @@ std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& orig
 /// Whether a surface of any material cuts the straight line between two points.
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
-/// A straight line from a surface to a lamp, say.
+/// A straight line from a surface to a light, say.
 struct LineOfSight {
   glm::vec3 from, to;
 };
@@ -66,8 +64,6 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
 /// surfaces with holes.
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
-// Rays through the holes of cut-out materials (Material::opacity).
-
 /// Whether a ray passes the surface here as if it were not there: always in a hole, never where the
 /// surface is whole, by chance where it is partly there. Behind 4096 holes of a path all surfaces
 /// count as whole.
@@ -84,8 +80,6 @@ std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& holes);
 
-// Lines of sight between places of one surface.
-
 struct SurfacePlace {
   glm::vec3 position;  ///< metres
   glm::vec3 normal;    ///< unit, of the side
@@ -96,7 +90,7 @@ inline SurfacePlace place_on(const Scene& scene, std::uint32_t sided_triangle,
   return {position, glm::vec3(sided_normal(scene, sided_triangle))};
 }
 
-/// How a line of sight differs from the straight way between two places.
+/// How a shadow ray differs from the straight way between two places.
 struct SightLine {
   float lift;      ///< it runs so far above them, metres
   float left_out;  ///< and ends short of the second by this part of its length

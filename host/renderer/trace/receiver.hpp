@@ -1,4 +1,4 @@
-// The surface under a hit.
+// A shading point: the surface under a hit, and how it weighs the light that arrives.
 #pragma once
 
 #include <cstddef>
@@ -33,8 +33,6 @@ inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size
   if (hits.diffuse_albedo[hit] == glm::vec3(0.0f)) bsdf.drop_diffuse();
   return bsdf;
 }
-
-// A point of an opaque surface that light is looked for from.
 
 /// What light counts for the two things measured at a receiver.
 struct LightWeights {

@@ -57,7 +57,7 @@ class Gatherer {
     };
     const RandomBlock scramble =
         RandomStream(film.seed, number(0), 0).block(Purpose::sensor_direction, 0);
-    // One number for all choices of lamps: each is looked at as often as its chance says.
+    // One number for all choices of lights: each is looked at as often as its chance says.
     const double shift =
         RandomStream(film.seed, number(0), 0).block(Purpose::sensor_light, 2).uniform_double(0);
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
@@ -77,7 +77,7 @@ class Gatherer {
     const glm::vec3 direction = photometer_.sample(spread, own.uniform(0), own.uniform(1));
     const float density = photometer_.density(direction);
     if (!(density > 0.0f)) return;
-    const LampTechnique looking{lamps_, density, false, by_shares_alone, !photometer_.sees_lamps()};
+    const LightTechnique looking{lamps_, density, false, by_power_alone, !photometer_.sees_lamps()};
     follow_eye_ray(setup_, {photometer_.origin(), direction, weight(), pixel_}, random, record,
                    &looking);
   }

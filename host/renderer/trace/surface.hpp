@@ -1,4 +1,4 @@
-// Where a ray meets a triangle.
+// A point on a triangle, with everything scattering asks about it.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,6 @@ struct TriangleHit {
   std::uint32_t triangle;
   float u, v;  ///< barycentric weights of the second and third corner
 };
-
-// A point on a triangle, with everything scattering asks about it.
 
 /// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
 /// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong

@@ -1,4 +1,4 @@
-#include "trace/lamp_pieces.hpp"
+#include "trace/light_clusters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,9 @@ namespace photile::trace {
 
 namespace {
 
-/// Pieces that a point weighs; so many cost less than two rays.
-constexpr std::size_t most_pieces = 64;
-/// Beyond so many lamps to weigh each would cost more than it saves.
+/// Clusters that a point weighs; so many cost less than two rays.
+constexpr std::size_t most_clusters = 64;
+/// Beyond so many lights to weigh each would cost more than it saves.
 constexpr std::size_t most_lamps = 1024;
 /// The fraction of light samples that are chosen by power alone.
 constexpr double everywhere = 0.5;
@@ -43,29 +43,29 @@ struct Box {
 
 }  // namespace
 
-LampPieces::LampPieces(const Scene& scene, std::span<const double> shares,
-                       const BoundingSphere& bounds)
+LightClusters::LightClusters(const Scene& scene, std::span<const double> shares,
+                             const BoundingSphere& bounds)
     : whole_(scene.lights.size(), none),
       far_(static_cast<float>(1 / (bounds.radius * bounds.radius))) {
   if (scene.lights.size() > most_lamps) return;
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
     const Light& lamp = scene.lights[light];
-    Piece piece{.light = light, .share = static_cast<float>(shares[light])};
+    Cluster cluster{.light = light, .share = static_cast<float>(shares[light])};
     if (lamp.kind == LightKind::area) {
-      add_area_light(scene, piece);
+      add_area_light(scene, cluster);
       continue;
     }
-    piece.is_far = lamp.is_distant();
-    piece.center = lamp.position;
-    whole_[light] = static_cast<std::uint32_t>(pieces_.size());
-    pieces_.push_back(piece);
+    cluster.is_far = lamp.is_distant();
+    cluster.center = lamp.position;
+    whole_[light] = static_cast<std::uint32_t>(clusters_.size());
+    clusters_.push_back(cluster);
   }
   std::vector<float> extent;  // weighed by the share; 0 of what cannot be cut
-  const auto extent_of = [&](const Piece& piece) {
-    return piece.last - piece.first > 1 ? piece.share * piece.radius : 0.0f;
+  const auto extent_of = [&](const Cluster& cluster) {
+    return cluster.last - cluster.first > 1 ? cluster.share * cluster.radius : 0.0f;
   };
-  for (const Piece& piece : pieces_) extent.push_back(extent_of(piece));
-  while (pieces_.size() < most_pieces) {
+  for (const Cluster& cluster : clusters_) extent.push_back(extent_of(cluster));
+  while (clusters_.size() < most_clusters) {
     const auto largest = std::max_element(extent.begin(), extent.end());
     if (!(*largest > 0.0f)) break;
     const auto index = static_cast<std::size_t>(largest - extent.begin());
@@ -73,41 +73,41 @@ LampPieces::LampPieces(const Scene& scene, std::span<const double> shares,
       *largest = 0.0f;
       continue;
     }
-    *largest = extent_of(pieces_[index]);
-    extent.push_back(extent_of(pieces_.back()));
+    *largest = extent_of(clusters_[index]);
+    extent.push_back(extent_of(clusters_.back()));
   }
-  for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
-    const std::vector<std::uint32_t>& of_light = scene.lights[pieces_[piece].light].triangles;
-    for (std::uint32_t i = pieces_[piece].first; i < pieces_[piece].last; ++i) {
-      of_triangle_[of_light[triangles_[i].number]] = piece;
+  for (std::uint32_t cluster = 0; cluster < clusters_.size(); ++cluster) {
+    const std::vector<std::uint32_t>& of_light = scene.lights[clusters_[cluster].light].triangles;
+    for (std::uint32_t i = clusters_[cluster].first; i < clusters_[cluster].last; ++i) {
+      of_triangle_[of_light[triangles_[i].number]] = cluster;
     }
   }
 }
 
-void LampPieces::add_area_light(const Scene& scene, Piece piece) {
-  const Light& light = scene.lights[piece.light];
-  piece.first = static_cast<std::uint32_t>(triangles_.size());
+void LightClusters::add_area_light(const Scene& scene, Cluster cluster) {
+  const Light& light = scene.lights[cluster.light];
+  cluster.first = static_cast<std::uint32_t>(triangles_.size());
   for (std::uint32_t number = 0; number < light.triangles.size(); ++number) {
     triangles_.push_back({number, 0});
   }
-  piece.last = static_cast<std::uint32_t>(triangles_.size());
-  enclose(scene, piece);
+  cluster.last = static_cast<std::uint32_t>(triangles_.size());
+  enclose(scene, cluster);
   if (light.emission_texture != none) {
-    triangles_.resize(piece.first);
-    piece.last = piece.first;
-    whole_[piece.light] = static_cast<std::uint32_t>(pieces_.size());
+    triangles_.resize(cluster.first);
+    cluster.last = cluster.first;
+    whole_[cluster.light] = static_cast<std::uint32_t>(clusters_.size());
   } else {
     of_triangle_.resize(scene.triangle_count(), none);
-    sum_areas(scene, piece);
+    sum_areas(scene, cluster);
   }
-  pieces_.push_back(piece);
+  clusters_.push_back(cluster);
 }
 
-/// Finds the sphere and the cone of a piece.
-void LampPieces::enclose(const Scene& scene, Piece& piece) const {
-  const Light& light = scene.lights[piece.light];
+/// Finds the sphere and the cone of a cluster.
+void LightClusters::enclose(const Scene& scene, Cluster& cluster) const {
+  const Light& light = scene.lights[cluster.light];
   const auto visit = [&](const auto& with) {
-    for (std::uint32_t i = piece.first; i < piece.last; ++i) {
+    for (std::uint32_t i = cluster.first; i < cluster.last; ++i) {
       with(light.triangles[triangles_[i].number]);
     }
   };
@@ -119,17 +119,17 @@ void LampPieces::enclose(const Scene& scene, Piece& piece) const {
     if (area > 0)
       normals += area * sided_normal(scene, sided(triangle, scene.front_side[triangle]));
   });
-  piece.center = glm::vec3(0.5 * (box.low + box.high));
+  cluster.center = glm::vec3(0.5 * (box.low + box.high));
   double squared_radius = 0;
   visit([&](std::uint32_t triangle) {
     for (const glm::vec3& corner : scene.corners(triangle)) {
-      const glm::dvec3 offset = glm::dvec3(corner) - glm::dvec3(piece.center);
+      const glm::dvec3 offset = glm::dvec3(corner) - glm::dvec3(cluster.center);
       squared_radius = std::max(squared_radius, glm::dot(offset, offset));
     }
   });
-  piece.radius = static_cast<float>(std::sqrt(squared_radius));
-  piece.cone_cosine = -1;
-  piece.cone_sine = 0;
+  cluster.radius = static_cast<float>(std::sqrt(squared_radius));
+  cluster.cone_cosine = -1;
+  cluster.cone_sine = 0;
   if (light.two_sided || !(glm::length(normals) > 0)) return;
   const glm::dvec3 axis = glm::normalize(normals);
   double cosine = 1;
@@ -138,34 +138,34 @@ void LampPieces::enclose(const Scene& scene, Piece& piece) const {
     const glm::dvec3 normal = sided_normal(scene, sided(triangle, scene.front_side[triangle]));
     cosine = std::min(cosine, glm::dot(axis, normal));
   });
-  piece.axis = glm::vec3(axis);
-  piece.cone_cosine = static_cast<float>(cosine);
-  piece.cone_sine = sine_of(piece.cone_cosine);
+  cluster.axis = glm::vec3(axis);
+  cluster.cone_cosine = static_cast<float>(cosine);
+  cluster.cone_sine = sine_of(cluster.cone_cosine);
 }
 
-/// Sums the areas of the triangles of a piece, in their order.
-void LampPieces::sum_areas(const Scene& scene, const Piece& piece) {
-  double area = area_before(piece);
-  for (std::uint32_t i = piece.first; i < piece.last; ++i) {
-    const Light& light = scene.lights[piece.light];
+/// Sums the areas of the triangles of a cluster, in their order.
+void LightClusters::sum_areas(const Scene& scene, const Cluster& cluster) {
+  double area = area_before(cluster);
+  for (std::uint32_t i = cluster.first; i < cluster.last; ++i) {
+    const Light& light = scene.lights[cluster.light];
     area += triangle_area(scene, light.triangles[triangles_[i].number]);
     triangles_[i].area_up_to = area;
   }
 }
 
 /// The area of the clusters of the light before this one.
-double LampPieces::area_before(const Piece& piece) const {
-  return piece.first == 0 ? 0.0 : triangles_[piece.first - 1].area_up_to;
+double LightClusters::area_before(const Cluster& cluster) const {
+  return cluster.first == 0 ? 0.0 : triangles_[cluster.first - 1].area_up_to;
 }
 
 /// In the middle of its longest side. Returns false where nothing can be parted.
-bool LampPieces::cut(const Scene& scene, std::size_t index) {
-  Piece piece = pieces_[index];
-  const Light& light = scene.lights[piece.light];
+bool LightClusters::cut(const Scene& scene, std::size_t index) {
+  Cluster cluster = clusters_[index];
+  const Light& light = scene.lights[cluster.light];
   const auto middle = [&](const Triangle& triangle) {
     return middle_of(scene, light.triangles[triangle.number]);
   };
-  const auto begin = triangles_.begin() + piece.first, end = triangles_.begin() + piece.last;
+  const auto begin = triangles_.begin() + cluster.first, end = triangles_.begin() + cluster.last;
   Box box;
   std::for_each(begin, end, [&](const Triangle& triangle) { box.add(middle(triangle)); });
   const glm::dvec3 size = box.high - box.low;
@@ -174,80 +174,82 @@ bool LampPieces::cut(const Scene& scene, std::size_t index) {
   const double whole_area = area(static_cast<std::uint32_t>(index));  // while its order stands
   const auto second = std::stable_partition(
       begin, end, [&](const Triangle& triangle) { return middle(triangle)[axis] < place; });
-  sum_areas(scene, piece);
-  Piece rest = piece;
-  piece.last = rest.first = static_cast<std::uint32_t>(second - triangles_.begin());
-  if (piece.first == piece.last) return false;  // what lies farthest is in the rest
-  const double part = triangles_[piece.last - 1].area_up_to - area_before(piece);
+  sum_areas(scene, cluster);
+  Cluster rest = cluster;
+  cluster.last = rest.first = static_cast<std::uint32_t>(second - triangles_.begin());
+  if (cluster.first == cluster.last) return false;  // what lies farthest is in the rest
+  const double part = triangles_[cluster.last - 1].area_up_to - area_before(cluster);
   if (!(part > 0) || !(part < whole_area)) return false;
-  piece.share *= static_cast<float>(part / whole_area);
+  cluster.share *= static_cast<float>(part / whole_area);
   rest.share *= static_cast<float>(1 - part / whole_area);
-  enclose(scene, piece);
+  enclose(scene, cluster);
   enclose(scene, rest);
-  pieces_[index] = piece;
-  pieces_.push_back(rest);
+  clusters_[index] = cluster;
+  clusters_.push_back(rest);
   return true;
 }
 
-/// At most, but for its colour and a factor that all pieces share, the illuminance by a piece.
-float LampPieces::weight(const Piece& piece, const glm::vec3& position,
-                         const glm::vec3& normal) const {
-  if (piece.is_far) return piece.share * far_;
-  const glm::vec3 offset = piece.center - position;
+/// At most, but for its colour and a factor that all clusters share, the illuminance by a cluster.
+float LightClusters::weight(const Cluster& cluster, const glm::vec3& position,
+                            const glm::vec3& normal) const {
+  if (cluster.is_far) return cluster.share * far_;
+  const glm::vec3 offset = cluster.center - position;
   const float squared_distance = glm::dot(offset, offset);
-  const float squared_radius = piece.radius * piece.radius;
-  if (squared_distance <= squared_radius) return piece.share / squared_radius;
+  const float squared_radius = cluster.radius * cluster.radius;
+  if (squared_distance <= squared_radius) return cluster.share / squared_radius;
   const float distance = std::sqrt(squared_distance);
-  const float sphere_sine = piece.radius / distance;
+  const float sphere_sine = cluster.radius / distance;
   const float sphere_cosine = sine_of(sphere_sine);
   const float arriving = glm::dot(offset, normal) / distance;
   const float cosine =
       cosine_of_difference(arriving, sine_of(arriving), sphere_cosine, sphere_sine);
   if (!(cosine > 0.0f)) return 0.0f;
   float leaving = 0.25f;  // to all sides
-  if (piece.cone_cosine > -1.0f) {
-    const float towards = -glm::dot(offset, piece.axis) / distance, sine = sine_of(towards);
-    leaving = cosine_of_difference(towards, sine, piece.cone_cosine, piece.cone_sine);
+  if (cluster.cone_cosine > -1.0f) {
+    const float towards = -glm::dot(offset, cluster.axis) / distance, sine = sine_of(towards);
+    leaving = cosine_of_difference(towards, sine, cluster.cone_cosine, cluster.cone_sine);
     if (leaving < 1.0f) {
       leaving = cosine_of_difference(leaving, sine_of(leaving), sphere_cosine, sphere_sine);
     }
     if (!(leaving > 0.0f)) return 0.0f;
   }
-  return piece.share * cosine * leaving / squared_distance;
+  return cluster.share * cosine * leaving / squared_distance;
 }
 
-void LampPieces::weigh(const glm::vec3& position, const glm::vec3& normal,
-                       LampChances& chances) const {
-  chances.up_to.resize(pieces_.size());
+void LightClusters::weigh(const glm::vec3& position, const glm::vec3& normal,
+                          SelectionProbabilities& probabilities) const {
+  probabilities.up_to.resize(clusters_.size());
   double weights = 0;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    weights += chances.up_to[i] = double{weight(pieces_[i], position, normal)};
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    weights += probabilities.up_to[i] = double{weight(clusters_[i], position, normal)};
   }
   const bool near = weights > 0 && std::isfinite(weights);
   double sum = 0;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const double share = double{pieces_[i].share};
-    const double chance =
-        near ? everywhere * share + (1 - everywhere) * chances.up_to[i] / weights : share;
-    chances.up_to[i] = sum += chance;
+  for (std::size_t i = 0; i < clusters_.size(); ++i) {
+    const double share = double{clusters_[i].share};
+    const double probability =
+        near ? everywhere * share + (1 - everywhere) * probabilities.up_to[i] / weights : share;
+    probabilities.up_to[i] = sum += probability;
   }
 }
 
-LampPieces::Choice LampPieces::choose(const LampChances& chances, const RandomBlock& choice,
-                                      const RandomBlock& place) const {
+LightClusters::Choice LightClusters::choose(const SelectionProbabilities& probabilities,
+                                            const RandomBlock& choice,
+                                            const RandomBlock& place) const {
   // The last entry is larger than the target, so there always is one.
-  const double target = choice.uniform_double(0) * chances.up_to.back();
+  const double target = choice.uniform_double(0) * probabilities.up_to.back();
   const auto found =
-      std::upper_bound(chances.up_to.begin(), chances.up_to.end(), target) - chances.up_to.begin();
+      std::upper_bound(probabilities.up_to.begin(), probabilities.up_to.end(), target) -
+      probabilities.up_to.begin();
   const auto index = static_cast<std::uint32_t>(found);
-  const Piece& piece = pieces_[index];
-  if (piece.first == piece.last) return {piece.light, index, none};
-  const double before = area_before(piece);
+  const Cluster& cluster = clusters_[index];
+  if (cluster.first == cluster.last) return {cluster.light, index, none};
+  const double before = area_before(cluster);
   const double area_target = before + place.uniform_double(0) * area(index);
   const auto triangle = std::upper_bound(
-      triangles_.begin() + piece.first, triangles_.begin() + piece.last - 1, area_target,
+      triangles_.begin() + cluster.first, triangles_.begin() + cluster.last - 1, area_target,
       [](double wanted, const Triangle& other) { return wanted < other.area_up_to; });
-  return {piece.light, index, triangle->number};
+  return {cluster.light, index, triangle->number};
 }
 
 }  // namespace photile::trace

@@ -1,5 +1,5 @@
 // The search for edges that run along each other, beside all pairs.
-#include "surface/lone_edges.hpp"
+#include "surface/boundary_edges.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -12,11 +12,11 @@ namespace photile::test {
 namespace {
 
 using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
-using surface::LoneEdge;
-using surface::LoneEdges;
+using surface::BoundaryEdge;
+using surface::BoundaryEdges;
 
 /// Edges of 3 mm to 2 m on lines through a room, their ends up to `offset` metres beside the lines.
-std::vector<LoneEdge> edges_on_lines(int lines, int edges_of_a_line, double offset) {
+std::vector<BoundaryEdge> edges_on_lines(int lines, int edges_of_a_line, double offset) {
   std::mt19937 engine(7);
   const auto number = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);
@@ -24,7 +24,7 @@ std::vector<LoneEdge> edges_on_lines(int lines, int edges_of_a_line, double offs
   const auto point = [&](double size) {
     return glm::dvec3(number(-size, size), number(-size, size), number(-size, size));
   };
-  std::vector<LoneEdge> edges;
+  std::vector<BoundaryEdge> edges;
   for (int line = 0; line < lines; ++line) {
     const glm::dvec3 origin = point(1), along = glm::normalize(point(1));
     for (int i = 0; i < edges_of_a_line; ++i) {
@@ -42,16 +42,16 @@ std::vector<LoneEdge> edges_on_lines(int lines, int edges_of_a_line, double offs
 TEST_CASE("edges that run along each other are found as by looking at all pairs") {
   constexpr double tolerance = 1e-3;
   for (const double offset : {0.0, 0.5e-3, 1e-3, 0.1}) {
-    const std::vector<LoneEdge> edges = edges_on_lines(40, 20, offset);
+    const std::vector<BoundaryEdge> edges = edges_on_lines(40, 20, offset);
     Pairs expected, found;
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
       for (std::uint32_t j = i + 1; j < edges.size(); ++j) {
         if (surface::run_along(edges[i], edges[j], tolerance)) expected.insert({i, j});
       }
     }
-    const LoneEdges search(edges, tolerance);
+    const BoundaryEdges search(edges, tolerance);
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
-      search.visit_along(i, [&](const LoneEdge& a, const LoneEdge& b) {
+      search.visit_along(i, [&](const BoundaryEdge& a, const BoundaryEdge& b) {
         found.insert({a.triangle, b.triangle});
       });
     }

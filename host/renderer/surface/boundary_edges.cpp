@@ -1,11 +1,11 @@
-#include "surface/lone_edges.hpp"
+#include "surface/boundary_edges.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace photile::surface {
 
-bool run_along(const LoneEdge& a, const LoneEdge& b, double tolerance) {
+bool run_along(const BoundaryEdge& a, const BoundaryEdge& b, double tolerance) {
   const glm::dvec3 along = glm::normalize(a.to - a.from);
   const auto offset = [&](const glm::dvec3& p) {
     const glm::dvec3 d = p - a.from;
@@ -18,15 +18,15 @@ bool run_along(const LoneEdge& a, const LoneEdge& b, double tolerance) {
   return shared > 2 * tolerance;
 }
 
-LoneEdges::LoneEdges(std::vector<LoneEdge> edges, double tolerance)
+BoundaryEdges::BoundaryEdges(std::vector<BoundaryEdge> edges, double tolerance)
     : edges_(std::move(edges)), tolerance_(tolerance) {
   set_headings();
   tree_ = geometry::BoxTree(cut());
 }
 
-void LoneEdges::set_headings() {
+void BoundaryEdges::set_headings() {
   headings_.reserve(edges_.size());
-  for (const LoneEdge& edge : edges_) {
+  for (const BoundaryEdge& edge : edges_) {
     const glm::dvec3 along = edge.to - edge.from;
     const double length = glm::length(along);
     // Its ends are as far apart, across the other, as their distances from it allow.
@@ -39,9 +39,9 @@ void LoneEdges::set_headings() {
 
 /// A long edge across all axes has a box that is nearly empty, and its pieces have not: at most
 /// about eight of each edge.
-std::vector<geometry::Box> LoneEdges::cut() {
+std::vector<geometry::Box> BoundaryEdges::cut() {
   geometry::Box bounds;
-  for (const LoneEdge& edge : edges_) {
+  for (const BoundaryEdge& edge : edges_) {
     bounds.extend(glm::vec3(edge.from));
     bounds.extend(glm::vec3(edge.to));
   }
@@ -52,7 +52,7 @@ std::vector<geometry::Box> LoneEdges::cut() {
   std::vector<geometry::Box> boxes;
   float largest = 0.0f;  // coordinate: pieces end at rounded places
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-    const LoneEdge& edge = edges_[i];
+    const BoundaryEdge& edge = edges_[i];
     const double length = glm::distance(edge.from, edge.to);
     const int count = longest > 0 ? 1 + static_cast<int>(length / longest) : 1;
     for (int piece = 0; piece < count; ++piece) {
@@ -69,8 +69,8 @@ std::vector<geometry::Box> LoneEdges::cut() {
   return boxes;
 }
 
-bool LoneEdges::is_beside(const glm::dvec3& point, std::uint32_t edge) const {
-  const LoneEdge& line = edges_[edge];
+bool BoundaryEdges::is_beside(const glm::dvec3& point, std::uint32_t edge) const {
+  const BoundaryEdge& line = edges_[edge];
   const glm::dvec3 along = line.to - line.from;
   const double foot = glm::dot(point - line.from, along);
   return foot >= 0 && foot <= glm::dot(along, along);

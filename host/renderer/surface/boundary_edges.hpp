@@ -10,21 +10,21 @@
 
 namespace photile::surface {
 
-struct LoneEdge {
+struct BoundaryEdge {
   glm::dvec3 from, to;  ///< metres
   std::uint32_t triangle;
 };
 
 /// Whether the edges lie on one line, within `tolerance`, and share more of it than twice that;
 /// metres.
-bool run_along(const LoneEdge& a, const LoneEdge& b, double tolerance);
+bool run_along(const BoundaryEdge& a, const BoundaryEdge& b, double tolerance);
 
 /// Finds the edges that lie on one line and share some of it, among n in O(n^(5/3)) where they
 /// cross a room in all directions.
-class LoneEdges {
+class BoundaryEdges {
  public:
   /// \param tolerance metres, as that of run_along
-  LoneEdges(std::vector<LoneEdge> edges, double tolerance);
+  BoundaryEdges(std::vector<BoundaryEdge> edges, double tolerance);
 
   std::size_t size() const { return edges_.size(); }
 
@@ -38,7 +38,7 @@ class LoneEdges {
       tree_.visit_within({end, end}, reach_ * reach_, [&](std::uint32_t piece) {
         const std::uint32_t j = edge_of_[piece];
         if (is_shorter(i, j) && may_run_along(i, j) && !(second && is_beside(edges_[i].from, j))) {
-          const LoneEdge &a = edges_[std::min(i, j)], &b = edges_[std::max(i, j)];
+          const BoundaryEdge &a = edges_[std::min(i, j)], &b = edges_[std::max(i, j)];
           if (run_along(a, b, tolerance_)) visit(a, b);
         }
         return false;
@@ -68,7 +68,7 @@ class LoneEdges {
   /// \return the boxes of the edges' pieces
   std::vector<geometry::Box> cut();
 
-  std::vector<LoneEdge> edges_;
+  std::vector<BoundaryEdge> edges_;
   double tolerance_;    ///< metres
   float reach_ = 0.0f;  ///< metres from a piece of the longer edge to an end of the shorter
   std::vector<Heading> headings_;       ///< per edge
