@@ -161,7 +161,7 @@ MUTANTS = (
     Mutant("hash of saved maps not compared", "host/formats/saved_maps/saved_maps.cpp",
            "hash_->digest() != part.digest", "false",
            (("saved_maps", "a file with any byte changed*"),)),
-    Mutant("paths begin at speed", "host/renderer/scene/interpolation.cpp",
+    Mutant("paths begin at speed", "host/formats/reading/camera_path.cpp",
            "if (i == 0 || i + 1 == times.size()) return glm::dvec3(0);",
            "if (i == 0 || i + 1 == times.size()) return glm::dvec3(0.1);",
            (("walk", "smooth paths have the velocity*"),)),

@@ -27,7 +27,7 @@ MTL = "newmtl wall\nKd 0.7 0.6 0.5\nnewmtl lamp\nKd 0 0 0\nKe 5 5 20\n"
 PLANES = [
     {"name": "desk <1> & \"2\"", "origin": [-0.8, -0.25, 0.8], "u": [1.6, 0, 0], "v": [0, 0, -0.8],
      "columns": 8, "rows": 4},
-    # As narrow as a shelf: its title is longer than it is wide.
+    # A plane as narrow as a shelf: its title is longer than it is wide.
     {"name": "the narrow shelf behind the door", "origin": [-0.8, 0.2, 0.8], "u": [0.1, 0, 0],
      "v": [0, 0, -1.6], "columns": 1, "rows": 16},
 ]

@@ -12,7 +12,7 @@
 namespace photile::test {
 namespace {
 
-/// As every command that takes a scene: what is loaded has to be one that stages accept.
+/// Loads a scene as every command does: it has to be one that stages accept.
 bool accepts_scene(const std::filesystem::path& file) {
   return accepts([&] {
     const Scene scene = load_scene(file);

@@ -178,7 +178,7 @@ TEST_CASE("lamp clusters: looks from one point choose other triangles of a clust
     const LightNumbers numbers = looks.lamp(i);
     triangles.insert(clusters.choose(probabilities, numbers.lamp, numbers.place).triangle);
   }
-  // Of 2048; were they drawn at random, 15 would be drawn again.
+  // There are 2048; were they drawn at random, 15 would be drawn again.
   CHECK(triangles.size() > count - 40);
 }
 
