@@ -117,7 +117,7 @@ def main():
         if not re.match(re.escape(f"{grid['name']}: {grid['points']} points"), heading):
             fail(f"{heading!r} is no heading of {grid['name']!r}")
     tables = body.findall("table")
-    if len(tables) != len(grids) + 2 or headings[len(grids):-1] != ["Lamps", "Reflectances"]:
+    if len(tables) != len(grids) + 2 or headings[len(grids):-1] != ["Luminaires", "Reflectances"]:
         fail(f"{len(tables)} tables under {len(headings)} headings for {len(grids)} grids")
     for table, grid in zip(tables, grids):
         check_figures(table, grid)

@@ -93,7 +93,7 @@ void check_lights(const DaylightOptions& options) {
   }
   if (load.situation.weather.empty()) throw UsageError("daylight needs --weather FILE.epw");
   if (!options.blinds.empty() && options.suns != "rays") {
-    throw UsageError("--blinds close where the sun shines straight; leave out --suns patches");
+    throw UsageError("--blinds close where the sun shines in; leave out --suns patches");
   }
   if (options.blinds.size() > most_blind_groups) {
     throw UsageError(

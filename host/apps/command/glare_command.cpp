@@ -165,7 +165,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   if (!options.target.empty()) measuring::parse_requirement(options.target);
   if (options.observers.empty() && options.cameras.empty() && options.plane.height.empty()) {
-    throw UsageError("nobody looks; give --observers FILE, --grid or --camera NAME");
+    throw UsageError("no observer; give --observers FILE, --grid or --camera NAME");
   }
   note_inputs_of(render);
   for (const auto& file : options.observers) note_input(file);

@@ -176,7 +176,7 @@ void run_info(const InfoOptions& options) {
   Scene scene = load_scene(options.scene, options.load);
   if (scene.lights.empty()) {
     scene.report.warnings.push_back(
-        "no lights: to render or measure, place lamps by --luminaires, or give --sky");
+        "no lights: to render or measure, place luminaires by --luminaires, or give --sky");
   }
   const LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
   if (options.json) {

@@ -53,7 +53,9 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
 
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
   report::ReportTable table{
-      "Lamps", {"number", "name", "kind", "photometric file", "place (x, y, z), m", "power"}, {}};
+      "Luminaires",
+      {"number", "name", "kind", "photometric file", "position (x, y, z), m", "power"},
+      {}};
   const std::vector<double> powers = powers_of(scene, mix);
   const LightGroups groups = light_groups_of(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -1,4 +1,4 @@
-// Light straight from lamps.
+// Direct light.
 #include <cmath>
 
 #include "validation/analytic_cases.hpp"

@@ -63,7 +63,7 @@ FrameNames::FrameNames(const std::string& pattern) {
       name.find('%') != std::string::npos || folder.find("##") != std::string::npos;
   if (places > 1 || (places == 0 && meant_one)) {
     throw UsageError(
-        fmt::format("{}: needs one place for the number of a frame, #### or %04d", pattern));
+        fmt::format("{}: needs one field for the number of a frame, #### or %04d", pattern));
   }
   if (places == 0) {
     const std::filesystem::path path(name);

@@ -90,7 +90,7 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
   }
   if (triangles > limits::max_triangles) {
     throw context.error(fmt::format(
-        "{} triangles, {} of them by {} places of mesh '{}'; the limit is {}; split the "
+        "{} triangles, {} of them by {} instances of mesh '{}'; the limit is {}; split the "
         "scene",
         triangles, most, places[static_cast<std::size_t>(largest)], name_of_mesh(model, largest),
         limits::max_triangles));
@@ -101,7 +101,7 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
   if (triangles > most_placed) {
     throw context.error(
         fmt::format("{} triangles from a file that holds no more than {}; the limit for it is {}; "
-                    "repeat fewer: {} are of mesh '{}', in {} places",
+                    "repeat fewer: {} are of mesh '{}', in {} instances",
                     triangles, held, most_placed, most, name_of_mesh(model, largest),
                     places[static_cast<std::size_t>(largest)]));
   }

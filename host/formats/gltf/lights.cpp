@@ -319,7 +319,7 @@ class LightImporter {
     if (!std::isfinite(light.power) || light.power <= 0.0 || !scene::within_limit(position) ||
         !set_orientation(visit.world, light)) {
       context_.warnings.add("light", light.name,
-                            "emits nothing or has no place within reach; dropped");
+                            "emits nothing or has no position within reach; dropped");
       return;
     }
     light.position = glm::vec3(position);

@@ -206,7 +206,7 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
   if (mask && (cutoff <= 0.0 || (texture == none && double{opacity} >= cutoff))) return;
   if (texture == none && opacity >= 1.0f) return;
   if (emits) {
-    warn("alpha of a material that emits is ignored; it has no holes");
+    warn("alpha of a material that emits is ignored; it has no cutouts");
     return;
   }
   material.opacity = opacity;

@@ -94,7 +94,7 @@ void check_visit_count(const tinygltf::Model& model, const std::vector<int>& roo
   for (const int root : roots) visits += counter.count(root);
   if (visits > model.nodes.size() + limits::max_repeated_visits) {
     throw context.error(fmt::format(
-        "{} nodes with several parents are at more than {} places; give each place a node",
+        "{} nodes with several parents have more than {} instances; give each instance a node",
         model.nodes.size(), model.nodes.size() + limits::max_repeated_visits));
   }
 }

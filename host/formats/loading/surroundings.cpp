@@ -55,7 +55,7 @@ std::optional<Sun> sun_by_time(const SkySituation& situation) {
 void add_perez(const Sky& asked, const SkySituation& situation, const std::optional<Sun>& place,
                SkySituationLights& lights) {
   if (!place) {
-    throw UsageError("a Perez sky needs the sun's place; give --sun, or --site and --time");
+    throw UsageError("a Perez sky needs the sun's position; give --sun, or --site and --time");
   }
   const int day = situation.time ? weather::day_of_year(*situation.time) : even_day;
   SkyLight sky{SkyKind::perez};

@@ -152,7 +152,7 @@ void set_opacity(const tinyobj::material_t& source, bool emits, pictures::Textur
   if (texture == none && opacity >= 1.0f) return;
   if (emits) {
     context.warnings.add("material", material.name,
-                         "d, Tr or map_d of a material that emits is ignored; it has no holes");
+                         "d, Tr or map_d of a material that emits is ignored; it has no cutouts");
     return;
   }
   material.opacity = opacity;

@@ -36,7 +36,7 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
     if (radius >= nearest) return;
     progress.note(
         fmt::format("radius {:.3g} m: half of the photons have no other within {:.3g} m; "
-                    "most places read no light; give a larger radius, or none",
+                    "most points receive no light; give a larger radius, or none",
                     radius, nearest));
   } catch (const UsageError&) {
     // Most photons lie in the same points.

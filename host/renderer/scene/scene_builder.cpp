@@ -275,7 +275,8 @@ void SceneBuilder::add(Camera camera) {
                      glm::length(camera.up) + glm::length(camera.right) +
                      camera.vertical_field_of_view;
   if (!std::isfinite(sum)) {
-    impl_->refuse(fmt::format("camera '{}' has a place or an axis that is no number", camera.name));
+    impl_->refuse(
+        fmt::format("camera '{}' has a position or an axis that is no number", camera.name));
   }
   impl_->scene.cameras.push_back(std::move(camera));
 }
