@@ -65,20 +65,20 @@ inline constexpr int looks_again = 4, most_looks_again = 256;
 /// cosine, whose variance has no bound: up to so many times. Surface less than 2 degrees above the
 /// horizon then counts less for them, by 2% of what light of all heights alike does.
 inline constexpr float most_inverse_cosine = 32;
-/// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
+/// Points on each side that a point is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
-/// Standard errors by which places may differ, and by which standard errors of direct light may.
+/// Standard errors by which points may differ, and by which standard errors of direct light may.
 inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
 /// A light is judged apart from the others where the square of its own difference exceeds so many
 /// tolerated ones: 4.2 standard errors, which scatter in eight batches seldom brings about.
 inline constexpr double parting_difference = 2;
 /// Errors above this share of the light that they are of are not known: few rays found any.
 inline constexpr double known_error = 0.5;
-/// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
+/// What coarser nodes say of a point counts as much as so many nodes of its own few rays: it is a
 /// mean over many.
 inline constexpr double weight_of_parents = 3;
-/// Shadow rays between places of one surface run above it by this part of their length:
+/// Shadow rays between points of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
 inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;

@@ -34,7 +34,7 @@ inline constexpr double max_radius = 1e13;
 inline constexpr std::uint64_t max_group_members = 1'000'000'000;
 
 // Light maps
-inline constexpr int max_light_map_levels = 12;  ///< of refinement: places fit 32 bits
+inline constexpr int max_light_map_levels = 12;  ///< of refinement: positions fit 32 bits
 
 // Scene
 inline constexpr std::uint64_t max_file_bytes = 2ull << 30;      ///< the scene file itself
@@ -50,7 +50,7 @@ inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulation
 inline constexpr int max_node_depth = 512;
 /// Each takes 600 bytes and 2 us before a triangle of it is seen.
 inline constexpr std::uint64_t max_nodes = 250'000;
-/// Places of nodes beyond their number: shared children multiply. The format has none.
+/// Instances of nodes beyond their number: shared children multiply. The format has none.
 inline constexpr std::uint64_t max_repeated_visits = 100'000;
 inline constexpr std::uint64_t max_node_visits = max_nodes + max_repeated_visits;
 inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack

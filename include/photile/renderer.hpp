@@ -150,7 +150,7 @@ enum class Quality {
 std::string_view name_of(Quality quality);
 inline constexpr std::array all_qualities = {Quality::draft, Quality::good, Quality::best};
 
-/// Its place in all_qualities.
+/// Its position in all_qualities.
 constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t>(quality); }
 
 /// What its pictures are like.

@@ -40,7 +40,7 @@ class EnvironmentMap {
   double solid_angle(int row) const;
   /// Index of the texel that a unit direction points to.
   std::size_t texel_towards(const glm::vec3& direction) const;
-  /// Direction of a place of the picture; `column` in [0, width], and the share `v` in [0, 1] of
+  /// Direction of a point of the picture; `column` in [0, width], and the share `v` in [0, 1] of
   /// the solid angle of its row that lies above.
   glm::dvec3 direction_at(double column, int row, double v) const;
 
@@ -111,7 +111,7 @@ class IntensityDistribution {
   /// lm that a cell emits.
   double cell_flux(std::size_t column, std::size_t row) const;
 
-  /// A place in a cell; `u` of the way from its first azimuth to its last, `v` of the way between
+  /// A point in a cell; `u` of the way from its first azimuth to its last, `v` of the way between
   /// the cosines of its polar angles, each in [0, 1].
   struct Place {
     glm::dvec3 direction;  ///< unit, in the lamp's space
@@ -293,7 +293,7 @@ struct Portal {
   glm::vec3 v{0.0f};
 };
 
-/// A mesh that several places of the scene repeat, in a space of its own around its centre.
+/// A mesh that the scene repeats at several positions, in a space of its own around its centre.
 struct SharedMesh {
   std::vector<glm::vec3> vertices;
   std::vector<glm::uvec3> triangles;  ///< vertex indices
@@ -382,7 +382,7 @@ inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
 }
 inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
 
-/// A place, and a direction, of the file's world in the scene's own coordinates, and back.
+/// A point, and a direction, of the file's world in the scene's own coordinates, and back.
 glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world);
 glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& place);
 glm::dvec3 direction_in_scene(const Scene& scene, const glm::dvec3& world);

@@ -22,7 +22,7 @@ enum class SensorResponse {
   semi_cylindrical
 };
 
-/// A place where light is measured.
+/// A point where light is measured.
 struct Sensor {
   glm::dvec3 position{0.0};          ///< metres
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from

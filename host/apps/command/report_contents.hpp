@@ -12,8 +12,8 @@
 
 namespace photile::app {
 
-/// Lamps with their numbers on the plans, kinds, photometric files, places in the scene file's
-/// world and powers. Lights of the sky have no place.
+/// Lamps with their numbers on the plans, kinds, photometric files, positions in the scene file's
+/// world and powers. Lights of the sky have no position.
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 
 /// A row for each opaque material that a triangle has, with its luminous reflectance in percent.

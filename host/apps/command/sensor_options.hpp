@@ -25,7 +25,7 @@ struct PlaneOptions {
   double clearance = 0;        ///< metres; 0 = furniture is not looked for
 };
 
-/// Places of sensors.
+/// Positions of sensors.
 struct PlaceOptions {
   std::vector<std::string> planes, points;  ///< files
   PlaneOptions plane;

@@ -68,7 +68,8 @@ int count_of(const reading::CameraMotion& motion, double frames_per_second) {
   return static_cast<int>(count);
 }
 
-/// Places in the walk, from 0, of the frames to be made. Errors: UsageError where there are none.
+/// Positions in the walk, from 0, of the frames to be made. Errors: UsageError where there are
+/// none.
 std::vector<int> frames_to_make(const WalkOptions& options, int count) {
   std::vector<int> frames;
   for (int frame = 0; frame < count; ++frame) {

@@ -20,7 +20,7 @@ enum class Quantity {
   luminance     ///< cd/m2, seen along the sensor's normal
 };
 
-/// One reading: the mean over sensors at places of like light, and what it must be.
+/// One reading: the mean over sensors at points of like light, and what it must be.
 struct Reading {
   std::string place;
   std::vector<Sensor> sensors;

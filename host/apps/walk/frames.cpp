@@ -22,7 +22,7 @@ struct Place {
   char fill = '0';
 };
 
-/// The place that a text begins with. Not by std::regex, whose stack grows with the text.
+/// The position that a text begins with. Not by std::regex, whose stack grows with the text.
 Place place_at(std::string_view text) {
   const std::size_t hashes = std::min(text.find_first_not_of('#'), text.size());
   if (hashes > 0) return {hashes, static_cast<int>(hashes), '0'};

@@ -10,11 +10,11 @@
 
 namespace photile::walk {
 
-/// A file's name with a place for the number of a frame: a run of '#', as long as the number is
+/// A file's name with a position for the number of a frame: a run of '#', as long as the number is
 /// wide at least, or %d, %4d, %04d as in printf. A name without one gets .#### before its ending.
 class FrameNames {
  public:
-  /// Errors: UsageError where there are several places, or what looks like one that is meant.
+  /// Errors: UsageError where there are several positions, or what looks like one that is meant.
   explicit FrameNames(const std::string& pattern);
 
   std::filesystem::path of(int frame) const;

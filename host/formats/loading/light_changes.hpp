@@ -19,7 +19,7 @@ IntensityDistribution read_user_photometry(const std::filesystem::path& file,
                                            files::Warnings& warnings);
 
 /// Gives lights photometric files: each becomes a point light with the file's flux, and keeps its
-/// place, direction and colour. Names of lights must be final.
+/// position, direction and colour. Names of lights must be final.
 /// Errors: UsageError for a light that is not there, or neither point nor spot; InputError for a
 /// file that is missing or malformed.
 void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,

@@ -194,7 +194,7 @@ constexpr double least_evidence = 2;
 /// Surface that faces along an axis, either way.
 struct Facing {
   double area = 0;                        ///< m2
-  std::map<std::int64_t, double> planes;  ///< m2 by place along the axis
+  std::map<std::int64_t, double> planes;  ///< m2 by position along the axis
 
   double widest() const {
     double most = 0;

@@ -24,7 +24,7 @@ constexpr double degrees = 180 / std::numbers::pi;
 constexpr int even_day =
     80;  ///< of a sky without a date: the Earth at its mean distance, or nearly
 
-/// The options with the weather of their hour: its place, and its sky where none is given.
+/// The options with the weather of their hour: its site, and its sky where none is given.
 SceneLoadOptions with_weather(SceneLoadOptions options) {
   SkySituation& situation = options.situation;
   if (situation.weather.empty()) return options;

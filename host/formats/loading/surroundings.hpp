@@ -1,4 +1,4 @@
-// What surrounds a scene by its options: a picture, the sun, the sky of a place and an hour.
+// What surrounds a scene by its options: a picture, the sun, the sky of a site and an hour.
 #pragma once
 
 #include <cstddef>
@@ -62,7 +62,7 @@ std::string sky_light_name(std::size_t light, std::size_t patches);
 /// four patches nearest to the sun its light. The sky is that of the weather file's hour unless one
 /// is given, and a clear one where neither is; the patches know where north is.
 /// Errors: UsageError where the picture has no patches (the remedy says how to render some), or
-/// where the place, the time or the sky is missing; those of read_weather.
+/// where the site, the time or the sky is missing; those of read_weather.
 std::vector<LightChange> sky_changes(const LightMix& mix, const SkySituation& situation,
                                      const std::optional<Sky>& sky);
 

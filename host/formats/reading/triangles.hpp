@@ -59,10 +59,10 @@ struct LocalMesh {
   std::vector<glm::uvec3> triangles;
 };
 
-/// Gathers the places of each mesh while the scene is filled, and writes Scene::shared_meshes and
-/// Scene::instances. A place becomes no instance, and its triangles stay single, where rays that
-/// Embree moves into the mesh's space could lose more than rounding: under a skew, or without an
-/// inverse. The same goes for a place where other triangles lost their area than elsewhere.
+/// Gathers the placements of each mesh while the scene is filled, and writes Scene::shared_meshes
+/// and Scene::instances. A placement becomes no instance, and its triangles stay single, where rays
+/// that Embree moves into the mesh's space could lose more than rounding: under a skew, or without
+/// an inverse. The same goes for a placement where other triangles lost their area than elsewhere.
 class InstanceRecorder {
  public:
   explicit InstanceRecorder(Scene& scene) : scene_(scene) {}
@@ -73,7 +73,7 @@ class InstanceRecorder {
   void record(int mesh, const glm::dmat4& world, std::uint32_t first_triangle,
               const std::vector<bool>& kept, const std::function<LocalMesh()>& read);
 
-  /// Writes what is worth sharing: large meshes in several places.
+  /// Writes what is worth sharing: large meshes with several placements.
   void finish();
 
  private:

@@ -1,4 +1,4 @@
-// Where the sun stands in the sky of a place, and the all-weather sky of Perez, Seals and
+// Where the sun stands in the sky of a site, and the all-weather sky of Perez, Seals and
 // Michalsky.
 #pragma once
 
@@ -47,7 +47,7 @@ class PerezSky {
   double brightness() const { return brightness_; }        ///< delta
 
   /// Luminance over a factor that is the same everywhere, not negative.
-  ///   sine     of the elevation of the place in the sky, taken to be at least that of gendaylit
+  ///   sine     of the elevation of the point in the sky, taken to be at least that of gendaylit
   ///   cosine   of the angle between it and the sun
   float relative_luminance(float sine, float cosine) const {
     return std::max(0.0f, gradation(sine) * indicatrix(cosine));

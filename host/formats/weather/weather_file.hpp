@@ -23,7 +23,7 @@ struct WeatherYear {
   int first_weekday = 6;
 };
 
-/// Reads the place, and of each hour the direct normal and diffuse horizontal irradiance and the
+/// Reads the site, and of each hour the direct normal and diffuse horizontal irradiance and the
 /// dew point. The middle of an hour is half an hour before the time that the file gives it.
 /// Errors: InputError naming the file, the line, what was found and the remedy.
 WeatherYear read_weather(const std::filesystem::path& file);

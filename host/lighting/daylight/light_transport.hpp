@@ -18,7 +18,7 @@
 
 namespace photile::daylight {
 
-/// Lux at the place for each cd/m2 of a patch, by linear RGB.
+/// Lux at the point for each cd/m2 of a patch, by linear RGB.
 struct SeenPatch {
   std::uint32_t patch;  ///< the ground is the one after the sky's
   std::uint32_t batch;
@@ -26,7 +26,7 @@ struct SeenPatch {
   glm::vec3 weight;
 };
 
-/// Lux at the place for each lux on a surface that reflects light to it.
+/// Lux at the point for each lux on a surface that reflects light to it.
 struct SeenSurface {
   trace::SurfacePoint point;
   std::uint32_t batch;
@@ -45,7 +45,7 @@ struct SkyRayParameters {
   int max_specular_depth;  ///< mirrors, glass and lobes that a ray follows
 };
 
-/// Half of a place's rays follow its cosine (the response of a sensor), half go through portals;
+/// Half of a point's rays follow its cosine (the response of a sensor), half go through portals;
 /// each counts by the density of both together (the balance heuristic of Veach and Guibas, 1995).
 /// They go on by mirrors, glass and glossy lobes, and end on a surface's base or in the sky.
 class SkyRays {
@@ -54,10 +54,10 @@ class SkyRays {
   SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
           const SkyRayParameters& parameters);
 
-  /// What a place sees, in the order of its rays. Depends on the place, its number and the
+  /// What a point sees, in the order of its rays. Depends on the point, its number and the
   /// parameters only.
-  ///   places   one, or several points of a surface, which take turns
-  ///   number   of the place, below 2^31; that of no other
+  ///   points   one, or several points of a surface, which take turns
+  ///   number   of the point, below 2^31; that of no other
   ///   rays     of each batch
   SeenByRays from(std::span<const trace::Photometer> places, std::uint64_t number, int rays) const;
 
@@ -71,7 +71,7 @@ class SkyRays {
   trace::Portals portals_;
 };
 
-/// A place, as a row of the system E = D L + F E of radiosity (Goral et al. 1984), whose
+/// A point, as a row of the system E = D L + F E of radiosity (Goral et al. 1984), whose
 /// coefficients rays find.
 struct TransportRow {
   struct OfPatch {

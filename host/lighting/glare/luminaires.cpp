@@ -18,7 +18,7 @@
 namespace photile::glare {
 namespace {
 
-/// Triangles that share corners, as lists; corners at the same place are one.
+/// Triangles that share corners, as lists; corners at the same position are one.
 std::vector<std::vector<std::uint32_t>> connected_parts(const Scene& scene,
                                                         std::span<const std::uint32_t> triangles) {
   std::vector<std::size_t> part(triangles.size());
@@ -43,7 +43,7 @@ std::vector<std::vector<std::uint32_t>> connected_parts(const Scene& scene,
   return lists;
 }
 
-/// Place i of any number of them evenly spread over a triangle (Roberts, "The unreasonable
+/// Position i of any number of them evenly spread over a triangle (Roberts, "The unreasonable
 /// effectiveness of quasirandom sequences", 2018), as weights of its second and third corner.
 glm::vec2 place_in_triangle(int i) {
   constexpr double plastic = 1.32471795724474602596;  // the root of x^3 = x + 1

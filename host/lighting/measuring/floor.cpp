@@ -26,7 +26,7 @@ constexpr double level_thickness = 0.02;  // metres
 constexpr double least_room = 1.2;        // metres above a floor
 constexpr int most_surfaces_below = 1000;
 constexpr double least_share = 0.5;      // of the widest level
-constexpr std::uint32_t samples = 8192;  // places whose headroom is looked at
+constexpr std::uint32_t samples = 8192;  // points whose headroom is looked at
 constexpr double plan_pixels = 1024;     // along the longer side
 
 /// A horizontal triangle.
@@ -78,7 +78,7 @@ void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& ax
   }
 }
 
-/// Looks up from places spread evenly over all pieces.
+/// Looks up from points spread evenly over all pieces.
 void measure_room(const RayScene& rays, const PlanAxes& axes, std::vector<Piece>& pieces) {
   const Scene& scene = rays.scene();
   const trace::FlushDenormals flush_denormals;

@@ -95,7 +95,7 @@ class Plan {
     fmt::format_to(std::back_inserter(text_), format, std::forward<T>(values)...);
   }
 
-  /// Pixels of a place in cells.
+  /// Pixels of a position in cells.
   glm::dvec2 at(const glm::dvec2& cells) const {
     const glm::dvec2 metres(cells.x / layout_.columns * glm::length(layout_.u),
                             cells.y / layout_.rows * glm::length(layout_.v));
@@ -136,8 +136,8 @@ class Plan {
         middle.x, middle.y + 0.35 * size, size, weight, number_text(value, 3));
   }
 
-  /// The value of a level at that of the places which is farthest from other numbers, or far enough
-  /// and nearest to the middle one. None where there is no room: the legend has it.
+  /// The value of a level at that of the positions which is farthest from other numbers, or far
+  /// enough and nearest to the middle one. None where there is no room: the legend has it.
   void add_level(const std::vector<glm::dvec2>& places, double level) {
     if (small_) return;
     constexpr double far_enough = 30, too_near = 12;
@@ -297,7 +297,7 @@ class Plan {
   std::string title_, text_;
   double per_metre_ = 0, width_ = 0, height_ = 0;  ///< pixels
   bool numbered_ = false;                          ///< whether cells have their values
-  std::vector<glm::dvec2> numbers_;                ///< places of them, and of levels
+  std::vector<glm::dvec2> numbers_;                ///< positions of them, and of levels
 };
 
 }  // namespace

@@ -125,7 +125,7 @@ constexpr double shown_around = 1.0;  ///< metres
 constexpr std::size_t most_walls = 20'000;
 constexpr int looks_along = 300;  ///< that find furniture, along the longer side
 
-/// The plane in the scene's coordinates, with places in cells.
+/// The plane in the scene's coordinates, with positions in cells.
 class Frame {
  public:
   explicit Frame(const measuring::PlaneLayout& layout)

@@ -22,12 +22,12 @@ using Segment = std::array<glm::dvec2, 2>;
 /// along the lines that join them (marching squares; Lorensen and Cline, "Marching cubes", 1987).
 /// Where both diagonals may be joined, the mean of the four decides. Squares with a NaN have none.
 ///   values   columns x rows, row by row
-///   returns  places in cells: (0.5, 0.5) is the middle of the first
+///   returns  positions in cells: (0.5, 0.5) is the middle of the first
 std::vector<Segment> isoline(std::span<const double> values, int columns, int rows, double level);
 
 /// Convex polygons that together cover where values lie between two levels. Each square of middles
 /// is four triangles around its middle, whose value is the mean, with linear interpolation in each.
-/// Arguments and places as above.
+/// Arguments and positions as above.
 using Polygon = std::vector<glm::dvec2>;
 std::vector<Polygon> isoband(std::span<const double> values, int columns, int rows, double low,
                              double high);
@@ -53,12 +53,12 @@ struct LampMark {
   glm::dvec2 place;
 };
 
-/// Places are counted in the plane's cells, from its corner, and may lie beyond its sides.
+/// Positions are counted in the plane's cells, from its corner, and may lie beyond its sides.
 struct PlanSurroundings {
   double reach = 0;                ///< metres around the plane that are shown
   std::vector<Segment> walls;      ///< where the plane cuts surfaces
   std::vector<Segment> furniture;  ///< outlines of what stands below the plane
-  std::vector<LampMark> lamps;     ///< lights with a place, above or below
+  std::vector<LampMark> lamps;     ///< lights with a position, above or below
 };
 
 /// The middle of a lamp's surface, or where it is, in the scene's coordinates; nothing of the sky.

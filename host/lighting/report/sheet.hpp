@@ -38,7 +38,7 @@ class Font {
 /// Pixels between the parts of a sheet, of its title, and of the bar of a legend.
 inline constexpr int gap = 12, title_height = 24, bar_width = 20;
 
-/// White, of display-referred linear values. Places are pixels from its top left corner.
+/// White, of display-referred linear values. Positions are pixels from its top left corner.
 class Sheet {
  public:
   static constexpr int font_size = 14;  ///< pixels

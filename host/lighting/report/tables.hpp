@@ -20,8 +20,8 @@ namespace photile::report {
 /// A line for each observer under a heading, and one that names the highest rating of each kind.
 std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all);
 
-/// A line for each observer: name, place, direction, illuminance and background with their standard
-/// errors, ratings. Fields of what is not known are empty.
+/// A line for each observer: name, position, direction, illuminance and background with their
+/// standard errors, ratings. Fields of what is not known are empty.
 std::string glare_csv(std::span<const glare::ObserverGlare> all);
 
 /// The ratings with the luminaires and the sources of pictures.

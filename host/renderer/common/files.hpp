@@ -60,7 +60,7 @@ class OutputFile {
   /// Throws the OutputError of this file: the first failed write's reason, or else `reason`.
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// At the place of the last write's end, or that of `seek`. Does nothing after a failure: what
+  /// At the position of the last write's end, or that of `seek`. Does nothing after a failure: what
   /// encoders cannot report is reported by `commit`.
   void write(const void* bytes, std::size_t count);
   std::uint64_t place() const { return place_; }

@@ -22,7 +22,7 @@ struct LightSums {
   bool glossy = false;
   /// Estimates that a hit has room for: one per light, or with many lights min(k, lights) slots.
   std::uint32_t per_hit = 1;
-  /// Many lights: places of the hash table that finds a light's slot. Half of them stay empty,
+  /// Many lights: positions of the hash table that finds a light's slot. Half of them stay empty,
   /// unless each light has its own.
   std::uint32_t table = 0;
 

@@ -59,8 +59,8 @@ class PhotonEstimate : public LightAtPoints {
     LoadBalance balance;
   };
 
-  /// Positions of points by their maps, and by place on each map; empty where they are in the order
-  /// of their maps.
+  /// Positions of points by their maps, and by position on each map; empty where they are in the
+  /// order of their maps.
   std::vector<std::uint32_t> order_of(const PrimaryHits& points) const;
   Estimates estimate(const PrimaryHits& points);
   Estimates estimate(Level& level, const PrimaryHits& points);

@@ -63,7 +63,7 @@ struct Tile {
   std::size_t counted = 0, pixels = 0;
 };
 
-/// Fills in the worst tile and its place.
+/// Fills in the worst tile and its position.
 void find_worst_region(const Image& picture, const Image& reference,
                        const RelativeErrorWeights& weights, PictureError& error) {
   const int side = std::max(1, reference.height / tiles_per_height);

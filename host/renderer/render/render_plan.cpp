@@ -29,7 +29,7 @@ PhotonTracerParameters all_photons(const RenderParameters& used) {
           .keep_caustics = used.light_map_rays > 0};
 }
 
-/// Says so where most photons have no other within the radius: most places then read nothing.
+/// Says so where most photons have no other within the radius: most points then read nothing.
 void note_lonely_photons(const Photons& photons, double radius, Progress& progress) {
   try {
     const double nearest = automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance;

@@ -48,7 +48,7 @@ struct Cell {
     const std::size_t within = index - std::size_t{row} * (2 * n - row);
     return {static_cast<std::uint32_t>(within / 2), row, within % 2 == 1};
   }
-  /// Weights of the triangle's second and third corner, of a place in the cell given by those of
+  /// Weights of the triangle's second and third corner, of a point in the cell given by those of
   /// the cell's.
   glm::dvec2 place(double u, double v, std::uint32_t n) const {
     if (inverted) return glm::dvec2(column + 1 - u, row + 1 - v) / static_cast<double>(n);
@@ -56,7 +56,7 @@ struct Cell {
   }
 };
 
-/// The cell that holds a place of the triangle.
+/// The cell that holds a point of the triangle.
 Cell cell_of(double u, double v, std::uint32_t n) {
   const double x = std::clamp(u, 0.0, 1.0) * n, y = std::clamp(v, 0.0, 1.0) * n;
   const auto row = std::min(static_cast<std::uint32_t>(y), n - 1);

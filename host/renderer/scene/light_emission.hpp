@@ -27,7 +27,7 @@ class EmissionCells {
     std::uint32_t triangle;  ///< into Scene::triangles
     double u, v;             ///< barycentric weights of the second and third corner
   };
-  /// Numbers in [0, 1) to a place: a cell by its luminance times its area, then evenly over the
+  /// Numbers in [0, 1) to a point: a cell by its luminance times its area, then evenly over the
   /// cell. No cell is left out: each counts at least a fiftieth of the mean luminance.
   Place sample(double cell, double u1, double u2) const;
   /// The density of `sample` at a position, per square metre.
@@ -49,7 +49,7 @@ class EmissionCells {
   glm::dvec3 integral_{0.0};
 };
 
-/// Radiance of a textured light at a place, in the unit of Light::texel_radiance.
+/// Radiance of a textured light at a point, in the unit of Light::texel_radiance.
 glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
                              const EmissionCells::Place& place);
 

@@ -50,7 +50,7 @@ std::vector<geometry::Box> BoundaryEdges::cut() {
   const double per_length = std::min(8.0, 0.25 * std::cbrt(static_cast<double>(edges_.size())));
   const double longest = std::max(across / per_length, 16 * tolerance_);
   std::vector<geometry::Box> boxes;
-  float largest = 0.0f;  // coordinate: pieces end at rounded places
+  float largest = 0.0f;  // coordinate: pieces end at rounded positions
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
     const BoundaryEdge& edge = edges_[i];
     const double length = glm::distance(edge.from, edge.to);

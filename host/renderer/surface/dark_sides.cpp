@@ -76,7 +76,7 @@ using FlatCorners = std::array<glm::dvec2, 3>;  ///< in the plane of the triangl
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/// Brings the places for which `is_first` holds before the others; returns how many they are. On
+/// Brings the positions for which `is_first` holds before the others; returns how many they are. On
 /// which side of a cut photons lie cannot be foreseen: std::partition, which branches, takes four
 /// times as long.
 template <class IsFirst>
@@ -140,7 +140,7 @@ class PartFinder {
     const auto& [a, b, c] = corner;
     const glm::dvec2 middle = 0.5 * (a + b), cut = middle - c;
     const double side_of_a = cross(cut, a - c);
-    const glm::dvec2 apex = c;  // of its own: what is written to places cannot change it
+    const glm::dvec2 apex = c;  // of its own: what is written to positions cannot change it
     const std::size_t split = partition(places, [cut, apex, side_of_a](const glm::dvec2& p) {
       return cross(cut, p - apex) * side_of_a >= 0;
     });

@@ -1,4 +1,4 @@
-// The triangles of a scene with what they share: corners, edges, places.
+// The triangles of a scene with what they share: corners, edges, positions.
 #pragma once
 
 #include <algorithm>

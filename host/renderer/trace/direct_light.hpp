@@ -27,7 +27,7 @@ struct LightNumbers {
   RandomBlock lamp, place;  ///< which light, and where on it
 };
 
-/// The places of scrambled sequences (random_stream.hpp) that a receiver's looks take: point
+/// The positions of scrambled sequences (random_stream.hpp) that a receiver's looks take: point
 /// `first` and those after it.
 class LightSampleNumbers {
  public:

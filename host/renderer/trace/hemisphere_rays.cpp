@@ -84,7 +84,7 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
 }
 
 /// All rays of a point. Returns the sum of their inverse distances to what they meet first.
-///   run_point   its place in the run
+///   run_point   its position in the run
 float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
                   std::uint32_t run_point, TaskEnds& found) {
   EyeRecord& ends = found.ends;

@@ -55,13 +55,13 @@ struct HitPlace {
   std::uint32_t index;  ///< into EyeRecord::hits
 };
 
-/// All hits in the order map, Morton code of their cell of `box`, place.
+/// All hits in the order map, Morton code of their cell of `box`, position.
 ///   map_of   per sided triangle, `none`, which is the last, where it has no map; empty where a
 ///            sided triangle is the map itself
 std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
                                     std::span<const std::uint32_t> map_of);
 
-/// The hits at these places of the records, in the order of the places.
+/// The hits at these positions of the records, in the order of the positions.
 PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places);
 
 /// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place

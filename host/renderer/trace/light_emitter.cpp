@@ -23,7 +23,7 @@ enum Block : std::uint32_t {
 
 constexpr int least_map_columns = 32;
 
-/// A place on the disc of the bounding sphere through which parallel light enters the scene.
+/// A point on the disc of the bounding sphere through which parallel light enters the scene.
 glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, float u1, float u2) {
   const Frame frame(direction);
   const glm::vec2 disc = sample_disc(u1, u2);
@@ -154,7 +154,7 @@ EmittedRay LightEmitter::emit_from_luminaire(const RandomStream& random) const {
 
 glm::vec3 LightEmitter::color_of(const SurfacePoint& point) const {
   if (light_->emission_texture == none) return light_->color;
-  // Radiosity over the density of the place, which follows the luminance only about.
+  // Radiosity over the density of the point, which follows the luminance only about.
   const double sides = light_->two_sided ? 2 : 1;
   return glm::vec3(glm::dvec3(light_->texel_radiance * emission_texel(*scene_, point)) *
                    (glm::pi<double>() * sides / area_->density(point.where)));

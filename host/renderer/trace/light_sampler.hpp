@@ -89,7 +89,7 @@ class LightSampler {
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
                               const RandomBlock& place,
                               const SelectionProbabilities& probabilities) const;
-  /// A place in that direction behind all of the scene, wherever the position is.
+  /// A point in that direction behind all of the scene, wherever the position is.
   glm::vec3 beyond(const glm::vec3& position, const glm::vec3& direction) const;
 
   const Scene* scene_;

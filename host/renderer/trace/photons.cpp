@@ -102,7 +102,7 @@ namespace {
 /// Runs in a row that are counted by one task.
 struct Share {
   std::span<const LayerRun> runs;
-  std::vector<std::uint32_t> next;  ///< per sided triangle: its photons, then the place of the next
+  std::vector<std::uint32_t> next;  ///< per sided triangle: its photons, then its next position
 };
 
 /// Parts of the runs, as many as there are threads, unless their counts would take more memory than
@@ -121,7 +121,7 @@ std::vector<Share> shares_of(std::span<const LayerRun> runs, std::size_t sided_t
   return shares;
 }
 
-/// Turns the runs' sided triangles into the places of their photons; returns Photons::first_of.
+/// Turns the runs' sided triangles into the positions of their photons; returns Photons::first_of.
 std::vector<std::uint32_t> find_places(std::span<const LayerRun> runs,
                                        std::size_t sided_triangle_count) {
   std::vector<Share> shares = shares_of(runs, sided_triangle_count);
@@ -146,7 +146,7 @@ std::vector<std::uint32_t> find_places(std::span<const LayerRun> runs,
   return first_of;
 }
 
-/// One array of all runs, whose sided triangles tell the places now.
+/// One array of all runs, whose sided triangles tell the positions now.
 template <class T>
 std::vector<T> in_places(std::span<const LayerRun> runs, std::vector<T> PhotonRun::*array,
                          std::size_t count) {

@@ -312,7 +312,7 @@ std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
     return place;
   };
   std::map<PlaneKey, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a place of it
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a point of it
   for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
     if (!chosen[scene.triangle_material[triangle]]) continue;
     std::array<std::uint32_t, 3> places{};

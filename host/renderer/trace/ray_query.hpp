@@ -90,13 +90,13 @@ inline SurfacePlace place_on(const Scene& scene, std::uint32_t sided_triangle,
   return {position, glm::vec3(sided_normal(scene, sided_triangle))};
 }
 
-/// How a shadow ray differs from the straight way between two places.
+/// How a shadow ray differs from the straight way between two points.
 struct SightLine {
   float lift;      ///< it runs so far above them, metres
   float left_out;  ///< and ends short of the second by this part of its length
 };
 
-/// Whether nothing is between two places of one surface, just above it. Where it is curved, a line
+/// Whether nothing is between two points of one surface, just above it. Where it is curved, a line
 /// of sight as deep in it as a circle's chord is lifted out by twice as much.
 bool see_each_other(const RayScene& rays, const SurfacePlace& from, const SurfacePlace& to,
                     const SightLine& line);

@@ -135,7 +135,7 @@ std::uint64_t RayScene::bytes() const {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(0, impl_->bytes.load()));
 }
 
-// Building the Embree BVH: the scene's own triangles, and meshes that several places share.
+// Building the Embree BVH: the scene's own triangles, and meshes that several instances share.
 
 namespace {
 

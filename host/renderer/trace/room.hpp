@@ -49,7 +49,7 @@ class Room {
   const glm::dvec2& high() const { return high_; }
   bool holds(const glm::dvec2& plan) const;
 
-  /// Places in the cut, spread evenly: one for each `cell_area`.
+  /// Points in the cut, spread evenly: one for each `cell_area`.
   std::vector<glm::dvec3> places() const;
   double cell_area() const { return cell_ * cell_; }
   /// The height of the cut along `up`, metres: just below the ceiling.
