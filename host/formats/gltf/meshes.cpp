@@ -174,8 +174,6 @@ scene::Corner PlacedVertices::operator[](std::uint32_t vertex) const {
   return corner;
 }
 
-namespace {
-
 bool has_normal_map(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const Material& material) { return material.normal_texture != none; });

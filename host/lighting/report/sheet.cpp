@@ -1,6 +1,7 @@
 #include "report/sheet.hpp"
 
 #include <ft2build.h>
+#include FT_FREETYPE_H
 
 #include <algorithm>
 #include <cstdint>

@@ -11,12 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-Json measured_json(const Measured& measured) {
-  return {{"value", measured.value}, {"standard_error", measured.standard_error}};
-}
-
 Json statistics_json(const measuring::GridStatistics& statistics) {
   Json minimum = measured_json(statistics.minimum), maximum = measured_json(statistics.maximum);
   minimum["at_most"] = statistics.minimum_at_most;

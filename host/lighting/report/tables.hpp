@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -48,6 +49,12 @@ inline std::string text_with_error(double value, double error) {
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(error))));
   return fmt::format("{:.{}f} +-{:.{}f}", unit * std::round(value / unit), decimals,
                      unit * std::round(error / unit), decimals);
+}
+
+/// A vector, and a value with its standard error, as JSON has them.
+inline nlohmann::ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+inline nlohmann::ordered_json measured_json(const Measured& measured) {
+  return {{"value", measured.value}, {"standard_error", measured.standard_error}};
 }
 
 /// A field as RFC 4180 has it: quoted where it must be.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/touched_memory.hpp"
+#include "trace/photon_tracer.hpp"
 
 namespace photile {
 
