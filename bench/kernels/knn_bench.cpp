@@ -96,7 +96,7 @@ struct Case {
 /// A sample of hits contains those of every larger stride up to this.
 constexpr std::size_t most_stride = 64;
 
-/// As many hits as `run` affords: a warm-up and three repeats within the budget.
+/// A sample of as many hits as `run` affords: a warm-up and three repeats within the budget.
 HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
                           const std::function<void(const PrimaryHits&)>& run) {
   constexpr double passes = 4;

@@ -76,7 +76,7 @@ class PointBench {
     return file.normal.empty() ? "no normals" : "normals";
   }
 
-  /// Of photons, then of queries; without any all agree.
+  /// The normals of photons, then of queries; without any all agree.
   std::vector<glm::vec3> normals() const {
     std::vector<glm::vec3> all = photons_.normal;
     all.insert(all.end(), queries_.normal.begin(), queries_.normal.end());

@@ -103,8 +103,8 @@ class PhotonMaps {
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none(), std::span<const std::uint8_t> wanted = {});
-  /// The same of photons that nobody else needs: their arrays are given back as soon as the maps
-  /// hold copies, so that they do not lie in memory beside all of those.
+  /// Builds the maps of photons that nobody else needs: their arrays are given back as soon as the
+  /// maps hold copies, so that they do not lie in memory beside all of those.
   PhotonMaps(Device& device, const Scene& scene, Photons&& photons, const NeighbourGroups& groups,
              const PhotonMapParameters& parameters, Progress& progress = Progress::none(),
              std::span<const std::uint8_t> wanted = {});

@@ -58,7 +58,7 @@ void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const 
   }
 }
 
-/// The same without dark parts: uniform photons leave none.
+/// Checks areas without unlit regions: uniform photons leave none.
 void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
                    double radius, int k, DensityKernel kernel, MapMode mode = MapMode::triangle) {
   check_clipped_to(std::make_shared<const SurfaceIndex>(

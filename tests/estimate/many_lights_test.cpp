@@ -30,7 +30,7 @@ Estimates estimate(const Scene& scene, const Photons& photons, const PrimaryHits
   return Estimator(maps, scene, {neighbours, 0}).estimate(hits);
 }
 
-/// The same photons, of which only those of one light carry flux: the neighbours stay.
+/// Photons of which only those of one light carry flux: the neighbours stay.
 Photons alone(Photons photons, std::uint16_t light) {
   for (std::size_t i = 0; i < photons.size(); ++i) {
     if (photons.light[i] != light) photons.flux[i] = glm::vec3(0.0f);
@@ -185,7 +185,7 @@ TEST_CASE("any number of lights up to 70 and any level of k keep to their buffer
     parameters.neighbours = neighbours;
     parameters.compiled_neighbours = compiled;
     const Estimates shared = Estimator(maps, scene, parameters).estimate(hits);
-    // Of one light the sum is known: that of all lights. Slots that overlap would change it.
+    // The sum of one light is known: it is that of all lights. Slots that overlap would change it.
     const Scene single = plate(1, false);
     Photons together = photons;
     together.light.clear();

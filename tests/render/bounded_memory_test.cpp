@@ -71,7 +71,7 @@ TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has
   }
 }
 
-// Of so small a room the shapes of the maps (100 bytes each, always whole) are most of a tenth.
+// The shapes of the maps of so small a room (100 bytes each, always whole) are most of a tenth.
 TEST_CASE("maps that keep normals give the same bits within an eighth of the memory") {
   Scene scene = room();
   const std::size_t first = scene.vertices.size();

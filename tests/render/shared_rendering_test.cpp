@@ -25,7 +25,7 @@ Scene glossy_room() {
   return scene;
 }
 
-/// That of rank 0.
+/// The picture of rank 0.
 LightLayers shared_picture(const Scene& scene, std::uint32_t processes,
                            RenderParameters parameters) {
   LightLayers picture;
@@ -80,7 +80,8 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
     PhotonsMoved moved;
     photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), moved);
     held[communicator.rank()] = photons.size();
-    // Of the triangles that it answers for, every photon; of others, those within the radius.
+    // It holds every photon of the triangles that it answers for, and those of others within the
+    // radius.
     bool same = known;
     std::size_t lacking = 0;
     for (std::uint32_t s = 0; s + 1 < all.first_of.size(); ++s) {

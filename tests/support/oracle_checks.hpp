@@ -70,7 +70,7 @@ struct MapsUnderTest {
   }
 };
 
-/// Of every map structure and mode.
+/// Checks every mode of the maps.
 inline void check_against_oracle(const Scene& scene, const Photons& photons,
                                  const PrimaryHits& hits, double radius,
                                  std::initializer_list<int> neighbour_counts, bool irradiance) {

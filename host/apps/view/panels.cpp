@@ -8,7 +8,7 @@
 #include <cfloat>
 
 #include "photile/limits.hpp"
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 #include "view/panel_parts.hpp"
 
 namespace photile::view {

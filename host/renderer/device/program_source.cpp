@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "device/embedded_files.hpp"
 #include "photile/errors.hpp"
 

@@ -58,7 +58,7 @@ device::Launch photon_launch(const Build& build, const device::KernelSet& kernel
   return launch;
 }
 
-/// The same, where those that they enter are found.
+/// A launch over the photons where the maps that they are inserted into are found.
 device::Launch entered_launch(const Build& build, const device::KernelSet& kernels,
                               const char* kernel, const PhotonPage& photons) {
   device::Launch launch = photon_launch(build, kernels, kernel, photons);

@@ -23,7 +23,7 @@ namespace photile::maps {
 /// (works_in_groups).
 device::KernelSet build_kernels(const MapStore& store, bool patches);
 
-/// Those that pages need which hold a tile of a map.
+/// The kernels of pages that hold a tile of a map.
 device::KernelSet tile_kernels(const MapStore& store);
 
 /// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
@@ -93,7 +93,7 @@ struct EntryGathering {
   device::MemoryPages memory = device::MemoryPages::large;
 };
 
-/// Of a store's maps.
+/// The pages of memory of a store's maps.
 inline device::MemoryPages memory_pages(const MapStore& store) {
   return store.parameters.large_pages ? device::MemoryPages::large : device::MemoryPages::ordinary;
 }

@@ -41,7 +41,7 @@ struct MapStore {
 /// Work-items of a group in every kernel of build and estimate.
 inline constexpr std::size_t work_group_size = 64;
 
-/// That of the kernels whose work-items work together in local memory.
+/// The group size of the kernels whose work-items work together in local memory.
 inline constexpr std::size_t group_size = PHOTILE_COOPERATIVE_GROUP;
 
 /// Whether such kernels are used: anywhere but on CPUs, where work-items of a group run in turn,

@@ -29,14 +29,14 @@ PhotonTracerParameters all_photons(const RenderParameters& used) {
           .keep_caustics = used.light_map_rays > 0};
 }
 
-/// Says so where most photons have no other within the radius: most places then read nothing.
+/// Says so where most photons have no other within the radius: most points then read nothing.
 void note_lonely_photons(const Photons& photons, double radius, Progress& progress) {
   try {
     const double nearest = automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance;
     if (radius >= nearest) return;
     progress.note(
         fmt::format("radius {:.3g} m: half of the photons have no other within {:.3g} m; "
-                    "most places read no light; give a larger radius, or none",
+                    "most points receive no light; give a larger radius, or none",
                     radius, nearest));
   } catch (const UsageError&) {
     // Most photons lie in the same points.
@@ -135,7 +135,7 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
     return used_.radius;
   }
   if (photons.total() < 2) {
-    // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
+    // Nothing but lights, mirrors and glass is seen, or rays bring all the light there is.
     if (all_photons(used_).store_direct) {
       progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
     }

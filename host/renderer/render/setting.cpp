@@ -205,7 +205,7 @@ std::vector<Setting> estimate_rows() {
       row<&P::photons_per_cell>("photons_per_cell", build, PositiveNumbers{},
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>("direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
-                           "looks at lamps from a hit, which replace photons straight from lamps",
+                           "light samples from a hit, which replace photons directly from lights",
                            kept_for_direct_light, "photons bring it"),
       row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
                      "what finds the light that lobes reflect; auto: rays where light maps are "
@@ -217,8 +217,8 @@ std::vector<Setting> estimate_rows() {
                           not_kept),
       by_quality(row<&P::light_map_rays>(
                      "light_map_rays", "light maps", WholeNumbers{1, limits::max_gathering_rays},
-                     "rays, and looks at lamps, by which nodes of light maps gather light",
-                     not_kept, "the photon estimate values nodes"),
+                     "rays, and light samples, by which nodes of light maps gather light", not_kept,
+                     "the photon estimate values nodes"),
                  0, 64, 256),
       row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
                                 "largest distance between the finest nodes of light maps", not_kept,

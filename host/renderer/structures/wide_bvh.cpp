@@ -21,7 +21,7 @@ std::size_t leaves_of_child(std::size_t leaves) {
   return child;
 }
 
-/// Of the tree over so many leaves: none where one leaf is the child itself.
+/// The number of nodes of the tree over so many leaves: none where one leaf is the child itself.
 std::size_t count_nodes(std::size_t leaves) {
   if (leaves <= 1) return 0;
   const std::size_t child = leaves_of_child(leaves);

@@ -15,7 +15,7 @@ struct PointBox {
   glm::vec3 high{-std::numeric_limits<float>::infinity()};
 };
 
-/// Of points[order[i]].
+/// The box of points[order[i]].
 inline PointBox box_of(std::span<const glm::vec3> points, std::span<const std::uint32_t> order) {
   PointBox box;
   for (const std::uint32_t i : order) {
