@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""bench/radiance.py: errors, the page, and the scene as Radiance reads it."""
+"""bench/rivals/radiance.py: errors, the page, and the scene as Radiance reads it."""
 
 import json
 import math
@@ -13,8 +13,8 @@ sys.path.insert(0, str(ROOT / "bench"))
 
 try:
     import numpy as np
-    import radiance
-    from radiance_scene import plain_material, write_plain_gltf, write_radiance_scene
+    from rivals import radiance
+    from rivals.radiance_scene import plain_material, write_plain_gltf, write_radiance_scene
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)

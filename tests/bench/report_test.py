@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bench/report*.py against values worked out by hand. Exits with 77 (skipped) where
+"""Tests of bench/kernels/report*.py against values worked out by hand. Exits with 77 (skipped) where
 python3-matplotlib is not installed.
 
     tests/bench/report_test.py
@@ -12,11 +12,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 try:
-    import report_kernels
-    import report_lights
-    import report_scale
-    import report_tables
-    import report_targets
+    from kernels import report_kernels, report_lights, report_scale, report_tables, report_targets
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
