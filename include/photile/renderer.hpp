@@ -77,7 +77,6 @@ struct RenderParameters {
   /// as its estimate can have before bias shows above the noise. 0 = all have `neighbours`.
   int least_neighbours = 0;
   float photons_per_cell = defaults::photons_per_cell;
-  MapStructure structure = MapStructure::uniform_grid;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
   /// > 0: light directly from lights is found by so many looks at them from each hit. 0 = photons

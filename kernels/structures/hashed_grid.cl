@@ -9,7 +9,7 @@ static float cells_to(float place, int i) {
 }
 
 // Words hold one PhotileHashedGrid.
-static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint photons, NearestList* list) {
   __global const PhotileHashedGrid* grid = (__global const PhotileHashedGrid*)in->nodes;
   search->grid = grid;
   const float3 hit = search->hit;

@@ -5,6 +5,7 @@
 #include "estimates_comparison.hpp"
 #include "oracle/density_oracle.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -150,10 +151,11 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
   if (glossy) test::add_lobes(hits, scene, 93);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
-  for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
-    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+  for (const std::string_view structure : {"uniform-grid", "kdtree-3d"}) {
+    const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+                                              photons, groups, {radius, 4});
     for (const int neighbours : {1, 5, 12, compiled}) {
-      CAPTURE(lights, neighbours, name_of(structure));
+      CAPTURE(lights, neighbours, structure);
       EstimateParameters parameters;
       parameters.neighbours = neighbours;
       parameters.compiled_neighbours = compiled;

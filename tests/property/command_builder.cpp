@@ -22,8 +22,8 @@ const std::map<std::string_view, std::uint64_t>& cheap_counts() {
   return most;
 }
 
-constexpr std::array<std::string_view, 6> compiled{
-    "neighbours", "least_neighbours", "area", "kernel", "maps", "structure"};
+constexpr std::array<std::string_view, 5> compiled{"neighbours", "least_neighbours", "area",
+                                                   "kernel", "maps"};
 
 bool changes_kernels(std::string_view setting) {
   return std::find(compiled.begin(), compiled.end(), setting) != compiled.end();

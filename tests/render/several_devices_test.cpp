@@ -51,16 +51,6 @@ TEST_CASE("two sub-devices gather the bits of one device") {
                         expected.layers));
 }
 
-TEST_CASE("the kd-trees estimate the bits of one device on two") {
-  const Scene scene = room(false);
-  RenderParameters chosen = parameters();
-  chosen.structure = MapStructure::kdtree_global;
-  const auto expected = render(scene, test::room_camera(), test::device(), chosen);
-  std::vector<Device> devices = halves();
-  CHECK(
-      test::same_bits(render(scene, test::room_camera(), devices, chosen).layers, expected.layers));
-}
-
 TEST_CASE("the statistics name each device with its share") {
   const Scene scene = room(false);
   std::vector<Device> devices = halves();

@@ -4,7 +4,6 @@
 #include <mutex>
 #include <numeric>
 
-#include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
@@ -119,13 +118,6 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
   CHECK(std::accumulate(owned.begin(), owned.end(), std::uint64_t{0}) == all.size());
   for (const std::uint64_t count : owned) CHECK(count < all.size() / 2);
   for (const std::uint64_t count : held) CHECK(count < all.size());
-}
-
-TEST_CASE("what several processes cannot share is refused") {
-  const Scene scene = glossy_room();
-  RenderParameters tree = small_picture(1000, 8, 6);
-  tree.structure = MapStructure::kdtree_global;
-  CHECK_THROWS_AS(shared_picture(scene, 2, tree), UsageError);
 }
 
 }  // namespace photile::test

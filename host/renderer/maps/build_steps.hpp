@@ -40,7 +40,6 @@ struct Build {
   bool patches;         ///< maps may serve several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
-  float photons_per_cell;
   device::Buffer<std::uint32_t> map_of = {};    ///< per sided triangle
   device::Buffer<float> normals = {};           ///< 3 per sided triangle; only with patches
   device::Buffer<PhotileMapShape> shapes = {};  ///< per pair of maps

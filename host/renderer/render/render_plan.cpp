@@ -43,16 +43,6 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
   }
 }
 
-/// Errors: SettingError for what one process alone can do.
-void check_for_several(const RenderParameters& asked) {
-  if (is_global(asked.structure)) {
-    throw SettingError(
-        setting_named("structure"),
-        std::string(name_of(asked.structure)) +
-            " is over all photons, which several processes share; take uniform-grid");
-  }
-}
-
 }  // namespace
 
 std::string_view name_of(GlossMode mode) {
@@ -89,7 +79,6 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
       least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
-  if (asked.processes) check_for_several(asked);
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) {
@@ -153,11 +142,6 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
   }
 }
 
-MapMode RenderPlan::map_mode() const {
-  const bool global = is_global(used_.structure);  // no use for patches
-  return global ? MapMode::triangle : used_.maps;
-}
-
 NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
   return {first_radius, used_.angle_degrees};
 }
@@ -165,7 +149,6 @@ NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
 PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
   return {.radius = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
           .photons_per_cell = used_.photons_per_cell,
-          .structure = used_.structure,
           .large_pages = !reads_light_maps()};  // whose nodes are few
 }
 

@@ -52,7 +52,6 @@ class RenderPlan {
   /// they tell none.
   double radius(const Photons& photons, Progress& progress) const;
 
-  MapMode map_mode() const;
   NeighbourGroupParameters groups(double first_radius) const;
   PhotonMapParameters maps(int pass, double first_radius) const;
 

@@ -1,15 +1,16 @@
-#include "photile/device/wide_bvh.h"
+// A hierarchy of boxes of eight over all photons (kernels/structures/wide_bvh.h), built on the
+// host. Points are halved along the widest axis of their box, at the place that leaves all nodes
+// and leaves but the last full.
+#include "structures/wide_bvh.h"
 
 #include <tbb/parallel_for.h>
 
-#include <array>
 #include <bit>
-#include <numeric>
 
-#include "structures/global_structures.hpp"
-#include "structures/widest_axis.hpp"
+#include "structures/halving.hpp"
+#include "structures/structure.hpp"
 
-namespace photile::maps {
+namespace photile::structures {
 namespace {
 
 constexpr std::size_t wide = 8;  ///< children of a node, photons of a leaf
@@ -89,17 +90,17 @@ class WideBvhBuilder {
   std::vector<std::uint32_t>& words_;
 };
 
-}  // namespace
-
-OrderedPoints build_wide_bvh(std::span<const glm::vec3> points) {
-  OrderedPoints built;
-  built.order.resize(points.size());
-  std::iota(built.order.begin(), built.order.end(), 0u);
-  const std::size_t nodes = std::max<std::size_t>(count_nodes(leaves_of(points.size())), 1);
-  built.nodes = static_cast<std::uint32_t>(nodes);
-  built.words.resize(nodes * PHOTILE_WIDE_NODE_WORDS);
-  WideBvhBuilder(points, built.words).build(0, 0, built.order);
-  return built;
+Index build_wide_bvh(const PhotonLists& lists) {
+  std::vector<std::uint32_t> order = lists.members;
+  const std::size_t nodes = std::max<std::size_t>(count_nodes(leaves_of(order.size())), 1);
+  std::vector<std::uint32_t> words(nodes * PHOTILE_WIDE_NODE_WORDS);
+  WideBvhBuilder(lists.photons.position, words).build(0, 0, order);
+  return {.entry_photon =
+              lists.context.upload(std::span<const std::uint32_t>(order), "photon references"),
+          .nodes = lists.context.upload(std::span<const std::uint32_t>(words), "nodes")};
 }
 
-}  // namespace photile::maps
+const Registration wide_bvh({.name = "wide-bvh", .build = build_wide_bvh, .global = true});
+
+}  // namespace
+}  // namespace photile::structures

@@ -1,13 +1,16 @@
-#include "photile/device/hashed_grid.h"
+// Cubic cells over all photons in a hash table, built on the device:
+// kernels/structures/build_hashed_grid.cl.
+#include "structures/hashed_grid.h"
 
+#include <array>
 #include <bit>
-#include <cmath>
+#include <utility>
 
 #include "maps/build_steps.hpp"
 #include "maps/prefix_sum.hpp"
-#include "structures/global_structures.hpp"
+#include "structures/structure.hpp"
 
-namespace photile::maps {
+namespace photile::structures {
 namespace {
 
 /// Cells a radius is long. Searches end at about half of it.
@@ -38,37 +41,44 @@ PhotileHashedGrid grid_over(std::span<const glm::vec3> points, double radius) {
           .mask = static_cast<std::uint32_t>(buckets - 1)};
 }
 
-}  // namespace
-
-void build_hashed_grid(const MapStore& store, const Photons& photons, MapPage& page) {
-  device::Context& context = device::context_of(*store.device);
+Index build_hashed_grid(const PhotonLists& lists) {
+  device::Context& context = lists.context;
+  const Photons& photons = lists.photons;
   const device::KernelSet kernels(context, "structures/build_hashed_grid.cl",
-                                  group_defines(store.device->info()));
-  const PhotileHashedGrid grid = grid_over(photons.position, store.parameters.radius);
+                                  maps::group_defines(context.info()));
+  const PhotileHashedGrid grid = grid_over(photons.position, lists.radius);
   const auto words = std::bit_cast<std::array<std::uint32_t, sizeof grid / 4>>(grid);
-  page.nodes = context.upload(std::span<const std::uint32_t>(words), "hashed grid");
+  auto nodes = context.upload(std::span<const std::uint32_t>(words), "hashed grid");
+  maps::MapPage page;
+  page.entry_count = static_cast<std::uint32_t>(photons.size());
   page.cell_count = grid.mask + 1;
   page.cell_start = context.allocate<std::uint32_t>(std::size_t{page.cell_count} + 1,
-                                                    "bucket offsets", memory_pages(store));
+                                                    "bucket offsets", device::MemoryPages::large);
   context.fill(page.cell_start, 0u);
   page.entry_photon = context.allocate<std::uint32_t>(photons.size(), "photon references");
   const auto position =
       context.share(std::span(&photons.position.front().x, 3 * photons.size()), "photon positions");
   const auto over_photons = [&](const char* kernel) {
     device::Launch launch = kernels.launch(kernel);
-    launch.set("photon_count", static_cast<std::uint32_t>(photons.size()))
+    launch.set("photon_count", page.entry_count)
         .set("position", position)
-        .set("grid", page.nodes)
+        .set("grid", nodes)
         .set("cell_start", page.cell_start);
     return launch;
   };
-  over_photons("count_buckets").run(photons.size(), work_group_size);
-  exclusive_prefix_sum(kernels, page.cell_start);
+  over_photons("count_buckets").run(photons.size(), maps::work_group_size);
+  maps::exclusive_prefix_sum(kernels, page.cell_start);
   over_photons("fill_buckets")
       .set("entry_photon", page.entry_photon)
-      .run(photons.size(), work_group_size);
-  sort_cells(kernels, page);
+      .run(photons.size(), maps::work_group_size);
+  maps::sort_cells(kernels, page);
   context.finish();  // `position` may lie over the host's memory
+  return {.entry_photon = std::move(page.entry_photon),
+          .nodes = std::move(nodes),
+          .cell_start = std::move(page.cell_start)};
 }
 
-}  // namespace photile::maps
+const Registration hashed_grid({.name = "hashed-grid", .build = build_hashed_grid, .global = true});
+
+}  // namespace
+}  // namespace photile::structures

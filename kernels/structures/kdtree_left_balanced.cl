@@ -10,7 +10,7 @@
 #include "structures/search.clh"
 
 // Words hold the axes of entries, two bits each: entry i's at 2 (i % 16) of word i / 16.
-static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint photons, NearestList* list) {
   const uint entry_count = in->entry_count;
   const uint outside = 0xFFFFFFFFu;  // the parent of the root
   uint node = 0, from = outside;

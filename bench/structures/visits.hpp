@@ -4,7 +4,7 @@
 #include "photile/photon_maps.hpp"
 #include "photile/ray_scene.hpp"
 
-namespace photile::bench {
+namespace photile::structures {
 
 /// Means over hits.
 struct Visits {
@@ -12,11 +12,7 @@ struct Visits {
   double photons = 0;  ///< whose distance was computed
 };
 
-/// Counts by a kernel compiled for it. The structure of the maps must be searched by
-/// kernels/structures: counts_visits.
+/// Counts by a kernel compiled for it. The maps are in a structure other than grids.
 Visits count_visits(const PhotonMaps& maps, const PrimaryHits& hits, int k);
 
-/// Whether the searches of a structure are counted: not those of uniform grids and brute force.
-bool counts_visits(MapStructure structure);
-
-}  // namespace photile::bench
+}  // namespace photile::structures

@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-namespace photile::maps {
+namespace photile::structures {
 
 struct PointBox {
   glm::vec3 low{std::numeric_limits<float>::infinity()};
@@ -48,4 +48,4 @@ inline void split_at(std::span<const glm::vec3> points, std::span<std::uint32_t>
 /// Parts of fewer points are built by one thread.
 inline constexpr std::size_t least_parallel_points = 4096;
 
-}  // namespace photile::maps
+}  // namespace photile::structures
