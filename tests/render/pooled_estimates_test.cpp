@@ -1,11 +1,10 @@
 // Pooled estimates against sums by hand.
-#include "render/pooled_estimates.hpp"
-
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
 
 #include "photile/scene.hpp"
+#include "render/film.hpp"
 
 namespace photile::test {
 namespace {

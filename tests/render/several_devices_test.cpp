@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "estimate/for_each_device.hpp"
+#include "estimate/load_balance.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "photile/limits.hpp"
-#include "view/panel_parts.hpp"
+#include "view/panels.hpp"
 
 namespace photile::view {
 namespace {

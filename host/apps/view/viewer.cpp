@@ -11,19 +11,18 @@
 #include <utility>
 
 #include "photile/errors.hpp"
-#include "view/display.hpp"
+#include "view/frame.hpp"
 #include "view/frame_worker.hpp"
 #include "view/light_board.hpp"
 #include "view/luminaire_session.hpp"
 #include "view/moods.hpp"
 #include "view/navigation.hpp"
-#include "view/panel_parts.hpp"
-#include "view/photon_feed.hpp"
-#include "view/photon_map_overlay.hpp"
+#include "view/panels.hpp"
+#include "view/photon_map.hpp"
+#include "view/photon_worker.hpp"
 #include "view/point_worker.hpp"
 #include "view/settings_history.hpp"
 #include "view/snapshots.hpp"
-#include "view/viewpoint.hpp"
 #include "view/window.hpp"
 
 namespace photile::view {

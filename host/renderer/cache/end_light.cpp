@@ -8,8 +8,8 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/ray_query.hpp"
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "cache/batch_sums.hpp"
+#include "cache/gathered_irradiance.hpp"
 #include "common/byte_stream.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/neighbour_choice.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "photile/communicator.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"

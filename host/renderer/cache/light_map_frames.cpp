@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "cache/charts.hpp"
-#include "cache/turned_light.hpp"
+#include "cache/node_mix.hpp"
 #include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
 #include "trace/eye_path.hpp"

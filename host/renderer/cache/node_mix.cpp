@@ -10,6 +10,7 @@
 #include "photile/scene.hpp"
 
 namespace photile::cache {
+
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "cache/charts.hpp"
-#include "cache/turned_light.hpp"
-#include "estimate/estimate_writer.hpp"
+#include "cache/node_mix.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -22,6 +21,7 @@
 #include "trace/surface.hpp"
 
 namespace photile::cache {
+
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.

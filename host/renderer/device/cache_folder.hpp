@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "photile/device.hpp"
+
 namespace photile::device {
 
 /// Free space below which a folder is not used: PoCL ends the process when its disk is full.
@@ -27,5 +29,17 @@ std::string folder_problem(const std::filesystem::path& folder);
 
 /// Writes "photile: warning: <line>" to the standard error stream.
 void warn(const std::string& line);
+
+// Results of device tests, kept beside the compiled kernels.
+
+/// What DeviceInfo::test_result says of a device that has passed.
+inline constexpr const char* passed = "passed";
+
+/// The result of the last test of this device with this driver and these kernels; "" where none is
+/// kept.
+std::string kept_test_result(const DeviceInfo& device);
+
+/// Keeps a result. Nothing where no folder can be written, which is a warning.
+void keep_test_result(const DeviceInfo& device, const std::string& result);
 
 }  // namespace photile::device

@@ -9,7 +9,6 @@
 #include "device/launch.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
-#include "estimate/surface_buffers.hpp"
 #include "maps/map_store.hpp"
 #include "photile/device/constants.h"
 #include "photile/device/query.h"

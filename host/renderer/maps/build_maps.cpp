@@ -15,12 +15,9 @@
 
 #include "maps/build_steps.hpp"
 #include "maps/candidate_maps.hpp"
-#include "maps/entry_defines.hpp"
-#include "maps/map_numbers.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
-#include "maps/page_queue.hpp"
-#include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
 
 namespace photile::maps {

@@ -1,4 +1,4 @@
-#include "maps/entry_defines.hpp"
+#include "maps/map_page.hpp"
 
 namespace photile::maps {
 

@@ -1,4 +1,4 @@
-#include "estimate/estimate_writer.hpp"
+#include "estimate/light_at_points.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-// A photon map, drawn over the picture.
+// The photon map of one triangle: which photons it holds, and whose.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,39 @@
 
 #include "photile/camera.hpp"
 #include "photile/ray_scene.hpp"
-#include "view/display.hpp"
+#include "photile/renderer.hpp"
 #include "view/frame.hpp"
-#include "view/photon_map_view.hpp"
 
 namespace photile::view {
+
+/// What is kept of photons to look at them: 12 bytes for each.
+struct InspectablePhotons {
+  std::vector<glm::vec3> position;      ///< metres, as in Photons
+  std::vector<std::uint32_t> first_of;  ///< as in Photons
+  Patches patches;                      ///< which triangles share a map
+  double radius = 0;                    ///< metres, of the maps; infinite where they are naive
+  double angle_degrees = 0;             ///< of the neighbour groups
+
+  static InspectablePhotons of(const PreparedPhotons& photons);
+};
+
+/// A sided triangle and what an estimate on it may find.
+struct PhotonMapView {
+  std::uint32_t sided_triangle = none;
+  /// Sided triangles of its neighbour group (Graglia et al. 2012, section 2.1) without itself,
+  /// ascending: at most the radius away, with a normal that agrees.
+  std::vector<std::uint32_t> group;
+  /// Sided triangles that share its map without being of its group, ascending.
+  std::vector<std::uint32_t> patch;
+  std::vector<glm::vec3> own_photons;    ///< that landed on it
+  std::vector<glm::vec3> group_photons;  ///< on its group, at most the radius from it
+};
+
+/// Looks at one sided triangle; time grows with the triangles of the scene.
+PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
+                          std::uint32_t sided_triangle);
+
+// A photon map, drawn over the picture.
 
 /// The surfaces that the middles of pixels see, mirrors and glass themselves.
 struct SeenSurfaces {
