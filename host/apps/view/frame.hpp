@@ -1,4 +1,5 @@
-// A finished picture of the walkthrough, before its lights are mixed.
+// A finished picture of the walkthrough, and what the screen shows of it at the settings of the
+// lights.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +50,6 @@ struct Frame {
   double seconds = 0;        ///< that it took
   RunStatistics statistics;  ///< of its stages
 };
-
-// From a frame and the lamps' settings to what the screen shows.
 
 enum class DisplayMode {
   picture,      ///< tone mapped

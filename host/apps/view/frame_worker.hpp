@@ -1,4 +1,4 @@
-// How large frames may be to come at the wanted rate.
+// Frames of the walkthrough, rendered on a thread of their own, as large as the wanted rate allows.
 #pragma once
 
 #include <condition_variable>
@@ -32,8 +32,6 @@ class FrameSize {
   double budget_;                 ///< seconds
   double seconds_per_pixel_ = 0;  ///< smoothed; 0 = unknown
 };
-
-// Frames of the walkthrough, rendered on a thread of their own.
 
 /// What is to be seen.
 struct FrameRequest {

@@ -1,4 +1,5 @@
-// A scene that is loaded again with other luminaires, on a thread of its own.
+// Luminaires that are edited in the window: their file, the hands on them (mouse, keys, outlines),
+// and the scene that is loaded again with them.
 #pragma once
 
 #include <condition_variable>
@@ -53,8 +54,6 @@ class SceneLoader {
   std::jthread thread_;  // last: it uses all of the above
 };
 
-// Hands on luminaires: mouse and keys, and outlines over the picture.
-
 class LuminaireTool {
  public:
   /// The editor is kept as a reference.
@@ -89,8 +88,6 @@ class LuminaireTool {
   bool placing_ = false;
   std::optional<glm::dvec3> held_;  ///< direction to where the pointer holds them
 };
-
-// Luminaires that are edited in the window: their file, the hands on them, and the scene with them.
 
 /// What becomes of unsaved changes.
 enum class Closing { undecided, save, discard, stay };

@@ -1,4 +1,4 @@
-// Where the viewer stands and looks.
+// Where the viewer stands and looks, and how keys and mouse move it.
 #pragma once
 
 #include "photile/camera.hpp"
@@ -26,8 +26,6 @@ class Viewpoint {
  private:
   Camera camera_;
 };
-
-// Keys and mouse to motion.
 
 /// Walks with W A S D, E and Q (up, down), looks around with the left button, orbits with the
 /// right, and goes ahead with the wheel. Input that the panels take is not for it.

@@ -1,4 +1,4 @@
-// The panels over the picture.
+// The panels over the picture and their parts.
 #pragma once
 
 #include <deque>
@@ -69,8 +69,6 @@ struct PanelEvents {
 };
 
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings);
-
-// The parts of the panel: lamps, and what the window shows.
 
 /// A control for each light, or group of lights. Returns whether one has changed.
 bool draw_lights(PanelState& state);

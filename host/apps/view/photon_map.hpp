@@ -1,4 +1,4 @@
-// The photon map of one triangle: which photons it holds, and whose.
+// The photon map of one triangle: which photons it holds, and whose; drawn over the picture.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,6 @@ struct PhotonMapView {
 /// Looks at one sided triangle; time grows with the triangles of the scene.
 PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
                           std::uint32_t sided_triangle);
-
-// A photon map, drawn over the picture.
 
 /// The surfaces that the middles of pixels see, mirrors and glass themselves.
 struct SeenSurfaces {

@@ -1,4 +1,4 @@
-// Photon maps that get better in the background.
+// Photon maps that get better in the background, for the window's thread to take.
 #pragma once
 
 #include <atomic>
@@ -76,8 +76,6 @@ class PhotonWorker {
   std::exception_ptr error_;
   std::jthread thread_;  // last: it uses all of the above
 };
-
-// Photon maps of the scene as it is now, for the window's thread to take.
 
 class PhotonFeed {
  public:

@@ -1,4 +1,5 @@
-// What was set before, for Ctrl+Z and Ctrl+Y.
+// What was set in the window before, for Ctrl+Z and Ctrl+Y: one history of lamps, hour and
+// luminaires.
 #pragma once
 
 #include <deque>
@@ -42,8 +43,6 @@ class History {
   std::deque<State> undone_to_, redone_to_;  ///< newest last
   bool within_change_ = false;
 };
-
-// Lamps, hour and luminaires as they were before: one history of all that is set in the window.
 
 class SettingsHistory {
  public:

@@ -1,4 +1,5 @@
-// Charts of the light maps: planes with lattices, and the surface that lies under each.
+// Charts of the light maps: planes with lattices, the surface that lies under each, and which sided
+// triangles share one.
 #pragma once
 
 #include <algorithm>
@@ -104,8 +105,6 @@ class Charts {
       trees_;  ///< of charts of many triangles, prepared
   std::uint32_t roots_ = 0;
 };
-
-// Which sided triangles share a chart of the light maps.
 
 struct ChartGrowth {
   /// Per sided triangle; none where the material stores no photons. Numbered in the order in which

@@ -1,4 +1,5 @@
-// Irradiance at points of surfaces, per light, with what is known of its error.
+// Irradiance at points of surfaces, per light, with what is known of its error, and the sums of
+// light and batch that it is made from.
 #pragma once
 
 #include <cstddef>
@@ -50,8 +51,6 @@ struct GatheredIrradiance {
 /// Light of two kinds at the same points, whose batches are as many.
 GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
                           std::size_t lights);
-
-// Sums at one point of a surface, per light and batch.
 
 /// Writes points one after another. Sums run in the order of the calls.
 class BatchSums {

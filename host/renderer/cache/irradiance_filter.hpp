@@ -1,4 +1,5 @@
-// Whether the light of two places may be the same but for noise.
+// Takes noise from irradiance at points that see much the same: whether the light of two points may
+// be the same but for noise, and means with weights of each layer.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -79,8 +80,6 @@ class Likeness {
   std::vector<std::uint16_t> parted_;
   double of_others_ = 1;
 };
-
-// Means of the light of several points, each layer with weights of its own.
 
 /// Weighted means of points, written one after another.
 class WeightedPoints {
@@ -229,8 +228,6 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
   for (GatheredIrradiance& part : parts) all.append(std::move(part));
   return all;
 }
-
-// Takes noise from irradiance at points that see much the same.
 
 /// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to
 /// to[first[i] .. first[i + 1]). Who links says what one surface is.

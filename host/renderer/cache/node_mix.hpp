@@ -1,4 +1,5 @@
-// The light of all lights together at the nodes of light maps.
+// The light of all lights together at the nodes of light maps, and that of a plane turned from the
+// surface that it lies on.
 #pragma once
 
 #include <algorithm>
@@ -36,8 +37,6 @@ class NodeMix {
   std::vector<glm::vec3> powers_;
   std::vector<glm::vec4> light_, by_normal_;
 };
-
-// The light of a plane that is turned from the surface that it lies on.
 
 /// Irradiance of a plane of unit normal n, in the colour of that of the surface.
 ///   by_normal   as Estimates has it

@@ -1,4 +1,5 @@
-// Which reflections need no light gathered at nodes, since photons are not seen in them.
+// The cache on surfaces: light read between samples where those serve, and asked for where they do
+// not; and which reflections need no light gathered at nodes.
 #pragma once
 
 #include <cstdint>
@@ -32,9 +33,6 @@ struct PhotonBlotches {
 /// Returns 1 or 0 for each of `reflected`.
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
                                         int runs, const PhotonBlotches& blotches);
-
-// The cache on surfaces: light read between samples where those serve, and asked for where they do
-// not.
 
 /// A sum of squared relative standard errors.
 struct ErrorSum {

@@ -1,5 +1,5 @@
 // Where photile may keep files between runs, and where it may keep them during one; warnings of
-// trouble there, which never stops a run.
+// trouble there, which never stops a run; and the results of device tests, which are kept there.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,6 @@ std::string folder_problem(const std::filesystem::path& folder);
 
 /// Writes "photile: warning: <line>" to the standard error stream.
 void warn(const std::string& line);
-
-// Results of device tests, kept beside the compiled kernels.
 
 /// What DeviceInfo::test_result says of a device that has passed.
 inline constexpr const char* passed = "passed";

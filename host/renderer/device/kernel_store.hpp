@@ -1,4 +1,5 @@
-// The identity of a compiled program: 128 bits over everything that may change its code.
+// Compiled kernels on disk: their identity, 128 bits over everything that may change their code,
+// and one checked file per program.
 #pragma once
 
 #include <array>
@@ -51,8 +52,6 @@ CheckedRead read_checked_file(const std::filesystem::path& file, const CacheKey&
 /// whole new one. Returns "" or what went wrong; the temporary file is gone then.
 std::string write_checked_file(const std::filesystem::path& file, const CacheKey& key,
                                std::string_view payload);
-
-// Compiled kernels on disk, one checked file per program.
 
 class KernelStore {
  public:

@@ -1,4 +1,4 @@
-// A launch of a kernel.
+// Launches of kernels: the kernels of one program, a launch, and launches that end soon.
 #pragma once
 
 #include <algorithm>
@@ -122,8 +122,6 @@ class LaunchPace {
   InQueue last_;
   double ended_ = 0;  ///< when the launch before the last ended, seconds
 };
-
-// The kernels of one program.
 
 /// A kernel file and the definitions that it is built with, on one context.
 class KernelSet {

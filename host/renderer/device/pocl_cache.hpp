@@ -1,9 +1,10 @@
-// The folder in which PoCL keeps compiled kernels while this process runs.
+// PoCL's compiled kernels: the folder in which PoCL keeps them while this process runs, and what
+// photile keeps of them between runs.
 //
 // PoCL (3.1) ends the process on a truncated shared object, a damaged program.bc or a folder that
 // it cannot write, and two processes may be writing one folder at a time, so that no check of a
 // shared folder holds. Every process therefore gets a fresh folder of its own, into which only
-// verified files are put (pocl_cache.hpp), and which goes when the process ends. A killed process's
+// verified files are put (PoclCache), and which goes when the process ends. A killed process's
 // folder goes when the next one starts.
 #pragma once
 

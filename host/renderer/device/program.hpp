@@ -1,5 +1,5 @@
-// The names of the arguments of kernels, which OpenCL promises for programs made from source only:
-// with a binary they are kept beside it.
+// Building one OpenCL program, the names of its kernels' arguments, and a dump of what was
+// compiled.
 #pragma once
 
 #include <map>
@@ -31,8 +31,6 @@ std::string joined(const NamedBinary& program);
 /// What `joined` made; none of any other text.
 std::optional<NamedBinary> split(std::string_view text);
 
-// Building one OpenCL program.
-
 /// Where programs are built.
 struct BuildTarget {
   cl_context context = nullptr;
@@ -54,8 +52,6 @@ ProgramHandle build_from_binary(const BuildTarget& target, const std::string& bi
 
 /// The program's binary; none where the runtime has none to give.
 std::optional<std::string> program_binary(cl_program program);
-
-// What a device was given to compile, and what it made of it, for who works on kernels.
 
 /// Environment variable that names a folder. Each program that is built or loaded is written there:
 /// NAME.cl, its source with all includes in place; NAME.options, the options of the compiler; and

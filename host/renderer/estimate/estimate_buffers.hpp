@@ -1,4 +1,5 @@
-// How the kernels keep the sums of a hit: kernels/estimate/sums.clh.
+// Estimates of a batch of hits: how the kernels keep the sums of a hit (kernels/estimate/sums.clh),
+// the estimates on the device, and their way to the host.
 #pragma once
 
 #include <cstddef>
@@ -42,8 +43,6 @@ struct LightSums {
   /// Bytes that EstimateBuffers has for a hit.
   EstimateBytes bytes_per_hit() const;
 };
-
-// Estimates of a batch of hits on the device, and their way to the host.
 
 /// Kept from batch to batch and from call to call: new memory, which the operating system must
 /// clear first, takes as long as a good part of the estimates that are written to it. Released

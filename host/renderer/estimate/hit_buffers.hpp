@@ -1,4 +1,4 @@
-// The surface index on the device.
+// Primary hits and the surface index on the device, and how many hits are estimated at a time.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,6 @@ struct SurfaceBuffers {
   device::Buffer<PhotileSurfaceLeaf> leaves;
 };
 
-// A batch of primary hits on the device.
-
 /// Hits [first, first + count) of PrimaryHits.
 struct HitBuffers {
   std::uint32_t count = 0;
@@ -51,8 +49,6 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                  std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
                  const SurfaceBuffers* surface, const SceneNeeds& needs, HitBuffers& buffers);
-
-// How many hits are estimated at a time.
 
 /// Device memory that each hit of a batch takes.
 struct HitBatchNeeds {

@@ -1,4 +1,5 @@
-// The one question that rendering asks: what light arrives at points of surfaces.
+// The one question that rendering asks: what light arrives at points of surfaces. With it, what an
+// estimate says about the light that leaves a point, and estimates put together on the host.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +28,6 @@ class LightAtPoints {
   virtual Estimates at(const PrimaryHits& points, const Progress& progress) = 0;
 };
 
-// What an estimate of a hit says about the light that leaves it.
-
 /// Radiance that a hit sends against the ray that arrived, of the light of estimate `index`.
 inline glm::vec3 reflected_radiance(const PrimaryHits& hits, std::size_t hit,
                                     const Estimates& estimates, std::size_t index) {
@@ -50,8 +49,6 @@ void for_each_estimate(const Estimates& estimates, std::size_t hit, std::size_t 
     visit(std::size_t{estimates.light[i]}, i);
   }
 }
-
-// Estimates that are put together on the host.
 
 /// Writes the estimates of hits one after another, in the form that the scene asks for.
 class EstimateWriter {

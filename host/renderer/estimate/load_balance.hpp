@@ -1,4 +1,4 @@
-// Work on several devices at once.
+// Work on several devices at once, and how hits are shared between them.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,6 @@ namespace photile::estimate {
 /// the first of the devices that failed by themselves, a DeviceError with its device's name.
 void for_each_device(std::span<Device> devices, Progress& progress,
                      const std::function<void(std::size_t, Progress&)>& work);
-
-// How hits are shared between devices.
 
 /// Shares hits by the throughput that each device has shown so far. The first hits are shared
 /// evenly: a few that are not measured, since they wait for kernels to be compiled, then a probe.

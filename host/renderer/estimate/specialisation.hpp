@@ -1,4 +1,4 @@
-// The tunings that there are.
+// The tunings that there are, and which variant of the estimate kernels a scene and a tuning need.
 #pragma once
 
 #include <array>
@@ -20,8 +20,6 @@ inline constexpr int max_work_group_size = 256;
 
 /// "" for a tuning that kernels exist for, else what is wrong with it.
 std::string tuning_problem(const EstimateTuning& tuning);
-
-// Which variant of the estimate kernels a scene and a tuning need.
 
 /// Private memory that the work-items of a group may use together. PoCL keeps a whole group's
 /// private arrays on the stack of the thread that runs it, 8 MiB with the usual limit and less on

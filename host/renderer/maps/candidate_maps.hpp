@@ -1,5 +1,5 @@
-// Which maps each photon may have to enter: its neighbour group, narrowed down where the group is
-// large.
+// Which maps each photon may have to enter (its neighbour group, narrowed down where the group is
+// large), and numbers for the maps that there are.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,6 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
 
 /// The box of each pair of maps: of a triangle, or of a patch.
 std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches);
-
-// Numbers for the photon maps that there are.
 
 /// Pairs of maps (both sides of a triangle, or of a patch) of which a photon may enter one,
 /// numbered without gaps in ascending order of their triangles or patches. What no photon comes

@@ -1,4 +1,5 @@
-// The photons of a run of maps, and what finds them, as they lie on the device.
+// The photons of a run of maps, and what finds them, as they lie on the device; and the symbols by
+// which kernels know what the photon records of a scene hold.
 #pragma once
 
 #include <cstdint>
@@ -66,8 +67,6 @@ inline constexpr std::uint32_t most_entry_padding = 2 * entry_padding - 1;
 constexpr std::uint32_t entry_stride(std::uint32_t entries) {
   return (entries + most_entry_padding) / entry_padding * entry_padding;
 }
-
-// The symbols by which kernels know what the photon records of a scene hold.
 
 /// Bytes of an entry's light: 0 with one light, 1 up to 256, else 2.
 std::uint32_t bytes_per_light(const SceneNeeds& needs);

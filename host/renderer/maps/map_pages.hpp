@@ -1,4 +1,5 @@
-// Which maps share a page of the device's memory.
+// Which maps share a page of the device's memory, and the pages that are still to be built, cut
+// where they are too large.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +49,6 @@ std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
 /// only one map.
 std::optional<std::pair<MapRange, MapRange>> halves_of(const MapRange& range,
                                                        std::span<const std::uint32_t> map_count);
-
-// The pages that are still to be built, cut where they are too large.
 
 /// Maps that are cut into tiles, by their numbers.
 using MapTilings = std::map<std::uint32_t, MapTiling>;

@@ -1,4 +1,4 @@
-// The boxes around the triangles that share photon maps.
+// The boxes around the triangles that share photon maps, and how unevenly photons lie on them.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,6 @@ struct MapShapes {
 ///   angle_radians   largest angle between normals of neighbours
 MapShapes map_shapes(const Scene& scene, const Patches& patches,
                      std::span<const std::uint32_t> pairs, double angle_radians);
-
-// How unevenly photons lie on the surfaces of maps.
 
 /// Per map: the density that its photons see around them, on average over the photons, as a
 /// multiple of the mean density over the map's surface. 1 where photons are uniform or few. Cells

@@ -1,4 +1,5 @@
-// A photon map that is too large for one page, cut into tiles.
+// A photon map that is too large for one page, cut into tiles, and the cell of a grid that a point
+// falls in, as kernels/grid/cell.clh computes it.
 #pragma once
 
 #include <algorithm>
@@ -74,8 +75,6 @@ class MapTiling {
   std::vector<std::uint64_t> sums_;  ///< of photons in all bins before a column and a row
   std::vector<std::uint32_t> map_of_bin_;
 };
-
-// Where a point falls in a grid, as kernels/grid/cell.clh computes it.
 
 /// Coordinates in the plane of a grid, metres.
 inline glm::vec2 project(const glm::vec3& p, const PhotileGrid& grid) {

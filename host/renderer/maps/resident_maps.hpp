@@ -1,4 +1,4 @@
-// Which of a number of items lie in the device's memory.
+// The pages of photon maps: on the device while there is memory, on the host otherwise.
 #pragma once
 
 #include <cstddef>
@@ -43,8 +43,6 @@ class Residents : public device::Reclaimer {
   std::vector<std::size_t> in_use_order_;  ///< those resident, the one used last at the end
   std::size_t used_ = nothing;
 };
-
-// The pages of photon maps: on the device while there is memory, on the host otherwise.
 
 /// Pages in ascending order of their maps. Where the device's memory runs out, pages are copied to
 /// the host, once, and released; they come back when they are used.

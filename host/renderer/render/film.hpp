@@ -1,4 +1,5 @@
-// Adds the estimates of primary hits to the pixels that see them.
+// The film: estimates of primary hits are added to the pixels that see them, those of many lights
+// mixed to those of few, and the noise of a pixel's samples is told from runs of them.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -21,8 +22,6 @@ void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estima
 /// Raises to zero what is below it in a finished picture.
 void raise_to_zero(LightLayers& layers);
 
-// The noise of a pixel's samples, told from runs of them.
-
 /// Adds, in squares, the standard error of the samples of each pixel, by light, to that of what
 /// they see. It is told from the scatter of runs of samples that follow each other in a pixel's
 /// sequence. The variance of well-spread samples falls as N^-1 where they are noise, as N^-3/2 at
@@ -33,8 +32,6 @@ void raise_to_zero(LightLayers& layers);
 ///   runs     as many times as wide as there are runs: column x * count + run has the sum of that
 ///            run of samples of pixel x
 void add_sample_errors(LightLayers& errors, const LightLayers& runs);
-
-// Estimates of many lights, mixed to those of few before they are added to a film.
 
 /// The estimates of the pooled layers; those of a hit are summed in its own order.
 Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::size_t hits);

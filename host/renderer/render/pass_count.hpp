@@ -1,4 +1,5 @@
-// How the estimate narrows from photon pass to photon pass.
+// Into how many passes photons are split where they do not fit in memory at once, and how the
+// estimate narrows from pass to pass.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,6 @@ struct PassEstimate {
 /// defaults::least_pass_neighbours (or the first k, where that is less), from where on only the
 /// radius shrinks.
 PassEstimate estimate_of_pass(int pass, const PassEstimate& first);
-
-// Into how many passes photons are split where they do not fit in memory at once.
 
 /// Bytes installed, or the limit of the process's control group where that is less: the same on
 /// every run, whatever else is running. The largest number where nothing is known.

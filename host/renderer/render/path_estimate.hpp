@@ -1,4 +1,5 @@
-// Numbers of the samples that hits come from.
+// The path tracer's answer to the question that photon maps answer with a density: irradiance and
+// reflected radiance at points of opaque surfaces. Unbiased, noisy, and without any of their code.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,6 @@ std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHi
 }  // namespace photile
 
 namespace photile::reference {
-
-// The path tracer's answer to the question that photon maps answer with a density: irradiance and
-// reflected radiance at points of opaque surfaces. Unbiased, noisy, and without any of their code.
 
 class PathEstimator {
  public:

@@ -1,4 +1,5 @@
-// Which process holds which photon maps.
+// Photons of several processes: which process holds which photon maps, what is known of all
+// photons, and each where its maps are.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +34,6 @@ class MapOwners {
  private:
   std::vector<std::uint32_t> of_pair_, of_triangle_;
 };
-
-// Photons of several processes: what is known of all of them, and each where its maps are.
 
 /// What stages ask of the photons of all processes. Collective.
 ///   own   those of this process's paths, which follow those of the ranks before, sorted by sided
