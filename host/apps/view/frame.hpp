@@ -27,7 +27,8 @@ struct InspectablePhotons;  // photon_map.hpp
 struct EstimateNoise {
   /// Photons of one estimate, as many as equal weights would need for its noise; 0 = not known.
   double photons = 0;
-  /// Of each layer's lights; of a pooled layer, those of its lights over their powers together.
+  /// Paths of each layer's lights; of a mixed layer, those of its lights over their powers
+  /// together.
   std::vector<double> paths;
 
   static EstimateNoise of(const Scene& scene, const RenderParameters& parameters);

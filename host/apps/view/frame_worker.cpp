@@ -31,7 +31,7 @@ namespace {
 
 /// Seconds that the first picture of a scene may take to have light everywhere.
 constexpr double patience = 10;
-/// Of a viewer at rest: seconds of valuing nodes for each second of drawing.
+/// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.

@@ -44,7 +44,7 @@ struct FrameRequest {
   /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
   /// moves and until no node is lacking. Empty: frames with layers are wanted.
   std::vector<glm::vec3> powers = {};
-  /// Of the layers of frames that have some; null = each light for itself.
+  /// How the layers of frames that have some are mixed; null = each light for itself.
   std::shared_ptr<const LightPooling> pooling = nullptr;
 };
 
@@ -59,7 +59,7 @@ class FrameWorker {
 
   void show(const FrameRequest& request);
   void use(std::shared_ptr<MapGeneration> maps);
-  /// The same with what is to be seen: of maps of another scene, which has other powers.
+  /// Takes maps of another scene, which has other powers, with what is to be seen.
   void use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request);
 
   /// Ends the work. Returns the newest maps, which nobody uses any longer; null: there are none.

@@ -89,7 +89,7 @@ bool draw_light(LightControl& control) {
   ImGui::SameLine();
   ImGui::TextUnformatted(fitting(control.name, ImGui::GetContentRegionAvail().x).c_str());
   if (ImGui::IsItemHovered()) tell_light(control);
-  // Of a lamp that is off in the scene, the slider still has to reach somewhere.
+  // The slider of a lamp that is off in the scene still has to reach somewhere.
   const double most = control.scene_power > 0 ? 4 * control.scene_power : 1000;
   const double least = 0;
   const std::string format = fmt::format("%.4g {}", word_of(control.unit));
@@ -111,7 +111,7 @@ bool draw_lights(PanelState& state) {
   if (!ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen)) return false;
   const float rows = 2 * static_cast<float>(state.lights.controls().size());
   const float height = rows * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
-  // Of a window of 600 pixels, the rest of the panel leaves so much.
+  // The rest of the panel leaves so much of a window of 600 pixels.
   constexpr float most = 0.35f;
   ImGui::BeginChild("lights", ImVec2(0, std::min(height, most * ImGui::GetIO().DisplaySize.y)));
   for (LightControl& control : state.lights.controls()) changed |= draw_light(control);

@@ -41,7 +41,8 @@ class LuminaireEditor {
 
   /// Photometric files in the list's folder, by name, and those that entries have.
   std::vector<std::string> photometric_files() const;
-  /// Of lamps to be placed: that of the newest entry, else the first there is; "" = none.
+  /// The photometric file of lamps to be placed: that of the newest entry, else the first there is;
+  /// "" = none.
   std::string next_file() const;
   void set_next_file(const std::string& name) { next_file_ = name; }
 
@@ -68,7 +69,7 @@ class LuminaireEditor {
   void set_lumens(double lumens);
   void set_array(int columns, int rows, const glm::dvec2& spacing);
 
-  /// Of the selected entry, in the file's world.
+  /// The position of the selected entry, in the file's world.
   glm::dvec3 position() const;
 
  private:

@@ -115,7 +115,7 @@ class LuminaireSession {
   ///   message   is told why there is none
   std::shared_ptr<const Scene> take_scene(std::string& message);
 
-  /// As LuminaireTool, but that `message` is told of errors.
+  /// Takes a click as LuminaireTool does, but `message` gets the errors.
   bool click(const Camera& camera, const glm::dvec3& direction,
              const std::optional<PhotonInspector::Place>& surface, std::string& message);
 

@@ -19,7 +19,7 @@ class Viewpoint {
   /// Turns the head: radians to the right and upwards, no farther than nearly straight up or down.
   void turn(double right, double upwards);
 
-  /// The same turn around the point `distance` metres ahead, which stays where it is in the
+  /// Turns likewise around the point `distance` metres ahead, which stays where it is in the
   /// picture: the viewer moves to the left when it turns to the right.
   void orbit(double right, double upwards, double distance);
 

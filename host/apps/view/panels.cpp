@@ -108,7 +108,7 @@ std::string text_of(const Measured& measured) {
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
   PanelEvents events;
   ImGui::SetNextWindowPos(ImVec2(border, border), ImGuiCond_FirstUseEver);
-  // As high as what it shows, and scrolled where the window is not.
+  // The panel is as high as what it shows, and scrolled where the window is not.
   const float most = std::max(panel_width, ImGui::GetIO().DisplaySize.y - 2 * border);
   ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0), ImVec2(panel_width, most));
   if (ImGui::Begin("photile", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {

@@ -109,7 +109,7 @@ void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents&
 /// The legend of illuminances, in the corner of the window, where they are shown.
 void draw_legend(const PanelState& state, const Frame* frame);
 
-/// Of the picture: "cd/m2", or "W/(m2 sr)" where lamps are in watts.
+/// The unit of the picture: "cd/m2", or "W/(m2 sr)" where lamps are in watts.
 const char* luminance_unit(const LightMix& mix);
 
 }  // namespace photile::view

@@ -24,7 +24,8 @@ struct MapGeneration {
   std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
-  /// Of a first picture: shown where the light maps of this one have no node yet; null = none.
+  /// The maps of a first picture, shown where the light maps of this one have no node yet; null =
+  /// none.
   std::shared_ptr<MapGeneration> coarser;
   std::uint64_t emitted_photons = 0;
   bool whole = false;              ///< of all photons that were asked for

@@ -10,7 +10,7 @@
 
 namespace photile::view {
 
-/// Of states that are copied whole: lamps' settings, and placed luminaires.
+/// A history of states that are copied whole: lamps' settings, and placed luminaires.
 template <class State>
 class History {
  public:

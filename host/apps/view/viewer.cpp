@@ -187,7 +187,7 @@ class Viewer {
     }
   }
 
-  /// Those of the sky and of luminaires.
+  /// Takes the keys of the sky and of luminaires.
   void take_edit_keys() {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput) return;
@@ -363,7 +363,7 @@ class Viewer {
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
   bool was_moving_ = false, had_reflections_ = false, clicked_ = false, picked_ = false;
   int asked_width_ = 0, asked_height_ = 0;
-  /// Of a sky that hours move: that frames were asked for with.
+  /// The moment that frames were requested with, of a sky that hours move.
   SkyMoment shown_moment_;
   std::shared_ptr<const LightPooling> pooling_;
   bool sky_moved_ = false;

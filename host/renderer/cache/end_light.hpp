@@ -84,7 +84,7 @@ class EndLight {
   /// Metres, from node to node: as wide as the estimates that value them.
   double spacing() const { return parameters_.spacing; }
 
-  /// Of the light maps; `forget` empties them.
+  /// Bytes of the light maps; `forget` empties them.
   std::uint64_t bytes() const;
   void forget() { maps_.reset(); }
 

@@ -12,7 +12,7 @@ namespace photile::cache {
 
 namespace {
 
-/// Of the mean of independent values.
+/// The variance of the mean of independent values.
 template <class T>
 double squared_error_of_mean(std::span<const T> values) {
   const auto count = static_cast<double>(values.size());
@@ -60,7 +60,8 @@ GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
                                 luminance_sum += power * luminance(glm::dvec3(mean.irradiance[i]));
                                 for (std::size_t b = 0; b < count; ++b)
                                   sums[b] += power * double{batch[i * count + b]};
-                                // The same photons, or neighbours, may err in all lights alike.
+                                // Photons, or neighbours, that lights share may err in all of them
+                                // alike.
                                 if (!shared_variance.empty())
                                   shared += power * std::sqrt(double{shared_variance[i]});
                               });

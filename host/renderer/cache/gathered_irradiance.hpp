@@ -68,14 +68,14 @@ class BatchSums {
     add(layer, batch, irradiance);
     if (smooth_) add_by_normal(layer, irradiance, direction, 0.0f, no_bound);
   }
-  /// Likewise: surface, met by a ray with the density of the cosine, which is likely to go on
-  /// beyond the horizon of the point.
+  /// Adds surface, met by a ray with the density of the cosine, which is likely to go on beyond the
+  /// horizon of the point.
   void add_surface(std::uint32_t layer, std::uint32_t batch, const glm::vec3& irradiance,
                    const glm::vec3& direction) {
     add(layer, batch, irradiance);
     if (smooth_) add_by_normal(layer, irradiance, direction, 0.5f, defaults::most_inverse_cosine);
   }
-  /// Likewise: from nobody knows where, the same for every normal.
+  /// Adds light from no known direction, the same for every normal.
   void add_even(std::uint32_t layer, std::uint32_t batch, const glm::vec3& irradiance) {
     add(layer, batch, irradiance);
     if (smooth_) by_normal_[layer].w += static_cast<float>(luminance(glm::dvec3(irradiance)));

@@ -43,7 +43,7 @@ class KnownLight {
 
   const GatheredIrradiance::Total& all() const { return all_; }
   const GatheredIrradiance::Total& of_layer(std::size_t layer) const { return layers_[layer]; }
-  /// Of all together at these powers.
+  /// The light of all layers together at these powers.
   GatheredIrradiance::Total at_powers(std::span<const double> layer_powers) const {
     return irradiance_->total(point_, layer_powers);
   }
@@ -71,7 +71,7 @@ class Likeness {
   double of_layer(std::size_t layer) const {
     return different_[layer] > 0 ? different_[layer] : of_others_;
   }
-  /// Of layers that neither place has.
+  /// The weight of layers that neither point has.
   double of_others() const { return of_others_; }
 
  private:
@@ -140,7 +140,7 @@ class WeightedPoints {
     lit_.push_back(static_cast<std::uint16_t>(layer));
   }
 
-  /// Of one layer, weighted.
+  /// The sums of one layer, weighted.
   struct Sums {
     glm::dvec3 irradiance{0.0};
     glm::dvec4 by_normal{0.0};

@@ -48,7 +48,7 @@ struct RunLight {
   double caustic_relative_variance;
   std::span<const double> layer_powers;
 
-  /// Of the run's point i, which is `point` of all.
+  /// Adds the indirect light of point i of the run, which is `point` of all.
   void add_indirect(std::size_t i, BatchSums& sums) const {
     if (!traced) return;
     ends.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
@@ -246,7 +246,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
       layer_powers_(estimate::layer_powers(rays.scene())),
       ends_(rays, photons, of_nodes, ends) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
-  check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
+  check_range("light samples from a point", parameters.looks, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, 64);
 }
 

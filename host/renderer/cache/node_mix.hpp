@@ -29,7 +29,7 @@ class NodeMix {
 
   /// Per node; the fourth is nothing.
   std::span<const glm::vec4> light() const { return light_; }
-  /// Likewise, luminance by the normal as Estimates has it; empty where nodes do not tell it.
+  /// Per node the luminance by the normal, as Estimates has it; empty where nodes do not tell it.
   std::span<const glm::vec4> by_normal() const { return by_normal_; }
   std::span<const glm::vec3> powers() const { return powers_; }
 

@@ -112,7 +112,7 @@ class Blend {
         alone_(alone),
         place_(place) {}
 
-  /// Of hits [first, last).
+  /// The estimates of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
     Estimates estimates;
     estimate::EstimateWriter writer(needs_, estimates);

@@ -75,7 +75,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
                estimate::LightAtPoints& elsewhere, NodeSource& source, EndLight* ends);
 
-  /// Of points in any order.
+  /// The light at points in any order.
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
 
   /// Standard errors of what `at` found at these hits, in the same form. Nodes around a hit
@@ -84,7 +84,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   ///   of_nodes    as GatheredNodes::errors
   Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes);
 
-  /// Of the light that photons alone say.
+  /// The noise of the light that photons alone give.
   PhotonBlotches blotches() const;
 
   LightMaps& maps() { return maps_; }
@@ -94,7 +94,7 @@ class SurfaceCache : public estimate::LightAtPoints {
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
-  /// Of all light at hits read so far; zeros where photons value nodes.
+  /// The errors of all light at hits read so far; zeros where photons value nodes.
   const ErrorSum& errors_read() const { return errors_read_; }
   TimeTaken fill_time() const { return fill_time_; }
 

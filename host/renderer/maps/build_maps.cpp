@@ -222,7 +222,7 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   build.corners = context.upload(std::span<const float>(plan.surfaces.corners), "triangle corners");
   build.shapes =
       context.upload(std::span<const PhotileMapShape>(plan.surfaces.shapes), "map shapes");
-  build.crowding = context.upload(std::span<const float>(plan.crowding), "photon crowding");
+  build.crowding = context.upload(std::span<const float>(plan.crowding), "density ratios");
   build.map_of = context.share(std::span(std::as_const(store.map_of)), "maps of triangles");
   build.normals = upload_normals(context, store);
   build.photon_pages = photon_pages(build, plan.candidates, photons, progress);
