@@ -65,9 +65,9 @@ struct HitReading {
 class SurfaceCache : public estimate::LightAtPoints {
  public:
   /// References are kept.
-  ///   elsewhere   answers for points that no node serves: those with a specular lobe or a normal
-  ///               map, which ask where light comes from. What a point gets from it does not depend
-  ///               on the points beside it.
+  ///   elsewhere   answers for points that no node serves: those with a specular lobe, and those
+  ///               with a normal map where photons value nodes, which ask where light comes from.
+  ///               What a point gets from it does not depend on the points beside it.
   ///   source      values nodes
   ///   ends        where rays value nodes, the light that they find where they end, which is read
   ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
@@ -99,8 +99,8 @@ class SurfaceCache : public estimate::LightAtPoints {
   TimeTaken fill_time() const { return fill_time_; }
 
  private:
-  /// Whether the light of a hit can be read: it has no specular lobe and no normal map, which ask
-  /// where light comes from.
+  /// Whether the light of a hit can be read: it has no specular lobe, which asks where light comes
+  /// from, nor a normal map, unless nodes tell how their light depends on the normal.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
   /// Values what the hits read.
