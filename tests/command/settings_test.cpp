@@ -65,7 +65,7 @@ TEST_CASE("what --set does not know is refused in a line that says what to type"
           {"render", {"--set", "Radius=1"}, "nearest is radius"},
           {"render", {"--set", "radius"}, "radius=X"},
           {"render", {"--set", "maps="}, "naive"},
-          {"render", {"--set", ""}, "photile settings"},
+          {"render", {"--set", ""}, "empty"},
           {"render", {"--set", "samples_per_pixel=4"}, "--samples"},
           {"render", {"--set", "width=4"}, "--size"},
           {"measure", {"--set", "gloss=rays"}, "no use"},
