@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cache/irradiance_gather.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/neighbour_choice.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "render/path_estimate.hpp"
 #include "support/bench_record.hpp"
 #include "support/gathering_photons.hpp"
@@ -31,7 +31,8 @@ struct Sizes {
   std::uint64_t gathered_photons = 500'000, looked_up_photons = 4'000'000;
 };
 
-/// Of all threads of the process, the device's among them where it is this processor.
+/// Processor time of all threads of the process, the device's among them where it is this
+/// processor.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 std::vector<std::uint64_t> numbers(std::size_t count) {
@@ -104,8 +105,8 @@ Truth by_paths(const RayScene& rays, const PrimaryHits& points, std::span<const 
   return truth;
 }
 
-/// relMSE as bench/tools/picture_error.py has it, with and without the worst 5%, less the noise of the
-/// paths; and the ratio of the means.
+/// relMSE as bench/tools/picture_error.py has it, with and without the worst 5%, less the noise of
+/// the paths; and the ratio of the means.
 nlohmann::json errors_of(const std::vector<double>& lux, const Truth& truth) {
   const auto count = static_cast<double>(lux.size());
   const double mean = std::accumulate(truth.lux.begin(), truth.lux.end(), 0.0) / count;

@@ -10,10 +10,9 @@
 #include "support/bench_record.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
-#include "view/display.hpp"
-#include "view/viewpoint.hpp"
+#include "view/frame.hpp"
+#include "view/navigation.hpp"
 
 namespace {
 

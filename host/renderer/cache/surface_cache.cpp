@@ -10,18 +10,18 @@
 #include <vector>
 
 #include "cache/charts.hpp"
-#include "cache/turned_light.hpp"
-#include "estimate/estimate_writer.hpp"
+#include "cache/node_mix.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/statistics.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::cache {
+
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
@@ -116,7 +116,7 @@ class Blend {
         alone_(alone),
         place_(place) {}
 
-  /// Of hits [first, last).
+  /// The estimates of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
     Estimates estimates;
     estimate::EstimateWriter writer(needs_, estimates);
@@ -152,8 +152,8 @@ class Blend {
     glm::vec4 by_normal{0.0f};
   };
 
-  /// Irradiance is that of the surface; what is reflected goes by the shading normal, or by that of a
-  /// normal map, in the colour of the irradiance.
+  /// Irradiance is that of the surface; what is reflected goes by the shading normal, or by that of
+  /// a normal map, in the colour of the irradiance.
   ///   layers   of none
   void add_smoothly(std::size_t hit, std::vector<ByNormal>& layers,
                     estimate::EstimateWriter& writer) const {
