@@ -19,9 +19,9 @@ import re
 import subprocess
 import sys
 
-import compare
+from tools import compare
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build/release"
 GROWS_UNTIL_IT_FAILS = "scale"  # its last rows say where memory or time ended
 
@@ -34,7 +34,8 @@ def fail(message, code=2):
 def benches():
     """Names, and the first sentence of what each says of itself."""
     found = {}
-    for source in sorted((ROOT / "bench").glob("*_bench.cpp")):
+    sources = [file for folder in ("kernels", "pictures") for file in (ROOT / "bench" / folder).glob("*_bench.cpp")]
+    for source in sorted(sources, key=lambda file: file.name):
         comment = re.match(r"((?://.*\n)+)", source.read_text())
         words = " ".join(line[2:].strip() for line in comment[1].splitlines()) if comment else ""
         found[source.name.removesuffix("_bench.cpp")] = re.split(r"(?<=[.])\s+(?=[A-Z])|: ", words)[0]

@@ -45,6 +45,8 @@ for bench in "${programs[@]}"; do
   [[ $bench =~ ^(angle|borders|scale)$ ]] || extra+=("${repeats[@]}")
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
-bench/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
-[[ $results != docs/benchmarks ]] || { bench/report_borders.py && bench/report_area.py && bench/report_angle.py; }
-exec /usr/bin/python3 bench/report.py --results "$results" --page "$results.md"
+bench/kernels/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
+if [[ $results == docs/benchmarks ]]; then
+  for section in borders area angle; do bench/kernels/report_$section.py; done
+fi
+exec /usr/bin/python3 bench/kernels/report.py --results "$results" --page "$results.md"

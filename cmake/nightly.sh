@@ -91,12 +91,12 @@ step "build threads" cmake/build.sh threads \
 step "threads" taskset -c 0 ctest --preset threads --no-tests=error -E reproducib \
   -R "^((view|gather|trace|groups|daylight)/|render/(several|shared_rendering|load_balance))"
 step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
-step "soak" bench/soak.sh "$hours"
+step "soak" bench/tools/soak.sh "$hours"
 step "build coverage" cmake/build.sh coverage photile_fuzz
-step "coverage" bench/fuzz_coverage.py --more build/soak
-step "mutants of kernels" bench/drawn_mutants.py --only kernels --results "$folder/mutants-$seed.json" \
+step "coverage" bench/tools/fuzz_coverage.py --more build/soak
+step "mutants of kernels" bench/tools/drawn_mutants.py --only kernels --results "$folder/mutants-$seed.json" \
   --count "$((mutants + host_mutants))" --seed "$seed"
-step "mutants of the host" bench/drawn_mutants.py --only host --results "$folder/mutants-$seed.json" \
+step "mutants of the host" bench/tools/drawn_mutants.py --only host --results "$folder/mutants-$seed.json" \
   --count "$((mutants + host_mutants))" --seed "$seed"
 step "benches" ctest --test-dir build/release --output-on-failure --no-tests=error -R "^bench/"
 ((list)) && exit 0

@@ -1,4 +1,4 @@
-"""bench/compare.py: what it calls a change, and what it refuses."""
+"""bench/tools/compare.py: what it calls a change, and what it refuses."""
 
 import json
 import pathlib
@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/compare.py"
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/tools/compare.py"
 
 
 def row(structure, times, k=50):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""bench/first_picture.py: medians, and the page from what was measured."""
+"""bench/pictures/first_picture.py: medians, and the page from what was measured."""
 
 import pathlib
 import sys
@@ -7,7 +7,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent.parent / "bench"))
 
-import first_picture  # noqa: E402
+from pictures import first_picture  # noqa: E402
 
 
 def run(processor, **stages):

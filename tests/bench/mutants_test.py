@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bench/mutants.py and of its list, which has to follow the files that it changes.
+"""Tests of bench/tools/mutants.py and of its list, which has to follow the files that it changes.
 
     tests/bench/mutants_test.py
 """
@@ -14,12 +14,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
-import drawn_mutants
-import mutant_schemata
-import mutant_sites
-import mutant_tests
-import mutants
-from mutant_list import MUTANTS, Mutant
+from tools import drawn_mutants, mutant_schemata, mutant_sites, mutant_tests, mutants
+from tools.mutant_list import MUTANTS, Mutant
 
 
 class Texts(unittest.TestCase):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bench/picture_error.py against values worked out by hand. Exits with 77 (skipped) where
+"""Tests of bench/tools/picture_error.py against values worked out by hand. Exits with 77 (skipped) where
 python3-numpy or python3-openimageio is not installed.
 
     tests/bench/picture_error_test.py
@@ -14,7 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 try:
     import numpy as np
     import OpenImageIO as oiio
-    import picture_error
+    from tools import picture_error
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of how bench/profile.py tells stages apart.
+"""Tests of how bench/kernels/profile.py tells stages apart.
 
     tests/bench/profile_test.py
 """
@@ -10,7 +10,7 @@ import unittest
 
 # Not by its name: Python has a module `profile` of its own.
 SPEC = importlib.util.spec_from_file_location(
-    "photile_profile", pathlib.Path(__file__).resolve().parents[2] / "bench/profile.py")
+    "photile_profile", pathlib.Path(__file__).resolve().parents[2] / "bench/kernels/profile.py")
 PROFILE = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(PROFILE)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bench/quality*.py and bench/gltf_meshes.py. Exits with 77 (skipped) where Debian's numpy,
+"""Tests of bench/pictures/quality*.py and bench/tools/gltf_meshes.py. Exits with 77 (skipped) where Debian's numpy,
 matplotlib or OpenImageIO is not installed.
 
     tests/bench/quality_test.py
@@ -13,10 +13,9 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 try:
-    import gltf_meshes
+    from tools import gltf_meshes
     import numpy as np
-    import quality
-    import quality_report
+    from pictures import quality, quality_report
 except (ImportError, SystemExit) as missing:
     print(f"skipped: {missing}")
     sys.exit(77)

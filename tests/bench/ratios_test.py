@@ -1,4 +1,4 @@
-"""bench/report_ratios.py: ratios of times a query, and what it refuses."""
+"""bench/kernels/report_ratios.py: ratios of times a query, and what it refuses."""
 
 import json
 import pathlib
@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/report_ratios.py"
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/kernels/report_ratios.py"
 
 
 def row(structure, seconds, queries, photons=1000, **more):
@@ -31,9 +31,9 @@ class RatiosTest(unittest.TestCase):
         self.assertIn("| tree | 3 | 2 |", text)
 
     def test_ratios_are_drawn_a_picture_a_workload(self):
-        sys.path.insert(0, str(SCRIPT.parent))
+        sys.path.insert(0, str(SCRIPT.parents[1]))
         try:
-            import report_plots
+            from kernels import report_plots
         except ImportError as missing:
             self.skipTest(str(missing))
         rows = [row(name, seconds, 100, photons) for photons in (1_000, 10_000)

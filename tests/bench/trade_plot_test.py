@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bench/trade_plot.py.
+"""Tests of bench/pictures/trade_plot.py.
 
     tests/bench/trade_plot_test.py
 """
@@ -12,7 +12,7 @@ import xml.etree.ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 try:
-    import trade_plot
+    from pictures import trade_plot
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)

@@ -1,7 +1,9 @@
 // `photile compare`: figures, layers, the picture and refusals.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -35,6 +37,20 @@ nlohmann::json compare(const FileFolder& folder, const std::string& a, const std
 }
 
 }  // namespace
+
+TEST_CASE("a picture with a value that is no number is refused by its name") {
+  const FileFolder folder;
+  Image image;
+  image.width = image.height = 2;
+  for (const char* name : {"R", "G", "B"}) image.add(name) = {1, 1, 1, 1};
+  write_exr(folder / "sound.exr", image);
+  image.channels.front()[2] = std::numeric_limits<float>::quiet_NaN();
+  write_exr(folder / "damaged.exr", image);
+  for (const auto& [a, b] : {std::pair("sound.exr", "damaged.exr"), {"damaged.exr", "sound.exr"}}) {
+    CHECK_THAT(only_error(run_photile({"compare", folder / a, folder / b}), bad_input),
+               Contains("damaged.exr") && Contains("1 of its values"));
+  }
+}
 
 TEST_CASE("a picture is equal to itself, and the drawing shows both and no difference") {
   const FileFolder folder;

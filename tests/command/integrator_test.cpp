@@ -54,7 +54,6 @@ TEST_CASE("options of photon maps are usage errors beside --integrator path") {
                                                                  {"--set", "radius=0.1"},
                                                                  {"--set", "angle_degrees=30"},
                                                                  {"--set", "maps=auto"},
-                                                                 {"--set", "structure=kdtree-2d"},
                                                                  {"--set", "photons_per_cell=2"},
                                                                  {"--device", "cpu"},
                                                                  {"--set", "device_memory=1"},

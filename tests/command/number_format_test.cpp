@@ -1,8 +1,8 @@
 // Numbers as people read them, at the borders between units.
-#include "command/number_format.hpp"
-
 #include <catch2/catch.hpp>
 #include <limits>
+
+#include "command/terminal_progress.hpp"
 
 namespace photile::test {
 

@@ -63,7 +63,7 @@ TEST_CASE("the stated errors of a light are the scatter of its layer from seed t
       }
       measured += (squares - sum * sum / seeds) / (seeds - 1);
     }
-    // Of variances. What is stated does not hold what photons share.
+    // A ratio of variances: the stated error leaves out what photons share.
     CHECK(stated / measured > 0.4);
     CHECK(stated / measured < 2.0);
   }

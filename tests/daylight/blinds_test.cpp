@@ -1,13 +1,11 @@
 // Blinds: panes that let less through, and hours in which they close, by hand.
-#include "daylight/blinds.hpp"
-
 #include <catch2/catch.hpp>
 #include <numbers>
 
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
 #include "room_with_window.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 
@@ -76,7 +74,7 @@ TEST_CASE("a closed pane lets through what is asked for") {
       sum += state.matrix.coefficient(0, patch);
     return sum;
   };
-  // Of glass of index 1.5 both faces together reflect 7.7% of light that falls upright.
+  // Both faces of glass of index 1.5 together reflect 7.7% of light at normal incidence.
   CHECK(all(states[0]) == Approx(bare * 0.923).epsilon(0.02));
   CHECK(all(states[1]) == Approx(bare * 0.05).epsilon(0.02));
 }

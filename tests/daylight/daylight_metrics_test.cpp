@@ -5,8 +5,6 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
-#include "daylight/occupancy.hpp"
-
 namespace photile::test {
 
 using namespace photile::daylight;
@@ -27,7 +25,7 @@ std::vector<SkyHour> equal_days() {
   return hours;
 }
 
-/// The same lux every day, by hour.
+/// A year of the same lux every day, by hour.
 std::vector<float> daily(const std::function<float(int hour)>& lux) {
   std::vector<float> year;
   for (int i = 0; i < 8760; ++i) year.push_back(lux(i % 24));
@@ -64,7 +62,7 @@ TEST_CASE("autonomy, useful daylight, sun and median of a point are counted by t
   CHECK(point.useful[3] == Approx(0.3));
   CHECK(point.sun_hours == 365);
   CHECK(point.mean_lux == Approx(13600 / 24.0));
-  // Of the twelve hours from 6 on six have 300 lux or more.
+  // Six of the twelve hours from 6 on have 300 lux or more.
   CHECK(point.median_lux == 300);
 }
 

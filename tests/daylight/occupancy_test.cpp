@@ -1,10 +1,9 @@
 // Hours in which rooms are used.
-#include "daylight/occupancy.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "daylight/daylight_metrics.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 

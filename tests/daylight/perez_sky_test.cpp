@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "loading/sky_situation.hpp"
+#include "loading/surroundings.hpp"
 #include "weather/sky_patches.hpp"
 
 namespace photile::test {

@@ -1,15 +1,13 @@
 // Suns and skies by place, time and weather; skies of pictures by another hour.
-#include "loading/sky_situation.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "loading/relit_sky.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
-#include "weather/sky_lights.hpp"
-#include "weather/sun_position.hpp"
+#include "weather/perez_sky.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::test {
 

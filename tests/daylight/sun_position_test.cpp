@@ -1,11 +1,10 @@
 // Where the sun stands, against an observatory's example and what geometry says.
-#include "weather/sun_position.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "photile/errors.hpp"
+#include "weather/perez_sky.hpp"
 
 namespace photile::test {
 

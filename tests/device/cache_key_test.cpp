@@ -1,8 +1,8 @@
-#include "device/cache_key.hpp"
-
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <set>
+
+#include "device/kernel_store.hpp"
 
 namespace photile::test {
 namespace {

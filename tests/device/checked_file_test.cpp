@@ -1,5 +1,3 @@
-#include "device/checked_file.hpp"
-
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -7,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "device/kernel_store.hpp"
 #include "file_bytes.hpp"
 #include "temporary_folder.hpp"
 

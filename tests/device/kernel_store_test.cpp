@@ -7,8 +7,6 @@
 #include <fstream>
 
 #include "child_process.hpp"
-#include "device/cache_key.hpp"
-#include "device/checked_file.hpp"
 #include "probe_output.hpp"
 #include "temporary_folder.hpp"
 

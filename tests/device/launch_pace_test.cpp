@@ -1,7 +1,7 @@
 // Launches cut by their measured time.
-#include "device/launch_pace.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "device/launch.hpp"
 
 namespace photile::test {
 

@@ -1,9 +1,8 @@
 // How many hits are estimated at a time, at the limits of devices that no machine here has.
-#include "estimate/hit_batches.hpp"
-
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "estimate/hit_buffers.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {

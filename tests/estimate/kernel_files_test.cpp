@@ -14,8 +14,7 @@
 
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
-#include "estimate/tuning.hpp"
-#include "maps/entry_defines.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
@@ -68,7 +67,8 @@ std::vector<EstimateTuning> all_tunings() {
   return tunings;
 }
 
-/// Of what maps and areas a query may have, the least and the most, and each kernel.
+/// The defines with the least and the most that a query may have of maps and areas, for each
+/// kernel.
 std::vector<device::Defines> with_queries(const device::Defines& defines) {
   std::vector<device::Defines> all;
   for (const auto& [clipped, kernel] :
@@ -128,9 +128,6 @@ std::set<std::string> symbols() {
   return matches(text, std::regex("#ifndef ([A-Z0-9_]+)"));
 }
 
-/// Those of them that kernels other than the renderer's have.
-const std::set<std::string> of_structures{"TREE_2D", "LIST_CAPACITY", "COUNT_VISITS"};
-
 }  // namespace
 
 TEST_CASE("every kernel file compiles as it lies there", "[kernel files]") {
@@ -153,7 +150,7 @@ TEST_CASE("every specialisation that the host makes of a kernel compiles", "[ker
 
 TEST_CASE("the host sets the symbols that kernels know, all of them and no others",
           "[kernel files]") {
-  std::set<std::string> set_by_host = of_structures;
+  std::set<std::string> set_by_host;
   for (const auto& [file, options] : host_programs()) {
     set_by_host.merge(matches(options, std::regex("-D ([A-Z0-9_]+)=")));
   }

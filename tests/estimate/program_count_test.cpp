@@ -1,8 +1,8 @@
 // A start is paid per program: what is built for maps and an estimate.
 #include <catch2/catch.hpp>
 
+#include "estimate/device_test.hpp"
 #include "estimate/photon_estimate.hpp"
-#include "estimate/plane_sample.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "render/kernel_preparation.hpp"

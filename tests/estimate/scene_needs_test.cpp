@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "maps/entry_defines.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"

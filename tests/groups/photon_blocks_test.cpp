@@ -1,10 +1,9 @@
 // Distances to the m-th nearest photon, against all distances sorted.
-#include "groups/photon_blocks.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "groups/automatic_radius.hpp"
 #include "meshes.hpp"
 
 namespace photile::test {

@@ -1,9 +1,9 @@
-#include "image/srgb.hpp"
-
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+
+#include "image/display.hpp"
 
 namespace photile::test {
 

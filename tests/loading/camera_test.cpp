@@ -1,7 +1,8 @@
+#include "scene/camera.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "scene/default_camera.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

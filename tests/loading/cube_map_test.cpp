@@ -1,12 +1,11 @@
 // Cube maps against OpenGL's table of their faces and against integrals in closed form.
-#include "pictures/cube_map.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "cube_faces.hpp"
+#include "pictures/textures.hpp"
 
 namespace photile::test {
 namespace {

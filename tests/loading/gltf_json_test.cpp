@@ -126,7 +126,7 @@ TEST_CASE("a graph of nodes of 2^22 paths is refused before it is walked") {
   document["nodes"] = json::array();
   for (int i = 0; i < levels; ++i) document["nodes"].push_back({{"children", {i + 1, i + 1}}});
   document["nodes"].push_back({{"mesh", 0}});
-  CHECK_THAT(refusal_of_text(document.dump()), Contains("23 nodes") && Contains("places"));
+  CHECK_THAT(refusal_of_text(document.dump()), Contains("23 nodes") && Contains("instances"));
 }
 
 }  // namespace photile::test

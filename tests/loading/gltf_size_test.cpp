@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "gltf/document.hpp"
-#include "gltf/steps.hpp"
+#include "gltf/gltf_import.hpp"
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 
@@ -62,7 +62,7 @@ TEST_CASE("a file of a kilobyte that asks for a hundred gigabytes is refused", "
   const std::string error = input_error_of([&] { load_gltf(document); });
   CHECK_THAT(error, Catch::Contains("scene.gltf") &&
                         Catch::Contains(std::to_string((many / 3) << 15)) &&
-                        Catch::Contains("32768 places of mesh 'square'") &&
+                        Catch::Contains("32768 instances of mesh 'square'") &&
                         Catch::Contains(std::to_string(limits::max_triangles)));
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("meshes are not repeated beyond the limit from files that hold few byt
   CHECK_THAT(size_refusal(document),
              Catch::Contains(std::to_string(16 * (many / 3))) &&
                  Catch::Contains("no more than 51") &&  // 140 bytes, 5 nodes
-                 Catch::Contains("mesh 'square'") && Catch::Contains("in 16 places"));
+                 Catch::Contains("mesh 'square'") && Catch::Contains("in 16 instances"));
   document = placed_often(1);
   make_large(document);
   CHECK(2 * (many / 3) < limits::unchecked_triangles);

@@ -126,7 +126,7 @@ TEST_CASE("a group does not take the name of a light outside it") {
   CHECK(usage_error_of({"hall_*=desk"}).find("'desk'") != std::string::npos);
   CHECK(usage_error_of({"*=desk"}).empty());
   CHECK(usage_error_of({"hall_1=desk", "desk=hall_1"}).empty());  // no light has a layer of its own
-  // Of a file, it is the light that gives way.
+  // In a file, the light gives way.
   nlohmann::json document = three_lamps();
   document["nodes"][1]["extras"]["photile_group"] = "desk";
   const Scene scene = load_gltf(document);

@@ -8,7 +8,7 @@
 #include "photometric_texts.hpp"
 #include "scene_files.hpp"
 #include "statistical_tests.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

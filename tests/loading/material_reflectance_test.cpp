@@ -1,11 +1,10 @@
 // Reflectances of materials: read, set, and held against paths.
-#include "scene/material_reflectance.hpp"
-
 #include <fmt/format.h>
 
 #include <glm/gtc/constants.hpp>
 
 #include "photile/sensors.hpp"
+#include "scene/surface_models.hpp"
 #include "scene_files.hpp"
 #include "test_scenes.hpp"
 

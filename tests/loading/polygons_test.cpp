@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "reading/polygon_triangulator.hpp"
+#include "reading/triangles.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,4 +1,6 @@
 // Environments, suns and skies against closed forms, and pictures that are none.
+#include "loading/surroundings.hpp"
+
 #include <OpenImageIO/imageio.h>
 
 #include <catch2/catch.hpp>
@@ -6,7 +8,6 @@
 #include <limits>
 #include <numbers>
 
-#include "loading/sky_situation.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

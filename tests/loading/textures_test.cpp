@@ -1,3 +1,5 @@
+#include "pictures/textures.hpp"
+
 #include <OpenImageIO/imageio.h>
 
 #include <array>
@@ -7,9 +9,8 @@
 #include <functional>
 #include <iterator>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/image.hpp"
-#include "pictures/texture_decoder.hpp"
 #include "scene_files.hpp"
 #include "srgb_oracle.hpp"
 

@@ -1,8 +1,7 @@
 // Only maps that photons come near are numbered, and take memory.
-#include "maps/map_numbers.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "maps/candidate_maps.hpp"
 #include "photile/device.hpp"
 #include "photile/photon_maps.hpp"
 #include "photon_sets.hpp"

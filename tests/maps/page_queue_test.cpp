@@ -1,9 +1,8 @@
 // The queue of pages to build: maps in order, then tiles; what cannot be cut is refused.
-#include "maps/page_queue.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "maps/map_page.hpp"
+#include "maps/map_pages.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::test {

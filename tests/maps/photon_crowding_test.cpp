@@ -1,8 +1,7 @@
 // The crowding of photons against densities with a closed form.
-#include "maps/photon_crowding.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "maps/map_shapes.hpp"
 #include "photon_sets.hpp"
 
 namespace photile::test {

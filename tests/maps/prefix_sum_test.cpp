@@ -1,9 +1,8 @@
-#include "maps/prefix_sum.hpp"
-
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <random>
 
+#include "maps/build_steps.hpp"
 #include "maps/map_store.hpp"
 #include "test_device.hpp"
 

@@ -1,6 +1,4 @@
 // Which items stay on the device while memory is short.
-#include "maps/residents.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "maps/resident_maps.hpp"

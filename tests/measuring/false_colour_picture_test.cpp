@@ -1,14 +1,13 @@
 // Pictures in false colour: known lux and cd/m2 in known colours.
-#include "report/false_colour_picture.hpp"
-
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "image/srgb.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
-#include "report/number_text.hpp"
+#include "report/false_colour.hpp"
 #include "report/palette.hpp"
 #include "report/sheet.hpp"
+#include "report/tables.hpp"
 
 namespace photile::test {
 

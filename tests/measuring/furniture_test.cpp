@@ -1,9 +1,8 @@
 // Points in furniture are left out of grids.
-#include "measuring/furniture.hpp"
-
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "measuring/floor.hpp"
 #include "measuring/working_plane.hpp"
 #include "test_scenes.hpp"
 

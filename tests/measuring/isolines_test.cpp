@@ -1,6 +1,4 @@
 // Isolines against straight lines and circles, and the colours of values.
-#include "report/isolines.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "photile/errors.hpp"
 #include "report/false_colour.hpp"
+#include "report/plan_lines.hpp"
 
 namespace photile::test {
 

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "report/isolines.hpp"
 #include "report/palette.hpp"
+#include "report/plan_lines.hpp"
 
 namespace photile::test {
 

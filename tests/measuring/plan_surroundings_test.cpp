@@ -1,10 +1,9 @@
 // Walls, furniture and lamps on plans, of a room that is known.
-#include "report/plan_surroundings.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "measuring/working_plane.hpp"
+#include "report/plan_lines.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

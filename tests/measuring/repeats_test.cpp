@@ -3,7 +3,6 @@
 #include <cmath>
 #include <set>
 
-#include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
 #include "photile/layered_picture.hpp"
 #include "test_scenes.hpp"

@@ -1,13 +1,12 @@
 // Grids on walls, ceilings, cylinders and around tasks.
-#include "measuring/room_surfaces.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 
-#include "measuring/furniture.hpp"
+#include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "statistical_tests.hpp"
 #include "temporary_folder.hpp"

@@ -1,8 +1,8 @@
 // Closed forms of form factors against their integrals.
-#include "validation/form_factors.hpp"
-
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
+
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 

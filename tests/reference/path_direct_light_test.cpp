@@ -5,7 +5,7 @@
 #include "path_irradiance.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

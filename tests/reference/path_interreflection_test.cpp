@@ -7,7 +7,7 @@
 #include "photile/device/bsdf.h"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

@@ -27,7 +27,7 @@ void cover(Scene& scene, std::array<std::uint8_t, 4> texel) {
 /// A room with a lamp at z = 0.7, its walls of the first material.
 Scene room(const Material& walls) { return test::closed_box(walls, 2); }
 
-/// The same with a plate of the material between lamp and floor.
+/// The room with a plate of the material between lamp and floor.
 Scene room_with_plate(const Material& plate) {
   test::SceneBuilder builder("room with a plate");
   builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.6f))), true,

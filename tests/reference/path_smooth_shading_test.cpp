@@ -26,7 +26,7 @@ Scene sphere_in_sun(const SmoothMesh& sphere, bool with_normals = true) {
   return builder.build();
 }
 
-/// Of the light of one place, from so many paths: at the light's power.
+/// The light that arrives at one sensor by so many paths, at the light's power.
 PathMeans seen(const Scene& scene, const Sensor& sensor, std::size_t paths) {
   PathMeans means = path_means(scene, {sensor}, 1, paths);
   means.irradiance[0] *= scene.lights[0].power;

@@ -1,6 +1,4 @@
 // How the estimate narrows from pass to pass, and into how many passes photons are split.
-#include "render/pass_schedule.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>

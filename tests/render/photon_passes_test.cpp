@@ -111,7 +111,7 @@ TEST_CASE("passes share the photons and the samples of a pixel") {
   CHECK(seven.used.passes == 7);
   CHECK(one.used.film.samples_per_pixel == 2);
   CHECK(seven.used.film.samples_per_pixel == 7);
-  // The same paths, but that rounding may give a light one more or less.
+  // The paths are the same, but that rounding may give a light one more or less.
   CHECK(static_cast<double>(seven.stored_photons) ==
         Approx(static_cast<double>(one.stored_photons)).epsilon(0.001));
 }

@@ -1,11 +1,10 @@
 // Pooled estimates against sums by hand.
-#include "render/pooled_estimates.hpp"
-
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
 
 #include "photile/scene.hpp"
+#include "render/film.hpp"
 
 namespace photile::test {
 namespace {
@@ -22,7 +21,7 @@ LightPooling random_pooling(std::size_t lights, std::size_t layers, std::mt19937
   return pooling;
 }
 
-/// Of all lights where they are few; else of some at each hit, of none at every seventh.
+/// Estimates of all lights where they are few; else of some at each hit, of none at every seventh.
 Estimates random_estimates(std::size_t lights, bool glossy, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
   Estimates estimates;

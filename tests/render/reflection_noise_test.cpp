@@ -1,9 +1,9 @@
 // Where the noise of photon estimates is not seen in what lobes reflect.
-#include "cache/reflection_noise.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <glm/glm.hpp>
+
+#include "cache/surface_cache.hpp"
 
 namespace photile::test {
 namespace {

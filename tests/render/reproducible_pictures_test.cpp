@@ -1,4 +1,4 @@
-// The same seed gives the same picture, bit for bit.
+// A seed gives the same picture each time, bit for bit.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <random>

@@ -1,10 +1,10 @@
 // The noise of a pixel's samples, told from the scatter of runs of them.
-#include "render/sample_errors.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "render/film.hpp"
 
 namespace photile::test {
 namespace {

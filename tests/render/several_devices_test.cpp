@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "estimate/for_each_device.hpp"
+#include "estimate/load_balance.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
@@ -49,16 +49,6 @@ TEST_CASE("two sub-devices gather the bits of one device") {
   std::vector<Device> devices = halves();
   CHECK(test::same_bits(render(scene, test::room_camera(), devices, gathering).layers,
                         expected.layers));
-}
-
-TEST_CASE("the kd-trees estimate the bits of one device on two") {
-  const Scene scene = room(false);
-  RenderParameters chosen = parameters();
-  chosen.structure = MapStructure::kdtree_global;
-  const auto expected = render(scene, test::room_camera(), test::device(), chosen);
-  std::vector<Device> devices = halves();
-  CHECK(
-      test::same_bits(render(scene, test::room_camera(), devices, chosen).layers, expected.layers));
 }
 
 TEST_CASE("the statistics name each device with its share") {

@@ -4,7 +4,6 @@
 #include <mutex>
 #include <numeric>
 
-#include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
@@ -25,7 +24,7 @@ Scene glossy_room() {
   return scene;
 }
 
-/// That of rank 0.
+/// The picture of rank 0.
 LightLayers shared_picture(const Scene& scene, std::uint32_t processes,
                            RenderParameters parameters) {
   LightLayers picture;
@@ -80,7 +79,8 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
     PhotonsMoved moved;
     photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), moved);
     held[communicator.rank()] = photons.size();
-    // Of the triangles that it answers for, every photon; of others, those within the radius.
+    // It holds every photon of the triangles that it answers for, and those of others within the
+    // radius.
     bool same = known;
     std::size_t lacking = 0;
     for (std::uint32_t s = 0; s + 1 < all.first_of.size(); ++s) {
@@ -118,13 +118,6 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
   CHECK(std::accumulate(owned.begin(), owned.end(), std::uint64_t{0}) == all.size());
   for (const std::uint64_t count : owned) CHECK(count < all.size() / 2);
   for (const std::uint64_t count : held) CHECK(count < all.size());
-}
-
-TEST_CASE("what several processes cannot share is refused") {
-  const Scene scene = glossy_room();
-  RenderParameters tree = small_picture(1000, 8, 6);
-  tree.structure = MapStructure::kdtree_global;
-  CHECK_THROWS_AS(shared_picture(scene, 2, tree), UsageError);
 }
 
 }  // namespace photile::test

@@ -1,8 +1,7 @@
 // Where glass encloses a volume, and where it is a sheet.
-#include "scene/open_glass.hpp"
-
 #include <catch2/catch.hpp>
 
+#include "scene/scene_queries.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

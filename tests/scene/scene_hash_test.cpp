@@ -1,11 +1,10 @@
 // The hash that tells saved photon maps of one scene from those of another knows every light.
-#include "scene/scene_hash.hpp"
-
 #include <catch2/catch.hpp>
 #include <functional>
 #include <set>
 
 #include "common/content_hash.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::test {
 namespace {

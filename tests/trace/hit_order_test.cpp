@@ -1,5 +1,3 @@
-#include "trace/hit_order.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "photile/scene.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile::test {
 

@@ -1,6 +1,4 @@
 // Cut-out materials: rays, photons and looking at lamps pass the holes, by how much is there.
-#include "trace/holes.hpp"
-
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 

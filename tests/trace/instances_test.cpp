@@ -8,7 +8,7 @@
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "photon_sets.hpp"
-#include "trace/ray_scene_impl.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
 #include "uniform.hpp"

@@ -7,7 +7,7 @@
 #include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 
 namespace photile::test {
 
@@ -61,7 +61,7 @@ TEST_CASE("photons of a measured lamp go where its intensity says, in every cell
   light.x_axis = glm::normalize(glm::cross(light.direction, glm::vec3(0.3f, 1, 0)));
   light.distribution = 0;
   scene.distributions.push_back(lamp);
-  const LampAxes axes(light);
+  const LightAxes axes(light);
   const IntensitySampler sampler(scene, light);
 
   // Bins four times as fine as the grid, their flux by the midpoint rule.

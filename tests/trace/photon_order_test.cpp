@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "photile/photons.hpp"
-#include "trace/sorted_photons.hpp"
+#include "trace/photon_tracer.hpp"
 
 namespace photile::test {
 namespace {

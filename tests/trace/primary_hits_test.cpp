@@ -7,8 +7,7 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/hit_batch.hpp"
-#include "trace/hit_order.hpp"
-#include "trace/ray_scene_impl.hpp"
+#include "trace/ray_scene.hpp"
 
 namespace photile::test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "photon_sets.hpp"
 #include "test_scenes.hpp"
-#include "trace/ray_scene_impl.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/sampling.hpp"
 #include "trace/surface.hpp"
 #include "uniform.hpp"

@@ -4,7 +4,7 @@
 #include "photile/device/bsdf.h"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/diffuse_part.hpp"
+#include "trace/opaque_bsdf.hpp"
 #include "trace/scatter.hpp"
 
 namespace photile::test {

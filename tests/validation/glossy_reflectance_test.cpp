@@ -4,7 +4,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "estimates_comparison.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

@@ -1,9 +1,8 @@
 // Frames on a contact sheet, each in its place.
-#include "walk/contact_sheet.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "photile/defaults.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::test {
 

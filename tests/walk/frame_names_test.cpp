@@ -1,9 +1,8 @@
 // Names of numbered frames.
-#include "walk/frame_names.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "photile/errors.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::test {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "walk/frame_names.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::test {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "gltf/animation.hpp"
+#include "gltf/cameras.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 

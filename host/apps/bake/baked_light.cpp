@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "cache/charts.hpp"
-#include "cache/turned_light.hpp"
+#include "cache/node_mix.hpp"
 #include "photile/errors.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::bake {
@@ -47,7 +47,7 @@ std::size_t dense_layers(const Estimates& values, std::size_t nodes) {
   return values.first.empty() && nodes > 0 ? values.irradiance.size() / nodes : 0;
 }
 
-/// Of a node: what it holds of any layer.
+/// What a node holds of any layer.
 std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
                                     std::size_t nodes) {
   const std::size_t lights = values.irradiance.size() / nodes;

@@ -10,7 +10,6 @@
 
 #include "cache/charts.hpp"
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/quality_options.hpp"
@@ -19,7 +18,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "publish/published_room.hpp"

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <set>
 
-#include "common/output_file.hpp"
-#include "loading/relit_sky.hpp"
+#include "common/files.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
 #include "publish/page_template.hpp"
@@ -19,7 +19,7 @@
 #include "report/palette.hpp"
 #include "scene/light_emission.hpp"
 #include "trace/distant_light.hpp"
-#include "weather/sky_lights.hpp"
+#include "weather/sky_patches.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::publish {

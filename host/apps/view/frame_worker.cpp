@@ -1,6 +1,7 @@
 #include "view/frame_worker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <tuple>
 #include <utility>
@@ -8,11 +9,29 @@
 #include "photile/errors.hpp"
 
 namespace photile::view {
+
+void FrameSize::record(double pixels, double seconds) {
+  const double latest = seconds / pixels;
+  constexpr double weight = 0.3;  // of the newest frame: steady, and adapted in a few frames
+  seconds_per_pixel_ =
+      seconds_per_pixel_ > 0 ? (1 - weight) * seconds_per_pixel_ + weight * latest : latest;
+}
+
+std::pair<int, int> FrameSize::fit(int width, int height) const {
+  if (seconds_per_pixel_ <= 0) return {width, height};
+  const double pixels = static_cast<double>(width) * height;
+  const double scale = std::clamp(std::sqrt(budget_ / (seconds_per_pixel_ * pixels)), 1.0 / 8, 1.0);
+  const auto scaled = [&](int length) {
+    return std::max(1, static_cast<int>(std::lround(length * scale)));
+  };
+  return {scaled(width), scaled(height)};
+}
+
 namespace {
 
 /// Seconds that the first picture of a scene may take to have light everywhere.
 constexpr double patience = 10;
-/// Of a viewer at rest: seconds of valuing nodes for each second of drawing.
+/// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
@@ -101,16 +120,21 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   const bool whole = shown && !lacking_ && !request_.moving;
   const bool draws = !request_.powers.empty() && maps_->renderer->draws();
   const int first = draws && !request_.moving ? first_samples : 1;
-  task = {request_, maps_, std::min(refines ? more_samples * done_samples_ : first, most_samples_),
-          version_, draws && !whole};
+  task = {request_,
+          maps_,
+          std::min(refines ? more_samples * done_samples_ : first, most_samples_),
+          version_,
+          draws && !whole,
+          shown};
   return true;
 }
 
 /// What a moving viewer's frame leaves of its time, and a little in any case: nodes must come at
-/// last. At rest no frame has to be in time, and drawing what hardly changed would take most of it.
-double FrameWorker::time_to_fill(bool moving) const {
-  if (!moving) return filled_over_drawn * draw_seconds_ + frame_seconds_;
-  return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
+/// last. At rest a lamp that was set is shown before anything is filled; after that no frame has to
+/// be in time, and drawing what hardly changed would take most of it.
+double FrameWorker::time_to_fill(const Task& task) const {
+  if (task.request.moving) return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
+  return task.shown ? filled_over_drawn * draw_seconds_ + frame_seconds_ : 0;
 }
 
 /// The whole window, however many nodes are missing: new surface is seen coarsely at once, and
@@ -126,7 +150,7 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
                      static_cast<std::size_t>(wanted.height));
   MapGeneration& maps = *task.maps;
   const bool is_first = drawn_scene_ != maps.scene;
-  const FrameFilling filling(is_first ? patience : time_to_fill(wanted.moving), [&] {
+  const FrameFilling filling(is_first ? patience : time_to_fill(task), [&] {
     return stop.stop_requested() || (!is_first && !wanted.moving && outdated(task));
   });
   const Stopwatch of_drawing;

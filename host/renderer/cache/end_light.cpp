@@ -8,10 +8,10 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/reflected_radiance.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::cache {
 namespace {
@@ -70,9 +70,10 @@ std::uint64_t EndLight::bytes() const {
   return statistics.value_bytes + statistics.index_bytes;
 }
 
-Estimates EndLight::irradiance(const PrimaryHits& nodes) {
-  costs_.estimated += nodes.size();
-  return of_nodes_.at(nodes, Progress::none());
+EndLight::Costs EndLight::costs() const {
+  Costs costs = costs_;
+  costs.estimated += nodes_.valued();
+  return costs;
 }
 
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
@@ -127,7 +128,7 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
 /// Values the nodes that hits need.
 void EndLight::fill(const PrimaryHits& hits, const Progress& progress) {
   if (!maps_) maps_.emplace(rays_, parameters_);
-  maps_->maps.fill(hits, *this, progress);
+  maps_->maps.fill(hits, nodes_, progress);
   maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
 }
 
@@ -149,7 +150,8 @@ bool EndLight::is_open(const NodeBlend& cell) const {
   return state == open_cell;
 }
 
-/// Of ends that have no estimates of their own. Ends that none of their nodes sees get one.
+/// Finds the nodes of ends that have no estimates of their own. Ends that none of their nodes sees
+/// get one.
 void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   light.nodes.resize(has_own.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {

@@ -1,5 +1,3 @@
-#include "cache/reflection_noise.hpp"
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -8,9 +6,10 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "cache/surface_cache.hpp"
 #include "photile/defaults.hpp"
 #include "photile/scene.hpp"
-#include "trace/by_pixel.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile::cache {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,11 +12,13 @@
 #include <optional>
 #include <set>
 
-#include "common/run_files.hpp"
+#include "common/files.hpp"
+#include "device/context.hpp"
 #include "device/embedded_files.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {
+
 namespace {
 
 struct Registry {
@@ -39,11 +42,16 @@ std::optional<std::string> registered_source(const std::string& name) {
 std::filesystem::path kernel_folder() {
   const char* const folder = std::getenv(kernel_folder_variable);
   if (folder == nullptr || *folder == '\0') return {};
-  std::error_code ignored;  // what cannot be looked at holds nothing
+  const auto has = [&](std::string_view name) {
+    std::error_code ignored;  // what cannot be looked at holds nothing
+    return std::filesystem::is_regular_file(std::filesystem::path(folder) / name, ignored);
+  };
   for (const auto& file : embedded_files()) {
-    if (std::filesystem::is_regular_file(std::filesystem::path(folder) / file.path, ignored)) {
-      return folder;
-    }
+    if (has(file.path)) return folder;
+  }
+  const std::lock_guard lock(registry().mutex);
+  for (const auto& [name, text] : registry().texts) {
+    if (has(name)) return folder;
   }
   throw UsageError(fmt::format("{}: {} holds no kernel file, such as {}; name a copy of kernels/",
                                kernel_folder_variable, folder, embedded_files().front().path));
@@ -66,8 +74,8 @@ std::optional<std::string> embedded_source(const std::string& name) {
 }
 
 std::optional<std::string> find_source(const std::string& name) {
-  if (auto text = registered_source(name)) return text;
   if (auto text = source_in_folder(name)) return text;
+  if (auto text = registered_source(name)) return text;
   return embedded_source(name);
 }
 
@@ -174,6 +182,37 @@ std::string assemble_source(const std::string& file) {
 void register_kernel_source(const std::string& name, std::string text) {
   const std::lock_guard lock(registry().mutex);
   registry().texts[name] = std::move(text);
+}
+
+Defines& Defines::set(std::string name, long long value) {
+  entries_.emplace_back(std::move(name), std::to_string(value));
+  return *this;
+}
+
+Defines& Defines::set(std::string name, double value) {
+  const auto single = static_cast<float>(value);
+  if (!std::isfinite(single)) {
+    throw DeviceError(fmt::format("definition {} = {} is no finite float", name, value));
+  }
+  // {} gives the shortest digits that read back as the same float.
+  std::string literal = fmt::format("{}", single);
+  if (literal.find_first_of(".e") == std::string::npos) literal += ".0";
+  entries_.emplace_back(std::move(name), literal + "f");
+  return *this;
+}
+
+Defines& Defines::set(std::string name) {
+  entries_.emplace_back(std::move(name), "1");
+  return *this;
+}
+
+std::string Defines::options() const {
+  std::string text;
+  for (const auto& [name, value] : entries_) {
+    if (!text.empty()) text += ' ';
+    text += fmt::format("-D {}={}", name, value);
+  }
+  return text;
 }
 
 }  // namespace photile::device

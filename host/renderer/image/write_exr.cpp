@@ -1,13 +1,137 @@
-#include <algorithm>
-#include <utility>
+// EXR files of photile: their headers, and rows handed over as they are made.
 
-#include "common/output_file.hpp"
-#include "image/exr_output.hpp"
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/files.hpp"
+#include "image/exr_input.hpp"
+#include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 
 namespace photile {
+
 namespace {
+
+/// A part of 32-bit floats with the header's size and the given channels. Says what its colours
+/// are, as every part of a file must, and nothing else.
+Imf::Header exr_header(const PictureHeader& header, const std::vector<std::string>& channels,
+                       Imf::Compression compression) {
+  Imf::Header part(header.width, header.height);
+  part.compression() = compression;
+  // Planes of floats take no more room by it than by OpenEXR's own 4, and less time.
+  part.zipCompressionLevel() = 3;
+  part.setType(Imf::SCANLINEIMAGE);
+  for (const std::string& name : channels) part.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  Imf::addChromaticities(part, Imf::Chromaticities({0.64f, 0.33f}, {0.30f, 0.60f}, {0.15f, 0.06f},
+                                                   {0.3127f, 0.3290f}));  // Rec.709
+  part.insert("colorInteropID", Imf::StringAttribute("lin_rec709_scene"));
+  return part;
+}
+
+/// Adds the picture's attributes.
+void add_attributes(const PictureHeader& picture, Imf::Header& header) {
+  for (const auto& [name, value] : picture.attributes) {
+    header.insert(name, Imf::StringAttribute(value));
+  }
+  for (const auto& [name, value] : picture.numbers) {
+    header.insert(name, Imf::FloatAttribute(value));
+  }
+  for (const auto& [name, matrix] : picture.matrices) {
+    Imath::M44f value;
+    std::copy(matrix.begin(), matrix.end(), &value[0][0]);
+    header.insert(name, Imf::M44fAttribute(value));
+  }
+}
+
+/// OpenEXR closes a file in a destructor, which can report nothing: errors are left to the output.
+class ExrStream : public Imf::OStream {
+ public:
+  explicit ExrStream(OutputFile& output) : OStream("picture"), output_(output) {}
+
+  void write(const char* bytes, int count) override {
+    output_.write(bytes, static_cast<std::size_t>(count));
+  }
+  std::uint64_t tellp() override { return output_.place(); }
+  void seekp(std::uint64_t place) override { output_.seek(place); }
+
+ private:
+  OutputFile& output_;
+};
+
+/// Writes parts one after the other, each from the top: a single-part file where there is one.
+class ExrOutput {
+ public:
+  /// Errors: those of OutputFile::fail.
+  ExrOutput(OutputFile& output, const std::vector<Imf::Header>& parts);
+
+  /// The next rows of a part: `planes`, one for each of `channels`, of rows x width.
+  /// Errors: those of OutputFile::fail.
+  void write(std::size_t part, int rows, const std::vector<std::string>& channels,
+             std::span<const float* const> planes);
+
+  /// Errors: those of OutputFile::commit.
+  void close();
+
+ private:
+  [[noreturn]] void fail(const std::exception& error);
+
+  OutputFile& output_;
+  ExrStream stream_;
+  std::unique_ptr<Imf::MultiPartOutputFile> file_;
+};
+
+ExrOutput::ExrOutput(OutputFile& output, const std::vector<Imf::Header>& parts)
+    : output_(output), stream_(output) {
+  image::set_up_openexr();
+  try {
+    file_ = std::make_unique<Imf::MultiPartOutputFile>(stream_, parts.data(),
+                                                       static_cast<int>(parts.size()));
+  } catch (const std::exception& error) {
+    fail(error);
+  }
+}
+
+void ExrOutput::write(std::size_t part, int rows, const std::vector<std::string>& channels,
+                      std::span<const float* const> planes) {
+  try {
+    Imf::OutputPart output(*file_, static_cast<int>(part));
+    const int width = output.header().dataWindow().max.x + 1;
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, planes[i],
+                                                  {0, output.currentScanLine()}, width, rows));
+    }
+    output.setFrameBuffer(buffer);
+    output.writePixels(rows);
+  } catch (const std::exception& error) {
+    fail(error);
+  }
+  if (output_.failed()) output_.fail("");
+}
+
+void ExrOutput::close() {
+  file_.reset();
+  output_.commit();
+}
+
+void ExrOutput::fail(const std::exception& error) { output_.fail(error.what()); }
 
 /// Rows that are handed over at once; a multiple of the 16 rows of a ZIP block.
 constexpr int rows_per_write = 64;
@@ -44,9 +168,9 @@ void write_single_part(OutputFile& output, const LayeredPicture& picture) {
   for (std::size_t light = 0; light < picture.lights(); ++light) {
     for (std::string& name : picture.channel_names(light)) names.push_back(std::move(name));
   }
-  Imf::Header header = image::exr_header(picture.header(), names, Imf::ZIP_COMPRESSION);
-  image::add_attributes(picture.header(), header);
-  image::ExrOutput file(output, {header});
+  Imf::Header header = exr_header(picture.header(), names, Imf::ZIP_COMPRESSION);
+  add_attributes(picture.header(), header);
+  ExrOutput file(output, {header});
   for_rows(picture.header().height, [&](int first, int end) {
     const Image root = picture.root(first, end);
     std::vector<LightRows> rows;
@@ -69,17 +193,17 @@ void write_parts(OutputFile& output, const LayeredPicture& picture) {
   // the 16 rows of ZIP would add up to the picture.
   std::vector<std::vector<std::string>> names{root_channels};
   std::vector<Imf::Header> headers{
-      image::exr_header(picture.header(), names.front(), Imf::ZIPS_COMPRESSION)};
-  image::add_attributes(picture.header(), headers.front());
+      exr_header(picture.header(), names.front(), Imf::ZIPS_COMPRESSION)};
+  add_attributes(picture.header(), headers.front());
   headers.front().setName("Combined");
   for (std::size_t light = 0; light < picture.lights(); ++light) {
     names.push_back(picture.channel_names(light));
     const std::string& red = names.back().front();
-    headers.push_back(image::exr_header(picture.header(), names.back(), Imf::ZIPS_COMPRESSION));
+    headers.push_back(exr_header(picture.header(), names.back(), Imf::ZIPS_COMPRESSION));
     headers.back().setName(red.substr(0, red.rfind('.')));
   }
   const Image root = picture.root();
-  image::ExrOutput file(output, headers);
+  ExrOutput file(output, headers);
   for (std::size_t part = 0; part < headers.size(); ++part) {
     for_rows(picture.header().height, [&](int first, int end) {
       std::vector<const float*> planes;
@@ -102,9 +226,9 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
   OutputFile output(file);
   check_pixels(output, image);
   if (image.channels.empty()) output.fail("the picture has no channels");
-  Imf::Header header = image::exr_header(image, image.channel_names, Imf::ZIP_COMPRESSION);
-  image::add_attributes(image, header);
-  image::ExrOutput writer(output, {header});
+  Imf::Header header = exr_header(image, image.channel_names, Imf::ZIP_COMPRESSION);
+  add_attributes(image, header);
+  ExrOutput writer(output, {header});
   std::vector<const float*> planes;
   add_planes(image, 0, planes);
   writer.write(0, image.height, image.channel_names, planes);

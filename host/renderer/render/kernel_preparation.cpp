@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "estimate/device_test.hpp"
 #include "estimate/photon_estimate.hpp"
-#include "estimate/plane_sample.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -68,7 +68,7 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
     const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
                                                    {sample.radius, parameters.angle_degrees});
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
-                          {sample.radius, parameters.photons_per_cell, parameters.structure});
+                          {sample.radius, parameters.photons_per_cell});
     const EstimateParameters estimate{
         .neighbours = parameters.neighbours, .area = parameters.area, .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);

@@ -18,7 +18,6 @@ namespace photile {
 namespace {
 
 const auto& all_values(MapMode) { return all_map_modes; }
-const auto& all_values(MapStructure) { return all_map_structures; }
 const auto& all_values(AreaMode) { return all_area_modes; }
 const auto& all_values(DensityKernel) { return all_density_kernels; }
 const auto& all_values(LightMapMode) { return all_light_map_modes; }
@@ -83,9 +82,9 @@ Setting row(std::string_view name, std::string_view reader, ValueRange range, st
                     const SettingValue& value) { assign(field<members...>(parameters), value); }};
 }
 
-/// A row that qualities set: good and final to these values, draft to the default.
-Setting by_quality(Setting setting, std::uint64_t good, std::uint64_t best) {
-  setting.by_quality = {setting.value(P{}), good, best};
+/// A row that qualities set.
+Setting by_quality(Setting setting, std::uint64_t draft, std::uint64_t good, std::uint64_t best) {
+  setting.by_quality = {draft, good, best};
   return setting;
 }
 
@@ -108,11 +107,6 @@ std::string kept_if_given(const Setting& setting, const RenderParameters& parame
 /// The radius follows k where it is not given.
 std::string kept_for_radius(const Setting& setting, const RenderParameters& parameters) {
   return parameters.radius > 0 ? std::string() : kept_as_it_is(setting, parameters);
-}
-
-/// Structures over all photons have other groups than those of triangles.
-std::string kept_for_structure(const Setting& setting, const RenderParameters& parameters) {
-  return is_global(parameters.structure) ? kept_as_it_is(setting, parameters) : std::string();
 }
 
 /// Rays leave no direct light to photons, however many there are.
@@ -142,7 +136,7 @@ std::vector<Setting> picture_rows() {
       by_quality(row<&P::film, &Film::samples_per_pixel>(
                      "samples_per_pixel", hits, WholeNumbers{1, limits::max_samples_per_pixel},
                      "primary rays per pixel, over all passes; at least one in each", not_kept),
-                 16, 64),
+                 defaults::samples_per_pixel, 16, 64),
       row<&P::seed>("seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
       row<&P::max_specular_depth>("max_specular_depth", hits,
@@ -158,7 +152,7 @@ std::vector<Setting> photon_rows() {
                      "photons_emitted", paths,
                      WholeNumbers{limits::min_photons, limits::max_emitted_photons},
                      "paths over all lights", kept_as_it_is),
-                 500'000, 2'000'000),
+                 defaults::emitted_photons, 500'000, 2'000'000),
       row<&P::photons, &PhotonPaths::quota>(
           "quota", paths, words_of(all_photon_quotas),
           "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
@@ -181,7 +175,7 @@ std::vector<Setting> estimate_rows() {
       by_quality(of_groups(row<&P::neighbours>("neighbours", estimate,
                                                WholeNumbers{1, limits::max_neighbours},
                                                "photons of an estimate", kept_for_radius)),
-                 100, 100),
+                 500, 100, 100),
       row<&P::least_neighbours>(
           "least_neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
           "each hit has its own number of neighbours, from this one up, as its bias allows",
@@ -200,12 +194,10 @@ std::vector<Setting> estimate_rows() {
                       "weights of photons; cone, epanechnikov: less blur, more noise", not_kept),
       of_groups(row<&P::maps>("maps", groups, words_of(all_map_modes),
                               "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
-      of_groups(row<&P::structure>("structure", build, words_of(all_map_structures),
-                                   "how photons are found; same neighbours", kept_for_structure)),
       row<&P::photons_per_cell>("photons_per_cell", build, PositiveNumbers{},
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>("direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
-                           "looks at lamps from a hit, which replace photons straight from lamps",
+                           "light samples from a hit, which replace photons directly from lights",
                            kept_for_direct_light, "photons bring it"),
       row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
                      "what finds the light that lobes reflect; auto: rays where light maps are "
@@ -217,9 +209,9 @@ std::vector<Setting> estimate_rows() {
                           not_kept),
       by_quality(row<&P::light_map_rays>(
                      "light_map_rays", "light maps", WholeNumbers{1, limits::max_gathering_rays},
-                     "rays, and looks at lamps, by which nodes of light maps gather light",
-                     not_kept, "the photon estimate values nodes"),
-                 64, 256),
+                     "rays, and light samples, by which nodes of light maps gather light", not_kept,
+                     "the photon estimate values nodes"),
+                 0, 64, 256),
       row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
                                 "largest distance between the finest nodes of light maps", not_kept,
                                 "an eighth of the coarsest, by the photons", "m"),
@@ -303,11 +295,6 @@ void check(const RenderParameters& parameters) {
     if (setting.name == "least_neighbours" && parameters.least_neighbours > parameters.neighbours) {
       throw SettingError(setting, fmt::format("{} is more than the {} neighbours",
                                               parameters.least_neighbours, parameters.neighbours));
-    }
-    if (setting.name == "structure" && is_global(parameters.structure) &&
-        parameters.maps == MapMode::naive) {
-      throw SettingError(setting, fmt::format("{} knows no triangles' maps, and so no naive ones",
-                                              name_of(parameters.structure)));
     }
   }
 }

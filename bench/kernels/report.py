@@ -1,0 +1,144 @@
+#!/usr/bin/python3
+"""Writes docs/benchmarks.md and its plots from docs/benchmarks/*.json. Runs nothing.
+
+    bench/kernels/report.py [--results FOLDER] [--page FILE]
+
+Needs the Debian package python3-matplotlib.
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+from kernels import (report_kernels, report_lights, report_plots, report_ratios, report_scale, report_tables,
+                     report_targets)
+
+BENCHES = ("knn", "paper", "build", "frame", "relight", "lights", "kernels", "startup", "profile", "scale")
+RATIO_K = 50  # of the tables of ratios; the plots have the others
+BUSY_LOAD = 0.5  # load average at which other programs count as running
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/benchmarks",
+                        help="folder of the JSON files; plots go there too")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
+    return parser.parse_args()
+
+
+def doubts(results):
+    """Why the numbers are not to be relied on; empty where they are."""
+    reasons = []
+    # The benches run one after another: the load before the first is that of other programs.
+    load = results["knn"]["machine"]["load average at start"]
+    if load > BUSY_LOAD:
+        reasons.append(f"other programs were running (load average {load:.1f} before the first "
+                       "bench), and more or fewer of them from one row to the next, so ratios are "
+                       "as doubtful as times")
+    single = [name for name, result in results.items() if result["settings"].get("repeats", 3) < 3]
+    if single:
+        reasons.append(f"fewer than three repeats ({', '.join(single)}), so the brackets do not "
+                       "show the spread")
+    return reasons
+
+
+def machine_of(result):
+    machine = result["machine"]
+    return f"{machine['processor']}, {machine['hardware threads']} hardware threads"
+
+
+def caption(results, bench):
+    """The machine and the date, for the plots of a bench."""
+    result = results[bench]
+    device = result["device"]
+    parts = [machine_of(result), f"OpenCL: {device['platform']} {device['driver']}", result["date"]]
+    if doubts(results):
+        parts.append("provisional")
+    return "; ".join(parts)
+
+
+def other_machines(results):
+    """A line for each day and machine other than those of the search, with what was measured then."""
+    own = machine_of(results["knn"]), results["knn"]["date"]
+    benches = {}
+    for name, result in results.items():
+        if "machine" in result:
+            benches.setdefault((machine_of(result), result["date"]), []).append(name)
+    return [f"{', '.join(f'`{name}.json`' for name in names)}: {machine}; {date}."
+            for (machine, date), names in sorted(benches.items()) if (machine, date) != own]
+
+
+def machine_section(results):
+    knn = results["knn"]
+    device, versions = knn["device"], knn["versions"]
+    lines = [
+        f"**Machine**: {machine_of(knn)}; {knn['date']}.",
+        f"**OpenCL device**: {device['name']}, {device['platform']} {device['driver']}, "
+        f"{device['compute units']} compute units.",
+        "**Versions**: " + ", ".join(f"{name} {version}" for name, version in versions.items())
+        + ".",
+        *other_machines(results),
+    ]
+    lines += [f"**Provisional**: {reason}." for reason in doubts(results)]
+    if any(result["settings"]["quick"] for result in results.values()):
+        lines.append("**From a smoke test (`--quick`): these numbers mean nothing.**")
+    return "  \n".join(lines)
+
+
+def page(results, plots, ratio_plots, notes):
+    sections = [
+        "# Benchmarks",
+        "After this page you know how fast the estimate is, beside other ways to find the same photons, and can measure "
+        "your own machine: `bench/run_all.sh --docs` runs everything and writes this page. "
+        "Times are medians, with the least and the largest in brackets.",
+        machine_section(results),
+        "On a GPU: `PHOTILE_DEVICE=gpu bench/run_all.sh --docs`.",
+        "## Targets", report_targets.write_table(results, bool(doubts(results))),
+        "## Search and estimate against the number of photons",
+        report_tables.knn_text(),
+        "\n\n".join(f"![Time against photons: {name}](benchmarks/{file})"
+                    for name, file in plots),
+        report_tables.knn(results["knn"]),
+        "### As ratios",
+        "\n\n".join(f"![Time over that of the uniform grid: {name}](benchmarks/{file})"
+                    for name, file in ratio_plots),
+        report_ratios.text([row for row in results["knn"]["results"] if row["k"] == RATIO_K]),
+        "## Where the time of an estimate goes", report_kernels.profile(results["profile"]),
+        "## Kinds of scenes", report_kernels.specialisations(results["kernels"]),
+        "## Beside the limits of the device", report_kernels.roofline(results["kernels"]),
+        report_kernels.build_kernels(results["kernels"]),
+        "## The paper's frame", report_tables.paper(results["paper"]),
+        "## Build", report_tables.build(results["build"]),
+        "## A frame of a walkthrough", report_tables.frame(results["frame"]),
+        "## Relighting", report_tables.relight(results["relight"]),
+        "## Many lights", report_lights.text(results["lights"]),
+        "## Scale", report_scale.text(results["scale"]),
+        "## Starting", report_kernels.startup(results["startup"]),
+        notes,
+        "## See also",
+        "[Neighbour groups](neighbour-groups.md); the data behind this page in "
+        "[benchmarks/](benchmarks/).",
+    ]
+    return "\n\n".join(section.strip() for section in sections) + "\n"
+
+
+def main():
+    options = arguments()
+    results = {}
+    for bench in BENCHES:
+        with open(options.results / f"{bench}.json", encoding="utf-8") as file:
+            results[bench] = json.load(file)
+    plots = report_plots.draw_knn(results["knn"], caption(results, "knn"), options.results)
+    ratio_plots = report_plots.draw_ratios(results["knn"], caption(results, "knn"), options.results)
+    report_lights.draw(results["lights"], caption(results, "lights"), options.results)
+    report_scale.draw(results["scale"], caption(results, "scale"), options.results)
+    notes = (ROOT / "bench/kernels/report_notes.md").read_text(encoding="utf-8")
+    options.page.write_text(page(results, plots, ratio_plots, notes), encoding="utf-8")
+    print(f"wrote {options.page}")
+
+
+if __name__ == "__main__":
+    main()

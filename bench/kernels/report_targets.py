@@ -1,0 +1,151 @@
+"""What was aimed at, and what the results say."""
+
+from kernels.report_tables import PRODUCT_MAPS, REFERENCE, near_target, seconds_per_query, table
+
+HEAP = "nanoflann-heap"
+
+
+def knn_seconds(results, workload, structure, k):
+    """A query's median at a million photons, or None."""
+    for row in results["knn"]["results"]:
+        if ((row["workload"], row["structure"], row["k"]) == (workload, structure, k)
+                and near_target(row["photons"]) and "seconds" in row):
+            return seconds_per_query(row)
+    return None
+
+
+def speedups(results):
+    """(what, ratio or None, least, workload, k) for each pair."""
+    cases = [("plane", 50, REFERENCE, 20), ("plane", 200, REFERENCE, 40),
+             ("living-room", 50, REFERENCE, 10), ("classroom", 50, REFERENCE, 10),
+             ("plane", 50, "kdtree-2d", 4), ("plane", 50, "kdtree-3d", 10),
+             ("plane", 50, "kdtree-global", 10), ("living-room", 50, "kdtree-2d", 4),
+             ("living-room", 50, "kdtree-3d", 10), ("living-room", 50, "kdtree-global", 10),
+             ("plane", 50, HEAP, 30), ("plane", 200, HEAP, 50), ("plane", 1000, HEAP, 60),
+             ("living-room", 50, HEAP, 15), ("classroom", 50, HEAP, 15)]
+    for workload, k, rival, least in cases:
+        ours = knn_seconds(results, workload, "uniform-grid", k)
+        theirs = knn_seconds(results, workload, rival, k)
+        ratio = theirs / ours if ours and theirs else None
+        yield f"{workload}, 1M photons, k = {k}: times faster than {rival}", ratio, least, workload, k
+
+
+def verdict(short):
+    """`short`: the aim over the result, or the other way round: 1 where it is just reached."""
+    if short <= 1:
+        return "reached"
+    return f"missed by {100 * (short - 1):.1g}%" if short < 1.1 else f"missed by a factor of {short:.2g}"
+
+
+def at_least(name, value, least, form):
+    if value is None:
+        return [name, f"at least {form(least)}", "not measured", ""]
+    return [name, f"at least {form(least)}", form(value), verdict(least / value)]
+
+
+def at_most(name, value, most, form):
+    if value is None:
+        return [name, f"at most {form(most)}", "not measured", ""]
+    return [name, f"at most {form(most)}", form(value), verdict(value / most)]
+
+
+def build_ratios(results):
+    for row in results["build"]["results"]:
+        if near_target(row["photons"]) and row["maps of"] == PRODUCT_MAPS:
+            ours = row["groups"]["median"] + row["uniform-grid"]["median"]
+            yield (f"{row['workload']}, 1M photons: groups and maps over nanoflann's index build",
+                   ours / row["nanoflann"]["median"], row["workload"])
+
+
+def paper_milliseconds(results):
+    for row in results["paper"]["results"]:
+        if (row["structure"], row["maps of"]) == ("uniform-grid", PRODUCT_MAPS):
+            return 1e3 * row["estimate kernels"]["median"]
+    return None
+
+
+def relight_share(results):
+    rate = {row["operation"]: row["bytes per second"] for row in results["relight"]["results"]}
+    return 100 * rate["combine_layers"] / rate["copy"]
+
+
+def shares(results, case):
+    """The largest stages of a profiled estimate, or ""."""
+    for row in results["profile"]["results"]:
+        if row["case"] == case:
+            largest = sorted(row["shares"].items(), key=lambda item: -item[1])[:3]
+            return ", ".join(f"{stage} {100 * share:.0f}%" for stage, share in largest)
+    return ""
+
+
+def build_shares(results, workload):
+    """The largest parts of groups and maps: groups, kernels."""
+    k = results["kernels"]["settings"]["k"]
+    parts = {f"`{row['kernel']}`": row["seconds"]["median"]
+             for row in results["kernels"]["results"]
+             if row["measured"] == "kernel" and row["workload"] == workload and row["k"] == k
+             and row["kernel"] != "estimate"}
+    for row in results["build"]["results"]:
+        if (row["workload"], row["maps of"]) == (workload, PRODUCT_MAPS) and near_target(
+                row["photons"]):
+            parts["groups"] = row["groups"]["median"]
+    largest = sorted(parts.items(), key=lambda item: -item[1])[:3]
+    return ", ".join(f"{name} {1e3 * seconds:.0f} ms" for name, seconds in largest)
+
+
+def start_seconds(results):
+    """(slowest kernel to compile, start with compiled kernels), medians, of all variants. A kernel
+    is compiled in its program: the slowest program is added to the slowest kernel."""
+    rows = results["startup"]["results"]
+    compiled = max(sum(max(timing["median"] for timing in row[kind].values())
+                       for kind in ("programs", "kernels"))
+                   for row in rows if row["cache"] == "empty")
+    started = max(row["open"]["median"] + row["prepare"]["median"] for row in rows
+                  if row["cache"] == "full")
+    return compiled, started
+
+
+def million_triangle_groups(results):
+    """Seconds of the groups of the largest mesh of about a million triangles, or None."""
+    for row in results["scale"]["results"]:
+        if "failure" not in row and 0.9e6 < row["triangles"] < 2e6:
+            return next(stage["seconds"] for stage in row["stages"]
+                        if stage["stage"] == "neighbour groups")
+    return None
+
+
+def table_rows(results):
+    """[what, aim, result, verdict, where the time goes] each."""
+    def times(x):
+        return f"{x:.3g} x"
+
+    def seconds(x):
+        return f"{x:.2g} s"
+    rows = []
+    for name, ratio, least, workload, k in speedups(results):
+        rows.append(at_least(name, ratio, least, times) + [shares(results, f"{workload}, k = {k}")])
+    for name, ratio, workload in build_ratios(results):
+        rows.append(at_most(name, ratio, 0.25, times) + [build_shares(results, workload)])
+    rows.append(at_most("the paper's frame, kNN and integration", paper_milliseconds(results), 50,
+                        lambda x: f"{x:.3g} ms") + [shares(results, "the paper's frame")])
+    rows.append(at_least("relighting, of copy bandwidth", relight_share(results), 60,
+                         lambda x: f"{x:.0f}%") + [""])
+    compiled, started = start_seconds(results)
+    rows.append(at_most("the kernel that takes longest to compile", compiled, 2, seconds) + [""])
+    rows.append(at_most("a start with compiled kernels: device and kernels", started, 0.1, seconds)
+                + ["clang's preprocessor: see [starting](#starting)"])
+    rows.append(at_most("groups of a mesh of a million triangles", million_triangle_groups(results),
+                        10, seconds) + ["see [scale](#scale)"])
+    return rows
+
+
+def write_table(results, provisional):
+    """`provisional`: the numbers cannot carry a verdict, so none is given."""
+    rows = table_rows(results)
+    for row in rows:
+        if row[3] == "reached":
+            row[4] = ""
+    if provisional:
+        rows = [[name, aim, value, "open" if verdict else "", why]
+                for name, aim, value, verdict, why in rows]
+    return table(["", "aim", "result", "", "where the time goes"], rows)

@@ -1,0 +1,1 @@
+"""Daylight, glare and the worked examples of a lighting project."""

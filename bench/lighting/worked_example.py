@@ -1,0 +1,56 @@
+#!/usr/bin/python3
+"""Runs the worked example of docs/walkthrough.md, and the one measurement of docs/measuring.md, as they are
+written there: puts the commands with what they print into the pages and their pictures into docs/pictures.
+
+    bench/lighting/worked_example.py [--photile FILE] [--quick]
+
+Needs the built command and half a minute a command.
+"""
+
+import pathlib
+import sys
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from lighting.example_steps import ROOT, Step, arguments, run_page
+
+EVENING = ("--light daylight=off --light ceiling_panel=off --light floor_lamp=1500 "
+           "--light floor_lamp=2700K")
+
+# What a command is for, the command, the pictures it leaves with their captions, what begins the
+# lines that are shown of what it prints.
+STEPS = (
+    Step("What does the file hold, and which lamps?",
+         "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
+    Step("Render it once, a layer for each lamp.",
+         "photile render living-room.gltf --size 960x640 -o room.exr -o day.png",
+         {"day.png": "By day, every lamp on"}, ()),
+    Step("How much light is there to read and work by? Points in or just over furniture are left out.",
+         "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
+         "-s 600 -o report.html -o plan.svg",
+         {"plan.svg": "Illuminance on the working plane"}, ("working plane", "lux", "all lights")),
+    Step("A mood for work after dark: the ceiling in neutral white, the floor lamp off.",
+         "photile relight room.exr --light daylight=off --light floor_lamp=off "
+         "--light ceiling_panel=4000K -o work.exr -o work.png", {}, ()),
+    Step("And one for the evening: the floor lamp, warm, and the ceiling off.",
+         f"photile relight room.exr {EVENING} -o evening.exr -o evening.png",
+         {"evening.png": "In the evening"}, ()),
+    Step("How do they differ? Red is where work is brighter, blue where the evening is.",
+         "photile compare work.exr evening.exr -o moods.png",
+         {"moods.png": "Work, evening, and the difference of their luminances"},
+         ("work.exr", "luminance,", "illuminance,")),
+    Step("What is left of the light on the plane in the evening?",
+         f"photile measure living-room.gltf {EVENING} --plane floor+0.75 --clearance 0.1 "
+         "--maintenance 0.8 -s 600 --cb -o evening.svg",
+         {"evening.svg": "The evening's contour bands"}, ("working plane", "lux", "all lights")),
+    Step("Is a reflection five times as bright as the mean of the picture?",
+         "photile render living-room.gltf --glare glare.png",
+         {}, ("glare",)),
+)
+
+MEASUREMENT = (Step("", "photile measure living-room.gltf --plane floor+0.75 --maintenance 0.8 -q", {}, ("",)),)
+
+
+if __name__ == "__main__":
+    run_page(ROOT / "docs/measuring.md", "lighting/worked_example.py", MEASUREMENT, ROOT / "scenes/living-room",
+             "example", arguments(__doc__))
+    run_page(ROOT / "docs/walkthrough.md", "lighting/worked_example.py", STEPS, ROOT / "scenes/living-room",
+             "example", arguments(__doc__))

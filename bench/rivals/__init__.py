@@ -1,0 +1,1 @@
+"""Other renderers that get the same scenes."""

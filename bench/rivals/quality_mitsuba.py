@@ -1,0 +1,125 @@
+#!/usr/bin/python3
+"""Renders an interior of diffuse surfaces with Mitsuba 3; quality.py runs it once per picture.
+
+    bench/rivals/quality_mitsuba.py SCENE --size WxH --samples N [--sampler NAME] [--denoise] [--next]
+                             --begin SECONDS -o FILE.npy
+
+Path tracing with the llvm_ad_rgb variant, by default with independent samples; with --denoise Open Image Denoise, led by albedo and normals.
+Writes the first picture, shape (height, width, 3), and prints JSON: the costs of the first picture,
+from the start of the process, and with --next of the next. Costs are wall-clock seconds and processor seconds of
+all threads. Needs the packages mitsuba and, with --denoise, pyoidn.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import time
+
+import drjit
+import mitsuba
+import sys
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tools.gltf_meshes import read_gltf
+
+SAMPLES_AT_A_TIME = 64  # of a pixel: bounds the memory of Mitsuba's wavefronts
+VARIANT = "llvm_ad_rgb"
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("--size", required=True)
+    parser.add_argument("--samples", type=int, required=True)
+    parser.add_argument("--sampler", default="independent", help="plugin of Mitsuba")
+    parser.add_argument("--denoise", action="store_true")
+    parser.add_argument("--next", action="store_true", help="time a second picture, too")
+    parser.add_argument("--begin", type=float, required=True,
+                        help="when the process was started, of time.monotonic()")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    return parser.parse_args()
+
+
+def diffuse(mesh):
+    """Its material. Single-sided ones reflect on their front only."""
+    matt = {"type": "diffuse", "reflectance": {"type": "rgb", "value": mesh.reflectance}}
+    return mitsuba.load_dict({"type": "twosided", "bsdf": matt} if mesh.double_sided else matt)
+
+
+def mitsuba_mesh(mesh, material):
+    """A mesh with flat normals."""
+    properties = mitsuba.Properties()
+    properties["bsdf"] = material
+    if any(mesh.radiance):
+        properties["emitter"] = mitsuba.load_dict(
+            {"type": "area", "radiance": {"type": "rgb", "value": mesh.radiance}})
+    made = mitsuba.Mesh(mesh.name, len(mesh.positions), len(mesh.triangles), props=properties)
+    values = mitsuba.traverse(made)
+    values["vertex_positions"] = mesh.positions.ravel()
+    values["faces"] = mesh.triangles.ravel()
+    values.update()
+    return made
+
+
+def seen_scene(meshes, view, width, height, sampler="independent"):
+    """Meshes of Mitsuba's as the camera of a file sees them."""
+    flip = np.diag([-1.0, 1.0, -1.0, 1.0])  # Mitsuba's cameras look along +z, with x to the left
+    camera = {"type": "perspective", "fov_axis": "y",
+              "fov": math.degrees(view.vertical_field_of_view),
+              "to_world": mitsuba.ScalarTransform4f(view.to_world @ flip),
+              "film": {"type": "hdrfilm", "width": width, "height": height,
+                       "rfilter": {"type": "box"}, "pixel_format": "rgb"},
+              "sampler": {"type": sampler}}
+    return mitsuba.load_dict({"type": "scene", "sensor": camera,
+                              **{f"mesh_{i}": mesh for i, mesh in enumerate(meshes)}})
+
+
+def mitsuba_scene(path, width, height, sampler="independent"):
+    meshes, view = read_gltf(path)
+    return seen_scene([mitsuba_mesh(mesh, diffuse(mesh)) for mesh in meshes], view, width, height, sampler)
+
+
+def integrator(denoise):
+    path = {"type": "path", "max_depth": -1}
+    if denoise:
+        path = {"type": "aov", "aovs": "albedo:albedo,normal:sh_normal", "integrator": path}
+    return mitsuba.load_dict(path)
+
+
+def render(scene, method, samples, seed, denoise):
+    """A picture; the samples come in parts, each with a seed of its own."""
+    total = 0
+    for first in range(0, samples, SAMPLES_AT_A_TIME):
+        count = min(SAMPLES_AT_A_TIME, samples - first)
+        part = mitsuba.render(scene, integrator=method, spp=count, seed=1000 * seed + first)
+        total = total + count * np.array(part)
+    pixels = (total / samples).astype(np.float32)
+    if not denoise:
+        return pixels
+    import pyoidn  # pylint: disable=import-outside-toplevel; only here is it needed
+    colour, albedo, normal = (np.ascontiguousarray(pixels[..., i:i + 3]) for i in (0, 3, 6))
+    return pyoidn.denoise(colour, albedo=albedo, normal=normal, hdr=True)
+
+
+def main():
+    options = arguments()
+    mitsuba.set_variant(VARIANT)
+    drjit.set_thread_count(os.cpu_count())
+    width, height = (int(side) for side in options.size.split("x"))
+    scene = mitsuba_scene(options.scene, width, height, options.sampler)
+    method = integrator(options.denoise)
+    np.save(options.output, render(scene, method, options.samples, 0, options.denoise))
+    first = {"seconds": time.monotonic() - options.begin, "processor": time.process_time()}
+    costs = {"first": first}
+    if options.next:
+        render(scene, method, options.samples, 1, options.denoise)
+        costs["frame"] = {"seconds": time.monotonic() - options.begin - first["seconds"],
+                          "processor": time.process_time() - first["processor"]}
+    print(json.dumps(costs))
+
+
+if __name__ == "__main__":
+    main()

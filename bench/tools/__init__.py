@@ -1,0 +1,1 @@
+"""What the scripts of several folders share, and what tests the tests."""

@@ -1,0 +1,395 @@
+#!/usr/bin/python3
+"""Faults drawn at random from the code, rather than chosen: which share of them the tests notice.
+
+    bench/tools/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--quick N] [--seconds N]
+                           [--part I/N --work FOLDER] [--results FILE] [--list] [--page]
+
+Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
+the folders groups, surface and trace of host/renderer. Mutants of kernels are copies of the folder that
+PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
+of the build at hand. Tests that noticed most in the least time come first, and the first that fails
+ends a mutant; one that does not compile does not count. With --quick N only steps that together take N
+seconds are run for each, and what these do not notice is left for a run without it.
+
+Results are added to docs/testing/drawn_mutants.json (--results), which holds the text of each line, so
+that its mutants are found again where code has moved; --seed and --count are for a file that is not there
+yet. Those decided there are not run again. Survivors need a look: "equivalent" with a reason there if no
+result can change, a test otherwise. --page writes the share into docs/testing.md.
+"""
+
+import argparse
+import fcntl
+import hashlib
+import json
+import math
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "bench"))
+from tools import mutant_sites
+from tools.mutant_builder import Builder, DoesNotCompile
+from tools.mutant_schemata import HEADER, Schemata
+from tools.mutant_tests import CannotRun, Order, Step, run_step, steps_of_folder
+from tools.report_section import replace_section
+
+RESULTS = ROOT / "docs/testing/drawn_mutants.json"
+HOST_FOLDERS = ("groups", "surface", "trace")
+
+# Cases of the tests of kernels, each with few variants to compile.
+KERNEL_CASES = {
+    "estimate": (
+        "irradiance equals the oracle's for one light",
+        "every vector width gives the oracle's irradiance for one light",
+        "neighbours equal the oracle's on a plate, for few and many photons and any k",
+        "neighbours equal the oracle's on a torus with triangles smaller than the radius",
+        "neighbours equal the oracle's where three plates meet and two lie back to back",
+        "ties at the border of the neighbourhood go to the smallest photon indices",
+        "clipped irradiance on plates of any triangulation equals the oracle's",
+        "clipped irradiance where surfaces bend out of the slab equals the oracle's",
+        "clipped irradiance on vertices and edges to the last bit equals the oracle's",
+        "the exact law of the estimate in a corner of 45 degrees",
+        "areas at corners, edges and T-junctions of the bundled rooms are the oracle's",
+        "tiles find the oracle's neighbours up to the radius, on either side of every border",
+        "tiles on a floor read 1, in their middle and at the border of the floor",
+        "thin plates of 1 to 20 mm read 1 on their faces: their insides count for nothing",
+        "maps of patches find the oracle's neighbours on a fine torus",
+        "irradiance equals the oracle's per light, for few and for many lights",
+        "glossy radiance equals the BSDF summed over the oracle's neighbours in double",
+        "weighted irradiance equals the oracle's for one light and for many, for any k",
+        "lanes differ from vectors in the order of sums alone",
+        "a hit keeps the lights that reach it, each once, however many there are",
+        "k of 1 to 900 gives the oracle's irradiance",
+        "extremes: photons within the radius by less than rounding moves them across cells",
+        "extremes: surfaces less than a float's rounding apart count as one",
+        "extremes: photons and hits on corners, edges and cell borders, and on the radius",
+        "neighbours equal the oracle's among 2^20 + 1 photons",
+        "extremes: the second photon at a distance that selection compares with",
+        "hits a rounding beyond an edge or a corner count as on it, far off along any axis",
+        "a panel all under a plate counts whole for hits on it, and as nothing for those above",
+        "of two photons in one place at the border of the neighbourhood one counts",
+        "hits that no photon comes near read nothing, next to hits that photons do",
+        "selection tells photons apart at distances of ten orders of magnitude",
+        "each light's estimates are those of its photons alone",
+        "lanes clip discs as the oracle does",
+        "lanes estimate the oracle's irradiance of several lights and of many",
+        "lanes estimate the oracle's glossy radiance"),
+    "maps": ("[#grid_contents_test]~[slow]~[long]", "[#prefix_sum_test]~[slow]"),
+    "surface": ("[#arctangent_test]", "[#logarithm_test]"),
+    "render": ("maps that keep normals give the same bits within an eighth of the memory",),
+    "bench": ("a search for all photons computes the distance of each once",)}
+# These cases run with a layer around OpenCL, which shows what GPUs run, and what is read or written
+# beyond a buffer.
+LAYER_CASES = (
+    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"), ("gpu", "maps", "[#prefix_sum_test]~[slow]"),
+    ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))
+# Beyond the tests of the folder itself.
+FURTHER_TESTS = {
+    "groups": (("maps", "grid_contents"), ("estimate", "patches_vs_oracle"),
+               ("estimate", "neighbours_vs_oracle")),
+    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "plate_irradiance"),
+                ("estimate", "clipped_surfaces")),
+    "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
+              ("reference", "path_materials"), ("reference", "path_interreflection"),
+              ("render", "direct_rays"), ("cache", "irradiance_gather"),
+              ("cache", "gathered_nodes"), ("measuring", "gather"),
+              ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
+              ("loading", "textured_lights"), ("daylight", "daylight_matrix"))}
+
+
+def host_files():
+    return [file for folder in HOST_FOLDERS
+            for file in sorted((ROOT / "host" / "renderer" / folder).glob("**/*.[ch]pp"))]
+
+
+def all_sites():
+    return list(mutant_sites.sites(ROOT, sorted(ROOT.glob("kernels/**/*.cl*")) + host_files()))
+
+
+def wilson(killed, count):
+    """The interval that holds the share with 95%."""
+    if count == 0:
+        return 0.0, 1.0
+    z, share = 1.96, killed / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    half = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
+    return middle - half, middle + half
+
+
+class Kernels:
+    """Runs mutants of kernels/ with the programs of the build."""
+
+    def __init__(self, build, work):
+        self.build, self.work = build, work
+        self.steps = [Step(folder, (case,)) for folder, cases in KERNEL_CASES.items() for case in cases]
+        self.steps += [Step(folder, (case,), layer=layer) for layer, folder, case in LAYER_CASES]
+        # Kernels that do not include the mutant's file are compiled once for all.
+        self.environment = {**os.environ, "XDG_CACHE_HOME": str(work / "cache"),
+                            "POCL_CACHE_DIR": str(work / "cache/pocl")}
+        (work / "cache/pocl").mkdir(parents=True, exist_ok=True)
+        self.environment.pop("PHOTILE_KERNEL_DIR", None)
+
+    def prepare(self, site):
+        shutil.rmtree(self.work / "kernels", ignore_errors=True)
+        shutil.copytree(ROOT / "kernels", self.work / "kernels")
+        (self.work / site.file).write_text(site.apply((ROOT / site.file).read_text(encoding="utf-8")),
+                                           encoding="utf-8")
+
+    def program(self, folder):
+        return self.build / f"tests/{folder}/photile_tests_{folder}"
+
+    def is_built_alone(self, site):
+        return False
+
+    def matters(self, step):
+        return True
+
+    def run(self, step, mutated, limit):
+        environment = dict(self.environment)
+        if mutated:
+            environment["PHOTILE_KERNEL_DIR"] = str(self.work / "kernels")
+        if step.layer:
+            environment["OPENCL_LAYERS"] = str(
+                self.build / f"tests/device/layers/libphotile_{step.layer}_layer.so")
+        return run_step(self.program(step.folder), step, environment, limit)
+
+
+class Host:
+    """Runs mutants of host/ in their common build, or in one of their own."""
+
+    def __init__(self, build, work, sites, order):
+        builder = Builder(build, work)
+        self.builder, self.work, self.order = builder, work, order
+        self.schemata = Schemata(builder, sites, HOST_FOLDERS)
+        self.numbers = {site.name: number for number, site in self.schemata.sites.items()}
+        self.own = {}  # programs of a mutant that is built alone
+        self.number = 0
+        self.reached = {}  # step -> numbers of the mutants that can change what it does
+        self.folder_steps = {
+            folder: steps_of_folder(self.schemata.program(folder), folder, work / f"{folder}.json",
+                                    order)
+            for folder in HOST_FOLDERS}
+
+    def steps(self, folder):
+        return self.folder_steps[folder] + [Step(other, (f"[#{file}_test]~[slow]",))
+                                            for other, file in FURTHER_TESTS[folder]]
+
+    def prepare(self, site):
+        self.own, self.number = {}, self.numbers[site.name]
+        self.own_programs = {}
+        if self.number not in self.schemata.alone:
+            return
+        copy, text = self.work / site.file, (ROOT / site.file).read_text(encoding="utf-8")
+        instrumented = copy.read_text(encoding="utf-8")
+        copy.write_text(site.apply(text), encoding="utf-8")
+        readers = self.builder.objects_that_read(site.file, HOST_FOLDERS)
+        try:
+            self.own = {name: self.builder.compile(name, ["-Wno-narrowing", "-include", str(HEADER)], "own")
+                        for name in readers if name in self.schemata.objects}
+        except DoesNotCompile:
+            raise CannotRun("it does not compile") from None
+        finally:
+            copy.write_text(instrumented, encoding="utf-8")
+
+    def is_built_alone(self, site):
+        return self.numbers[site.name] in self.schemata.alone
+
+    def matters(self, step):
+        """Whether the mutant gives a value of its own anywhere in the step; asked once for all mutants."""
+        if self.own:
+            return True
+        if step.key not in self.reached:
+            file = self.work / "reached" / f"{hashlib.sha256(step.key.encode()).hexdigest()[:16]}.txt"
+            if not file.is_file():
+                file.parent.mkdir(exist_ok=True)
+                part = file.with_suffix(".part")
+                part.unlink(missing_ok=True)
+                environment = {**os.environ, "PHOTILE_MUTANT_RECORD": str(part)}
+                outcome = run_step(self.schemata.program(step.folder), step, environment)
+                if outcome.failed or outcome.crashed:
+                    raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+                self.order.note(step, outcome.seconds)
+                part.touch()  # a step that comes by no mutant writes none
+                part.rename(file)
+            self.reached[step.key] = {int(line) for line in file.read_text(encoding="utf-8").split()}
+        return self.number in self.reached[step.key]
+
+    def run(self, step, mutated, limit):
+        if mutated and self.own:
+            if step.folder not in self.own_programs:
+                self.own_programs[step.folder] = self.builder.link(
+                    step.folder, {**self.schemata.objects, **self.own}, "own")
+            return run_step(self.own_programs[step.folder], step, None, limit)
+        environment = {**os.environ, "PHOTILE_MUTANT": str(self.number if mutated else 0)}
+        return run_step(self.schemata.program(step.folder), step, environment, limit)
+
+
+class NoTimeLeft(Exception):
+    """The steps that are left would take longer than allowed."""
+
+
+def try_mutant(site, runner, steps, order, seconds):
+    """The test that noticed, or None; NoTimeLeft after steps of so many seconds together."""
+    area = str(pathlib.PurePath(site.file).parent)
+    if seconds < math.inf and runner.is_built_alone(site):
+        raise NoTimeLeft
+    runner.prepare(site)
+    for step in order.of(steps, area, pathlib.PurePath(site.file).stem if area[0] == "h" else ""):
+        seconds -= order.seconds(step)
+        if seconds < 0 or (seconds < math.inf and not order.passed_before(step)):
+            raise NoTimeLeft
+        if not runner.matters(step):
+            seconds += order.seconds(step)
+            continue
+        if not order.passed_before(step):
+            outcome = runner.run(step, False, None)
+            if outcome.failed or outcome.crashed:
+                raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+            order.note(step, outcome.seconds)
+        outcome = runner.run(step, True, order.limit(step))
+        noticed = bool(outcome.failed or outcome.crashed)
+        order.count(step, area, noticed)
+        if noticed:
+            what = f"/{outcome.failed[0]}" if outcome.failed else ": crash"
+            return f"{step.folder}{what}{step.under_layer}"
+        order.note(step, outcome.seconds)
+    return None
+
+
+def stored(file):
+    text = file.read_text(encoding="utf-8") if file.is_file() else ""
+    return json.loads(text or "{}")
+
+
+def store(file, name, result):
+    with open(file, "a", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        results = stored(file)
+        results[name] = {**results.get(name, {}), **result}
+        file.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+
+
+def decided(result):
+    return any(kind in result for kind in ("noticed", "equivalent", "survives", "not_counted"))
+
+
+def draw(options):
+    """The mutants of the results, or as many as asked for: name -> site, None where its line is gone."""
+    results = stored(options.results)
+    if not results:
+        everything = all_sites()
+        for site in random.Random(options.seed).sample(everything, min(options.count, len(everything))):
+            text = (ROOT / site.file).read_text(encoding="utf-8").split("\n")[site.line]
+            results[site.name] = {"line": text}
+        options.results.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    return {name: found_again(name, result["line"]) for name, result in results.items()}
+
+
+def found_again(name, line):
+    """The site where the text of its line is now, the nearest one."""
+    place, token = name.split(" ")[:2]
+    file, number, column = place.split(":")
+    lines = (ROOT / file).read_text(encoding="utf-8").split("\n") if (ROOT / file).is_file() else []
+    nearest = min((i for i, text in enumerate(lines) if text == line),
+                  key=lambda i: abs(i + 1 - int(number)), default=None)
+    return None if nearest is None else mutant_sites.Site(file, nearest, int(column) - 1, token)
+
+
+def run_all(options, drawn):
+    work = options.work.resolve()
+    work.mkdir(exist_ok=True)
+    order = Order(work / f"order_{options.only or 'all'}.json")
+    results = stored(options.results)
+    left = [(name, site) for name, site in drawn.items() if not decided(results[name])
+            and (not options.only or name.startswith(options.only))]
+    part, parts = map(int, options.part.split("/"))
+    left = left[part - 1::parts]
+    end = time.monotonic() + options.seconds
+    host = None
+    kernels = Kernels(options.build, work)
+    for name, site in left:
+        if site is None:
+            store(options.results, name, {"not_counted": "its line is gone"})
+            continue
+        if time.monotonic() > end:
+            break
+        in_host = site.file.startswith("host/")
+        if in_host and host is None:
+            sites = [site for site in drawn.values() if site and site.file.startswith("host/")]
+            host = Host(options.build, work, sites, order)
+        runner = host if in_host else kernels
+        steps = host.steps(site.file.split("/")[2]) if in_host else kernels.steps
+        before = os.times()
+        try:
+            noticed = try_mutant(site, runner, steps, order, options.quick)
+            result = {"noticed": noticed} if noticed else {"survives": ""}
+        except NoTimeLeft:
+            continue
+        except CannotRun as reason:
+            result = {"not_counted": str(reason).splitlines()[0]}
+        after = os.times()
+        result["seconds"] = round(after.children_user + after.children_system
+                                  - before.children_user - before.children_system, 1)
+        store(options.results, name, result)
+        print(f"{name}: {result}", flush=True)
+
+
+def page(results):
+    """The section of docs/testing.md."""
+    rows = ["| | drawn | noticed | equivalent | survive | do not compile | not decided | "
+            "share noticed |", "|---|--:|--:|--:|--:|--:|--:|---|"]
+    areas = {"kernels": "kernels/", "groups": "host/renderer/groups/", "surface": "host/renderer/surface/",
+             "trace": "host/renderer/trace/", "all": ""}
+    for name, start in areas.items():
+        count = sum(mutant.startswith(start) for mutant in results)
+        of_area = [result for mutant, result in results.items()
+                   if mutant.startswith(start) and decided(result)]
+        noticed, equivalent, survive, refused = (
+            sum(kind in result for result in of_area)
+            for kind in ("noticed", "equivalent", "survives", "not_counted"))
+        low, high = wilson(noticed, noticed + survive)
+        share = f"{100 * noticed / max(noticed + survive, 1):.1f}% ({100 * low:.0f} to {100 * high:.0f}%)"
+        if len(of_area) < count:  # those that the quickest tests notice are decided first
+            share = f"at least {100 * noticed / max(count - equivalent - refused, 1):.0f}%"
+        rows.append(f"| {name} | {count} | {noticed} | {equivalent} | {survive} | {refused} | "
+                    f"{count - len(of_area)} | {share} |")
+    return "\n".join(rows) + "\n"
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=29)
+    parser.add_argument("--only", choices=("kernels", "host"))
+    parser.add_argument("--quick", type=float, default=math.inf, metavar="SECONDS")
+    parser.add_argument("--part", default="1/1", metavar="I/N", help="of those that are left")
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/mutants")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="after which none is begun")
+    parser.add_argument("--list", action="store_true", help="print those drawn, run none")
+    parser.add_argument("--page", action="store_true", help="write docs/testing.md, run none")
+    parser.add_argument("--results", type=pathlib.Path, default=RESULTS)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    drawn = draw(options)
+    if options.list:
+        print("\n".join(drawn))
+    elif options.page:
+        replace_section(ROOT / "docs/testing.md", "tools/drawn_mutants.py", page(stored(options.results)))
+    else:
+        run_all(options, drawn)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (OSError, ValueError, CannotRun, DoesNotCompile, subprocess.CalledProcessError) as error:
+        sys.exit(f"drawn_mutants.py: error: {error}")
