@@ -26,7 +26,8 @@ CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
 SIZE = (320, 200)  # pixels of the page and of pictures
 
 # Limits. A picture's squared error relative to what is seen, as `photile compare` has it; the mean;
-# lux beside measured ones, and how many of their standard errors more; main thread of a frame, ms.
+# lux beside measured ones, and how many of their standard errors more, of nine clicks in ten, for
+# errors leave out the blur of light maps at shadows (docs/light-maps.md); main thread of a frame, ms.
 LARGEST_REL_MSE = 0.003
 LARGEST_MEAN = 0.005
 LARGEST_LUX = 0.01
@@ -144,18 +145,20 @@ def check_clicks(browser, folder, scene, more):
     table = folder / "clicks.json"
     photile("measure", scene, "--points", points, "-o", table, "-q", *more)
     measured = [value for grid in json.loads(table.read_text())["grids"] for value in grid["sensors"]]
+    beyond = 0
     for click, sensor in zip(clicks, measured):
         lux, error = sensor["lux"], sensor["standard_error"]
         allowed = LARGEST_LUX * lux + STANDARD_ERRORS * np.hypot(error, click["error"])
         print(f"lux {click['lux']:.1f} +- {click['error']:.1f}, measured {lux:.1f} +- {error:.1f}")
-        assert abs(click["lux"] - lux) <= allowed
+        beyond += abs(click["lux"] - lux) > allowed
+    assert beyond <= 1, f"{beyond} of 10 clicks are off"
 
 
 def test_cornell_box(browser, folder):
     scene = SOURCE / "scenes/cornell-box/cornell-box.gltf"
-    page, maps, picture = (folder / name for name in ("box.html", "box.maps", "box.exr"))
-    photile("publish", scene, "-o", page, "--save-maps", maps, "-q", "--texel", "0.0025")
-    photile("render", scene, "-o", picture, "--load-maps", maps, "-q", "--size", "%dx%d" % SIZE)
+    page, picture = folder / "box.html", folder / "box.exr"
+    photile("publish", scene, "-o", page, "-q")
+    photile("render", scene, "-o", picture, "-q", "--size", "%dx%d" % SIZE)
     browser.open(page)
     compare("as published", browser.radiance(), radiance_of(picture))
     photile("relight", picture, "--light", "lamp=x0.3", "-o", folder / "dimmed.exr")
