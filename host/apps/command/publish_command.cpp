@@ -14,7 +14,6 @@
 #include "command/processes.hpp"
 #include "command/quality_options.hpp"
 #include "command/render_options.hpp"
-#include "command/saved_maps_option.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
@@ -68,10 +67,8 @@ void run_publish(PublishOptions& options) {
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
 
-  std::optional<PreparedPhotons> prepared = load_maps(scene, render, progress);
   RenderSession session(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
-                        prepared ? &*prepared : nullptr, keep_maps(scene, render, progress),
-                        progress);
+                        nullptr, {}, progress);
   cache::SurfaceCache& cache = *session.light().cache();
   if (!options.baking.exact) {  // in a small room finer, as nodes are
     options.baking.texel = std::min(defaults::published_texel, cache.maps().charts().spacing() / 2);
@@ -81,7 +78,6 @@ void run_publish(PublishOptions& options) {
       limits::max_published_texels / std::max<std::size_t>(1, mix.lights.size());
   const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),
                                options.baking, progress);
-  keep_light_maps(session.light_map_contents(), render, progress);
 
   progress.begin("write the page", 0, "");
   const cache::GatheredNodes* gathered = session.light().gathered();
@@ -136,7 +132,6 @@ void add_publish_command(CLI::App& photile) {
   add_quality_preset(*command, options->render.quality_options());
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
-  add_saved_maps_options(*command, options->render);
   command->callback([options] { run_publish(*options); });
 }
 

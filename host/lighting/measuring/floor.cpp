@@ -244,20 +244,13 @@ constexpr double beyond_hit = 1e-4;  // metres
 constexpr int most_crossings = 1000;
 constexpr double off_surface = 1e-3;  // metres
 
-glm::dvec3 place_of(const Scene& scene, const trace::TriangleHit& hit) {
-  const auto corners = scene.corners(hit.triangle);
-  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
-  return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
-         v * glm::dvec3(corners[2]);
-}
-
 /// Number of surfaces on a ray.
 int crossings(const RayScene& rays, glm::dvec3 from, const glm::dvec3& direction) {
   int count = 0;
   for (; count < most_crossings; ++count) {
     const auto hit = trace::intersect(rays, glm::vec3(from), glm::vec3(direction));
     if (!hit) break;
-    from = place_of(rays.scene(), *hit) + beyond_hit * direction;
+    from = trace::position_of(rays.scene(), *hit) + beyond_hit * direction;
   }
   return count;
 }

@@ -206,13 +206,6 @@ std::vector<Segment> walls_of(const Scene& scene, const Frame& frame) {
   return walls;
 }
 
-glm::dvec3 point_of(const Scene& scene, const trace::TriangleHit& hit) {
-  const auto corners = scene.corners(hit.triangle);
-  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
-  return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
-         v * glm::dvec3(corners[2]);
-}
-
 /// Metres from the plane to what lies below, at the middles of columns x rows.
 std::vector<double> depths_below(const RayScene& rays, const Frame& frame, int columns, int rows) {
   const trace::FlushDenormals flush_denormals;
@@ -224,7 +217,7 @@ std::vector<double> depths_below(const RayScene& rays, const Frame& frame, int c
       const glm::dvec2 place =
           frame.low() + extent * glm::dvec2((x + 0.5) / columns, (y + 0.5) / rows);
       const auto hit = trace::intersect(rays, glm::vec3(frame.point_at(place)), glm::vec3(down));
-      depths.push_back(hit ? -frame.height_of(point_of(rays.scene(), *hit))
+      depths.push_back(hit ? -frame.height_of(trace::position_of(rays.scene(), *hit))
                            : std::numeric_limits<double>::quiet_NaN());
     }
   }

@@ -43,6 +43,14 @@ struct SurfacePoint {
 TriangleHit nearest_on_triangle(const Scene& scene, std::uint32_t triangle,
                                 const glm::dvec3& position);
 
+/// Where a triangle is hit, metres.
+inline glm::dvec3 position_of(const Scene& scene, const TriangleHit& hit) {
+  const auto corners = scene.corners(hit.triangle);
+  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+  return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
+         v * glm::dvec3(corners[2]);
+}
+
 /// The point `where` on the given side of its triangle.
 SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side);
 
