@@ -85,7 +85,7 @@ def branches(height=0.42, seed=4, stems=6, pairs=8, foot=0.03, size=0.05):
 
 
 def trailing(seed=8, leaves=46, reach=0.16, hang=0.22):
-    """Leaves over the rim of a small pot that stands below y = 0: (stems, leaves)."""
+    """Leaves over the rim of a small pot that stands below y = 0, few of them behind it: (stems, leaves)."""
     source = random.Random(seed)
     wood, foliage = Shape(), Shape()
     for number in range(leaves):
@@ -93,7 +93,7 @@ def trailing(seed=8, leaves=46, reach=0.16, hang=0.22):
         out = reach * source.uniform(0.45, 1.0)
         front = max(0.0, math.sin(turn))
         drop = hang * front * source.uniform(0.0, 1.0)
-        c, s = math.cos(turn), math.sin(turn)
+        c, s = math.cos(turn), max(-0.4, math.sin(turn))
         tip = (c * out, 0.10 * source.uniform(0.3, 1.0) * (1 - front) - drop + 0.02, s * out)
         bend = (c * out * 0.62, 0.05, s * out * 0.62)
         wood.add(tube([(c * 0.02, -0.02, s * 0.02), bend, tip], 0.0012, 4))
