@@ -79,13 +79,13 @@ KERNEL_CASES = {
         "lanes clip discs as the oracle does",
         "lanes estimate the oracle's irradiance of several lights and of many",
         "lanes estimate the oracle's glossy radiance"),
-    "maps": ("[#grid_contents_test]~[slow]~[long]", "[#prefix_sum_test]~[slow]"),
+    "maps": ("[#grid_contents_test]~[slow]~[long]",),
     "surface": ("[#arctangent_test]", "[#logarithm_test]"),
     "render": ("maps that keep normals give the same bits within an eighth of the memory",),
     "bench": ("a search for all photons computes the distance of each once",)}
 # The same with a layer around OpenCL: what GPUs run, and what is read or written beyond a buffer.
 LAYER_CASES = (
-    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"), ("gpu", "maps", "[#prefix_sum_test]~[slow]"),
+    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"),
     ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))
 # Beyond the tests of the folder itself.
 FURTHER_TESTS = {
@@ -93,9 +93,7 @@ FURTHER_TESTS = {
                ("estimate", "neighbours_vs_oracle")),
     "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "plate_irradiance"),
                 ("estimate", "clipped_surfaces")),
-    "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
-              ("reference", "path_materials"), ("reference", "path_interreflection"),
-              ("render", "direct_rays"), ("cache", "irradiance_gather"),
+    "trace": (("reference", "path_light"), ("render", "direct_rays"), ("cache", "irradiance_gather"),
               ("cache", "gathered_nodes"), ("measuring", "gather"),
               ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
               ("loading", "textured_lights"), ("daylight", "daylight_matrix"))}

@@ -1,5 +1,7 @@
-// `photile trade`, and pictures made until one is good enough.
+// Measurements of the program's own: time against error, closed forms; and baked rooms.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -14,6 +16,8 @@ namespace {
 
 using Catch::Contains;
 
+// `photile trade`, and pictures made until one is good enough.
+
 std::string text_of(const std::string& file) {
   std::ifstream stream(file);
   std::ostringstream text;
@@ -24,8 +28,6 @@ std::string text_of(const std::string& file) {
 std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
-
-}  // namespace
 
 TEST_CASE("a trade writes its files and prints a row for each wanted error", "[slow]") {
   const FileFolder folder;
@@ -141,4 +143,85 @@ TEST_CASE("wanted errors and times that are none are usage errors") {
   only_error(run_photile({"render", write_box(folder), "-o", folder / "box.exr", option}), 2);
 }
 
+// `photile validate`: the table, the JSON and the exit codes.
+
+TEST_CASE("validate prints expected, measured and error, and says the same in JSON") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile({"validate", "--case", "point light", "--integrator", "path",
+                                       "--paths", "100", "--json", folder / "readings.json"});
+  INFO(outcome.errors);
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.output, Contains("expected") && Contains("point light over a surface") &&
+                                 Contains("below the lamp") && Contains("ok"));
+  const auto record = nlohmann::json::parse(folder.read("readings.json"));
+  CHECK(record["seeds"] == 16);
+  REQUIRE(record["readings"].size() == 4);
+  for (const auto& reading : record["readings"]) {
+    CHECK(reading["unit"] == "lx");
+    CHECK(reading["path"]["verdict"] == "ok");
+    CHECK(reading["path"]["value"] == Approx(reading["expected"].get<double>()).epsilon(0.001));
+    CHECK_FALSE(reading.contains("photon_map"));
+  }
+}
+
+TEST_CASE("readings that are too noisy for 1% make validate fail") {
+  const Outcome outcome = run_photile(
+      {"validate", "--case", "opposed", "--photons", "1000", "-k", "5", "--paths", "1", "--quiet"});
+  CHECK(outcome.exit_code == 1);
+  CHECK_THAT(outcome.output, Contains("too noisy"));
+  CHECK_THAT(last_error(outcome, 1), Contains("1 of 1 readings") && Contains("--photons"));
+}
+
+TEST_CASE("an unknown case is a usage error that lists those there are") {
+  CHECK_THAT(only_error(run_photile({"validate", "--case", "moonlight"}), 2),
+             Contains("moonlight") && Contains("integrating sphere"));
+}
+
+// `photile bake`: the files that it writes, and what other programs find in them.
+
+std::vector<std::string> bake(const FileFolder& folder, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{
+      "bake", write_box(folder), "-o", folder / "baked.gltf", "--photons", "50k"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST_CASE("a baked scene has a second set of coordinates and a picture for each light") {
+  const FileFolder folder;
+  const Outcome outcome = run_photile(bake(folder));
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  const nlohmann::json document = nlohmann::json::parse(folder.read("baked.gltf"));
+  const auto& primitive = document["meshes"][0]["primitives"][0];
+  const auto& lights = document["accessors"][primitive["attributes"]["TEXCOORD_1"].get<int>()];
+  CHECK(lights["type"] == "VEC2");
+  CHECK(lights["count"] ==
+        document["accessors"][primitive["attributes"]["POSITION"].get<int>()]["count"]);
+  for (const int axis : {0, 1}) {
+    CHECK(lights["min"][axis] >= 0.0);
+    CHECK(lights["max"][axis] <= 1.0);
+  }
+  const auto& maps = document["scenes"][0]["extras"]["photile"]["light_maps"];
+  REQUIRE(maps.size() == 2);
+  for (const auto& map : maps) {
+    const Image picture = read_image(folder / map["uri"].get<std::string>());
+    CHECK(picture.attributes.at("photile.light") == map["light"].get<std::string>());
+    const std::vector<float>& green = *picture.find("G");
+    CHECK(*std::max_element(green.begin(), green.end()) > 0);
+    CHECK(*std::min_element(green.begin(), green.end()) >= 0);
+  }
+  CHECK(std::filesystem::file_size(folder / "baked.bin") ==
+        document["buffers"][0]["byteLength"].get<std::size_t>());
+}
+
+TEST_CASE("bake refuses what it cannot do in one line") {
+  const FileFolder folder;
+  CHECK_THAT(only_error(run_photile({"bake", write_box(folder), "-o", folder / "a.glb"}), 2),
+             Contains(".gltf"));
+  CHECK_THAT(last_error(run_photile(bake(folder, {"--texel", "0.00001"})), 2),
+             Contains("do not fit"));
+  CHECK_THAT(only_error(run_photile(bake(folder, {"--texel", "0"})), 2), Contains("--texel"));
+}
+
+}  // namespace
 }  // namespace photile::test

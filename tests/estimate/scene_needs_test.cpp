@@ -42,8 +42,7 @@ constexpr SceneNeeds glossy_of(std::uint32_t lights) {
 
 }  // namespace
 
-TEST_CASE("a diffuse scene of one light has the smallest records, others what they need more",
-          "[needs]") {
+TEST_CASE("a diffuse scene of one light has the smallest records, others what they need more") {
   // The table of docs/kernels.md, "Records".
   const auto [needs, bytes] = GENERATE(table<SceneNeeds, std::size_t>({
       {diffuse_of(1), 28},
@@ -84,7 +83,7 @@ TEST_CASE("a diffuse scene of one light has the smallest records, others what th
   CHECK(hits.lobe.size() == (needs.glossy ? hits.size() : 0));
 }
 
-TEST_CASE("only what triangles have is needed: unused materials ask for nothing", "[needs]") {
+TEST_CASE("only what triangles have is needed: unused materials ask for nothing") {
   Scene scene = test::closed_box(test::diffuse(glm::vec3(0.5f)));
   scene.materials.push_back(test::glossy(glm::vec3(0.5f), glm::vec3(0.5f), 0.3f));
   scene.materials.push_back(test::glass(1.5f, /*thin=*/true));
