@@ -2,12 +2,13 @@
 """A film of what the window shows from its start on, and how far that is from the finished picture: the
 table of docs/walkthrough.md.
 
-    bench/pictures/window_film.py [SCENES] [--only NAME] [--seconds N] [--size WxH] [--film FOLDER]
+    bench/pictures/window_film.py [SCENES] [--only NAME] [--seconds N] [--size WxH] [--film FOLDER] [--slide]
 
 Opens `photile view` on a screen in memory for each scene, looks at this screen twenty times a second, and
 compares what stands beside the panels with the picture of `photile render`. Keeps each picture that the
-window showed as FOLDER/NAME/SECONDS.png. Needs the built command,
-Debian's xvfb, and the packages numpy and OpenImageIO.
+window showed as FOLDER/NAME/SECONDS.png. With --slide it then pulls the slider of the second lamp to and fro,
+and prints how long the picture takes to follow. Needs the built command, Debian's xvfb and xdotool, and the
+packages numpy and OpenImageIO.
 """
 
 import os
@@ -52,6 +53,7 @@ def arguments():
     parser.add_argument("--references", type=pathlib.Path, metavar="FOLDER",
                         help="where pictures of `photile render` are kept, and read again; default: nowhere")
     parser.add_argument("--rest", action="store_true", help="wait until the window is at rest, too")
+    parser.add_argument("--slide", action="store_true", help="print how quickly a slider shows, too")
     parser.add_argument("--options", type=shlex.split, default=[], metavar="'OPTION ...'",
                         help="of the window beside the scene's own")
     return parser.parse_args()
@@ -88,6 +90,9 @@ class Screen:
                 return rows[:, :self.width, 2::-1]
             last = now
 
+    def mouse(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], check=True, env={**os.environ, "DISPLAY": self.display})
+
     def close(self):
         self.process.terminate()
         self.process.wait()
@@ -110,6 +115,45 @@ def beside_panels(picture):
     return picture[READING:-READING, PANELS:]
 
 
+def sliders(screen):
+    """(x, y) of the knobs of the lamps' sliders, from the top."""
+    panel = screen.shown()[:, :PANELS - 60].astype(int)
+    blue = (panel[..., 2] > 180) & (panel[..., 0] < 100) & (panel[..., 1] > 80) & (panel[..., 1] < 160)
+    found = []
+    for y in np.flatnonzero(blue[:, 24:204].sum(axis=1) > 3):
+        if not found or y > found[-1][1] + 12:
+            found.append((24 + int(np.flatnonzero(blue[y, 24:204]).mean()), int(y) + 4))
+    return found
+
+
+def brightness(screen):
+    """Of the picture, from some of its bytes."""
+    return np.frombuffer(screen.trace(), dtype=np.uint8).mean()
+
+
+def seconds_to_follow(screen):
+    """From a jump of the second lamp's slider until the picture shows it: a list, one for each jump."""
+    knobs = sliders(screen)
+    if len(knobs) < 2:
+        raise OSError("no sliders are seen in the window")
+    x, y = knobs[1]
+    screen.mouse("mousemove", x, y, "mousedown", 1)
+    taken = []
+    for jump in range(8):
+        time.sleep(0.5)
+        before = brightness(screen)
+        begin = time.monotonic()
+        screen.mouse("mousemove", 22 if jump % 2 == 0 else x, y)
+        begin = (begin + time.monotonic()) / 2  # xdotool takes some milliseconds itself
+        while abs(brightness(screen) - before) < 1:
+            if time.monotonic() > begin + SCREEN_PATIENCE:
+                raise OSError("the picture does not follow the slider")
+            time.sleep(0.002)
+        taken.append(time.monotonic() - begin)
+    screen.mouse("mouseup", 1)
+    return taken
+
+
 def film(command, scene, options, asked, seconds):
     """What the window shows: (seconds, processor seconds, RGB) of each new picture, the last when it is
     at rest if that is waited for."""
@@ -127,6 +171,11 @@ def film(command, scene, options, asked, seconds):
                 if (newest := screen.trace()) != trace:
                     trace = newest
                     pictures.append((now, processor_seconds(process), screen.shown().copy()))
+                if now > seconds and asked.slide:
+                    taken = sorted(1000 * one for one in seconds_to_follow(screen))
+                    print(f"a slider shows after {taken[len(taken) // 2]:.0f} ms ({taken[0]:.0f} to "
+                          f"{taken[-1]:.0f})", flush=True)
+                    asked.slide = False
                 if now > seconds and not asked.rest:
                     return pictures
                 if now > seconds and at_rest(title_of(screen)):

@@ -30,6 +30,7 @@ struct Camera;
 /// The rays through a film of some size: what all of its pixels share, computed once.
 class FilmDirections {
  public:
+  /// Errors: UsageError for a camera whose position, axes or field of view are no numbers in range.
   FilmDirections(const Camera& camera, int width, int height);
 
   /// Unit direction through film position (x, y) in pixels, (0,0) the upper left corner of the

@@ -87,18 +87,6 @@ class NodeSource {
   virtual void forget() {}
 };
 
-/// Values each node by what is known at its point.
-class PointSource : public NodeSource {
- public:
-  /// Irradiance at points of the surface, each light at power 1; radiance is not looked at. What a
-  /// point gets must not depend on the others, or on their order.
-  virtual Estimates irradiance(const PrimaryHits& nodes) = 0;
-
-  NodeValues value(const NodeBatch& batch, const Progress&) final {
-    return {irradiance(batch.points), {}, {}};
-  }
-};
-
 struct LightMapParameters {
   double spacing = defaults::light_map_spacing;  ///< metres, > 0: of the coarsest nodes, at most
   int levels = defaults::light_map_levels;       ///< the finest is spacing / 2^(levels - 1)

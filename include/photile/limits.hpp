@@ -76,7 +76,8 @@ inline constexpr std::uint64_t max_photometric_values = 4'000'000;
 inline constexpr double min_color_temperature = 1'000, max_color_temperature = 40'000;  ///< kelvin
 /// Lumens or watts of a light: over any area above a square millimetre, floats hold its radiance.
 inline constexpr double max_light_power = 1e30;
-inline constexpr double max_illuminance = 1e30;   ///< lux of a sun or a sky
+/// Lux of a sun or a sky: floats hold the radiance of all of its parts.
+inline constexpr double min_illuminance = 1e-30, max_illuminance = 1e30;
 inline constexpr double max_irradiance = 10'000;  ///< W/m2 of a sun or a sky, seven times the sun's
 /// Each line of photons and each look at the sky is held against all of them.
 inline constexpr std::size_t max_portals = 64;

@@ -141,7 +141,7 @@ bool has_unseen_caustics(const Scene& scene);
 
 /// What all settings of a rendering follow, where nothing else is said.
 enum class Quality {
-  draft,  ///< the photon estimate at each hit: quick, mottled
+  draft,  ///< light maps whose nodes have photon estimates: quick, soft
   good,   ///< light maps whose nodes gather: clean to the eye
   best    ///< the same with four times the rays, photons and samples
 };

@@ -13,18 +13,19 @@
 namespace photile::test {
 
 /// One light, whose irradiance is a function of the place; counts what it was asked.
-class FormulaSource : public PointSource {
+class FormulaSource : public NodeSource {
  public:
   using Formula = std::function<float(const glm::vec3& position, std::uint32_t sided_triangle)>;
   explicit FormulaSource(Formula formula) : formula_(std::move(formula)) {}
 
-  Estimates irradiance(const PrimaryHits& nodes) override {
-    Estimates estimates;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      estimates.irradiance.emplace_back(formula_(nodes.position[i], nodes.sided_triangle[i]));
+  NodeValues value(const NodeBatch& batch, const Progress&) override {
+    NodeValues values;
+    for (std::size_t i = 0; i < batch.points.size(); ++i) {
+      values.irradiance.irradiance.emplace_back(
+          formula_(batch.points.position[i], batch.points.sided_triangle[i]));
     }
-    asked += nodes.size();
-    return estimates;
+    asked += batch.points.size();
+    return values;
   }
 
   std::size_t asked = 0;

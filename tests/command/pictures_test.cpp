@@ -3,8 +3,10 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -39,6 +41,20 @@ nlohmann::json compare(const FileFolder& folder, const std::string& a, const std
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("left"));
   return nlohmann::json::parse(folder.read("compared.json"));
+}
+
+TEST_CASE("a picture with a value that is no number is refused by its name") {
+  const FileFolder folder;
+  Image image;
+  image.width = image.height = 2;
+  for (const char* name : {"R", "G", "B"}) image.add(name) = {1, 1, 1, 1};
+  write_exr(folder / "sound.exr", image);
+  image.channels.front()[2] = std::numeric_limits<float>::quiet_NaN();
+  write_exr(folder / "damaged.exr", image);
+  for (const auto& [a, b] : {std::pair("sound.exr", "damaged.exr"), {"damaged.exr", "sound.exr"}}) {
+    CHECK_THAT(only_error(run_photile({"compare", folder / a, folder / b}), bad_input),
+               Contains("damaged.exr") && Contains("1 of its values"));
+  }
 }
 
 TEST_CASE("a picture is equal to itself, and the drawing shows both and no difference") {

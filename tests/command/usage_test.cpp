@@ -34,6 +34,21 @@ TEST_CASE("an unknown option is a usage error of one line that names it") {
   CHECK_THAT(line, Contains("--fast") && Contains("photile render --help"));
 }
 
+TEST_CASE("an empty value is refused, and takes no other word in its place") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder), notes = folder.write("notes.txt", "precious");
+  for (const std::string option : {"--stats", "--save-maps", "--png", "--glare", "--errors"}) {
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{option + "=", notes}, std::vector<std::string>{option, ""}}) {
+      std::vector<std::string> arguments{"render", scene, "-o", folder / "out.exr"};
+      arguments.insert(arguments.end(), words.begin(), words.end());
+      CHECK_THAT(only_error(run_photile(arguments), usage), Contains(option) && Contains("empty"));
+    }
+  }
+  CHECK(folder.read("notes.txt") == "precious");
+  CHECK_THAT(only_error(run_photile({"render", ""}), usage), Contains("empty"));
+}
+
 TEST_CASE("an unknown subcommand is a usage error of one line") {
   CHECK_THAT(only_error(run_photile({"paint"}), usage), Contains("photile --help"));
 }
@@ -120,6 +135,24 @@ TEST_CASE("an unknown light is a usage error that lists the lights") {
              Contains("middle") && Contains("left") && Contains("right"));
 }
 
+TEST_CASE("a sky too dark for its radiance to be a number is refused") {
+  const FileFolder folder;
+  for (const std::string sky : {"clear=1e-50", "perez=1,1e-300"}) {
+    const Outcome outcome =
+        run_photile({"render", write_box(folder), "-o", folder / "out.exr", "--sky", sky, "--site",
+                     "52,13,1", "--time", "2026-06-21T12:00", "--size", "8x8"});
+    CHECK_THAT(last_error(outcome, usage), Contains("lux") && Contains("at least"));
+  }
+}
+
+TEST_CASE("parallel rays that span more than scenes may hold are refused") {
+  const FileFolder folder;
+  const Outcome outcome =
+      run_photile({"render", write_box(folder), "-o", folder / "out.exr", "--projection",
+                   "orthographic", "--field-of-view", "1e19", "--size", "8x8"});
+  CHECK_THAT(last_error(outcome, usage), Contains("--field-of-view"));
+}
+
 TEST_CASE("an unknown camera is a usage error that lists the cameras") {
   const FileFolder folder;
   const Outcome outcome = render_with(folder, "--camera", "nobody");
@@ -201,7 +234,7 @@ TEST_CASE("what --set does not know is refused in a line that says what to type"
           {"render", {"--set", "Radius=1"}, "nearest is radius"},
           {"render", {"--set", "radius"}, "radius=X"},
           {"render", {"--set", "maps="}, "naive"},
-          {"render", {"--set", ""}, "photile settings"},
+          {"render", {"--set", ""}, "empty"},
           {"render", {"--set", "samples_per_pixel=4"}, "--samples"},
           {"render", {"--set", "width=4"}, "--size"},
           {"measure", {"--set", "gloss=rays"}, "no use"},
@@ -282,8 +315,8 @@ TEST_CASE("--quality sets settings that go together, and those given beside it c
   CHECK(good["photons_emitted"] == 5000);
   CHECK(good["samples_per_pixel"] == 2);
   CHECK(good["light_maps"] == "on");
-  CHECK(good == made_with({"--samples", "2"}));  // the usual quality
-  CHECK(good["neighbours"] > draft["neighbours"]);
+  CHECK(good == made_with({"--samples", "2"}));     // the usual quality
+  CHECK(good["neighbours"] < draft["neighbours"]);  // nodes average over rays, not over photons
   CHECK(good["light_map_rays"] > 0);
   CHECK_THAT(only_error(run_photile({"render", write_box(folder), "-o", folder / "b.exr",
                                      "--quality", "best"}),

@@ -49,11 +49,11 @@ TEST_CASE("a device is refused as an output and stays the device it was") {
 TEST_CASE("a run removes what killed runs left in the folder, and nothing that is in use") {
   const TemporaryFolder folder;
   // Files that no process holds; the last two names are not of photile's.
-  for (const char* name : {".a.exr.photile.4194305", ".b.png.photile.1"}) {
+  for (const char* name : {".photile.0123456789abcdef", ".photile.00000000ffffffff"}) {
     write_bytes(folder / name, "half");
   }
-  for (const char* name :
-       {".a.exr.photile.x", ".a.exr.tmp.12", "a.exr.photile.12", ".photile.7x"}) {
+  for (const char* name : {".photile.0123456789abcdeg", ".photile.0123456789abcdef0",
+                           "photile.0123456789abcdef", ".photile.7"}) {
     write_bytes(folder / name, "mine");
   }
   // A child that writes.
@@ -76,8 +76,8 @@ TEST_CASE("a run removes what killed runs left in the folder, and nothing that i
   char byte = 0;
   REQUIRE(::read(ready[0], &byte, 1) == 1);
   write_exr(folder / "a.exr", noise(4, 4));
-  CHECK_FALSE(fs::exists(folder / ".a.exr.photile.4194305"));
-  CHECK_FALSE(fs::exists(folder / ".b.png.photile.1"));
+  CHECK_FALSE(fs::exists(folder / ".photile.0123456789abcdef"));
+  CHECK_FALSE(fs::exists(folder / ".photile.00000000ffffffff"));
   CHECK(files_in(folder.path) == 6);  // a.exr, the child's and the four others
   REQUIRE(::write(done[1], "d", 1) == 1);
   int status = -1;
@@ -85,6 +85,25 @@ TEST_CASE("a run removes what killed runs left in the folder, and nothing that i
   CHECK(status == 0);
   CHECK(bytes_of(folder / "c.exr") == "whole");
   for (const int end : {ready[0], ready[1], done[0], done[1]}) ::close(end);
+}
+
+TEST_CASE("a name of the longest length is written") {
+  const TemporaryFolder folder;
+  const std::string longest = std::string(251, 'a') + ".exr";
+  write_exr(folder / longest, noise(4, 4));
+  CHECK(read_image(folder / longest).width == 4);
+  CHECK_THAT(refusal(write_exr, folder / ("a" + longest)), Catch::Contains("shorter"));
+}
+
+TEST_CASE("temporary files of one output do not meet, whatever the process numbers are") {
+  const TemporaryFolder folder;
+  OutputFile first(folder / "a.txt"), second(folder / "a.txt");
+  first.write("first", 5);
+  second.write("second", 6);
+  first.commit();
+  CHECK(bytes_of(folder / "a.txt") == "first");
+  second.commit();
+  CHECK(bytes_of(folder / "a.txt") == "second");
 }
 
 TEST_CASE("a symbolic link to what does not exist is followed, or refused and kept") {

@@ -11,6 +11,7 @@
 
 #include "common/content_hash.hpp"
 #include "photile/camera.hpp"
+#include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/photile.hpp"
 #include "photile/scene_builder.hpp"
@@ -483,6 +484,29 @@ glm::dvec3 seen(const Camera& camera, double right, double up) {
 }
 
 double angle_to_axis(const glm::dvec3& direction) { return std::acos(-direction.z); }
+
+TEST_CASE("a camera whose rays would be no numbers is refused") {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](const Camera& camera) {
+    CHECK_THROWS_AS(camera.directions(4, 4), UsageError);
+  };
+  for (const double far : {1e20, none}) {
+    Camera camera = camera_of(Projection::perspective, 60);
+    camera.position.y = far;
+    refused(camera);
+  }
+  for (const double degrees : {0.0, -60.0, 361.0, none}) {
+    refused(camera_of(Projection::perspective, degrees));
+  }
+  Camera parallel = camera_of(Projection::orthographic);
+  for (const double height : {0.0, 1e19, none}) {
+    parallel.orthographic_height = height;
+    refused(parallel);
+  }
+  Camera tilted = camera_of(Projection::perspective, 60);
+  tilted.up = {0, none, 0};
+  refused(tilted);
+}
 
 TEST_CASE("in the angular projection the radius is the angle") {
   for (const double degrees : {90.0, 180.0, 300.0}) {

@@ -47,7 +47,7 @@ trade::TradePoint point(double seconds, double relative_error) {
 TEST_CASE("a trade has all pairs of photons and neighbours, and every other setting alone") {
   RenderParameters base;
   base.photons.emitted_photons = 40'000;
-  base.neighbours = 40;
+  base.neighbours = 48;
   base.kernel = DensityKernel::cone;
   std::map<std::string, int> count;
   std::set<std::pair<std::uint64_t, int>> pairs;
@@ -58,13 +58,13 @@ TEST_CASE("a trade has all pairs of photons and neighbours, and every other sett
       pairs.emplace(p.photons.emitted_photons, p.neighbours);
     } else if (one.varied != "work of good" && one.varied != "least_neighbours") {
       CHECK(p.photons.emitted_photons == 40'000);
-      CHECK(p.neighbours == 40);
+      CHECK(p.neighbours == 48);
     }
     if (one.varied != "kernel") CHECK(p.kernel == DensityKernel::cone);
   }
   CHECK(pairs.size() == 16);
-  CHECK(pairs.contains({2500, 10}));
-  CHECK(pairs.contains({160'000, 640}));
+  CHECK(pairs.contains({2500, 3}));
+  CHECK(pairs.contains({160'000, 192}));
   CHECK(count["nothing"] == 1);
   CHECK(count["kernel"] == 2);  // those that are not the one given
   CHECK(count["samples_per_pixel"] == 2);

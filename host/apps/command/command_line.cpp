@@ -4,11 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command/processes.hpp"
@@ -63,7 +66,24 @@ void flush_standard_output() {
   if (!std::cout) throw OutputError("standard output: cannot write (disk full?)");
 }
 
+/// Refuses options with an empty value. For CLI11 `--stats=` has none, and takes the next word,
+/// which may be the name of a file that must not be overwritten.
+void refuse_empty_values(std::span<const char* const> arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    const bool ends_empty = word.starts_with("--") && word.find('=') == word.size() - 1;
+    if (!word.empty() && !ends_empty) continue;
+    std::string_view option = word.substr(0, word.size() - std::min<std::size_t>(1, word.size()));
+    if (word.empty() && i > 0 && std::string_view(arguments[i - 1]).starts_with('-')) {
+      option = arguments[i - 1];
+    }
+    if (option.empty()) throw UsageError("an argument is empty; give it a value, or leave it out");
+    throw UsageError(fmt::format("{}: its value is empty; give one, or leave it out", option));
+  }
+}
+
 ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const* arguments) {
+  refuse_empty_values({arguments + 1, static_cast<std::size_t>(std::max(argument_count, 1) - 1)});
   try {
     photile.parse(argument_count, arguments);
   } catch (const CLI::ExtrasError&) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -107,8 +108,21 @@ Compared in_mood(const CompareOptions& options, const std::string& mood) {
   return compared;
 }
 
+/// Errors: InputError for pixels that are infinite or no numbers: no error could be told of them.
+void check_finite(const std::string& file, const Image& picture) {
+  std::size_t lost = 0;
+  for (const std::vector<float>& plane : picture.channels) {
+    lost += static_cast<std::size_t>(std::count_if(
+        plane.begin(), plane.end(), [](float value) { return !std::isfinite(value); }));
+  }
+  if (lost == 0) return;
+  throw InputError(fmt::format(
+      "{}: {} of its values are infinite or no numbers; give a picture without them", file, lost));
+}
+
 Compared from_file(const std::string& file) {
   Compared compared{std::filesystem::path(file).filename().string(), nullptr, read_image(file)};
+  check_finite(file, compared.whole);
   try {
     compared.layers = relit_picture(file, {});
   } catch (const InputError&) {  // no lights: compared as a whole

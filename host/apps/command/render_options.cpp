@@ -251,6 +251,10 @@ Camera projected(Camera camera, const RenderOptions& options) {
   if (round) camera.aspect_ratio = 1;
   if (options.projection == Projection::equirectangular) camera.aspect_ratio = 2;
   if (options.projection == Projection::orthographic) {
+    if (options.field_of_view > limits::max_coordinate) {
+      throw UsageError(fmt::format("--field-of-view {:g}: is more than {:g} m",
+                                   options.field_of_view, limits::max_coordinate));
+    }
     if (options.field_of_view > 0) camera.orthographic_height = options.field_of_view;
     return camera;
   }

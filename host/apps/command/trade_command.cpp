@@ -203,6 +203,7 @@ void run_trade(TradeOptions& options) {
 
 void add_trade_command(CLI::App& photile) {
   auto options = std::make_shared<TradeOptions>();
+  set_quality(options->render.quality_options(), Quality::draft);
   CLI::App* command = photile.add_subcommand(
       "trade", "Measure time and error of many settings on a view, around those given");
   command->add_option("-o,--output", options->folder, "folder for trade.csv and trade.json")

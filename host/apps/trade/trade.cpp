@@ -57,11 +57,11 @@ std::vector<TradeSettings> settings_around(const RenderParameters& parameters) {
   for (const double photons : {1. / 16, 0.25, 1., 4.}) {
     RenderParameters pair = parameters;
     set_by_name(pair, "photons_emitted", of("photons_emitted", photons));
-    for (const double neighbours : {0.25, 1., 4., 16.}) {
+    for (const double neighbours : {1. / 16, 0.25, 1., 4.}) {
       set_by_name(pair, "neighbours", of("neighbours", neighbours));
       all.push_back({"photons and neighbours", pair});
     }
-    pair.least_neighbours = parameters.neighbours;
+    set_by_name(pair, "least_neighbours", of("neighbours", 1. / 16));
     all.push_back({"least_neighbours", pair});
   }
   RenderParameters good = parameters;

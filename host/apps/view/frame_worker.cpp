@@ -102,15 +102,16 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   const bool draws = !request_.powers.empty() && maps_->renderer->draws();
   const int first = draws && !request_.moving ? first_samples : 1;
   task = {request_, maps_, std::min(refines ? more_samples * done_samples_ : first, most_samples_),
-          version_, draws && !whole};
+          version_, draws && !whole, shown};
   return true;
 }
 
 /// What a moving viewer's frame leaves of its time, and a little in any case: nodes must come at
-/// last. At rest no frame has to be in time, and drawing what hardly changed would take most of it.
-double FrameWorker::time_to_fill(bool moving) const {
-  if (!moving) return filled_over_drawn * draw_seconds_ + frame_seconds_;
-  return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
+/// last. At rest a lamp that was set is shown before anything is filled; after that no frame has to
+/// be in time, and drawing what hardly changed would take most of it.
+double FrameWorker::time_to_fill(const Task& task) const {
+  if (task.request.moving) return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
+  return task.shown ? filled_over_drawn * draw_seconds_ + frame_seconds_ : 0;
 }
 
 /// The whole window, however many nodes are missing: new surface is seen coarsely at once, and
@@ -126,7 +127,7 @@ std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, cons
                      static_cast<std::size_t>(wanted.height));
   MapGeneration& maps = *task.maps;
   const bool is_first = drawn_scene_ != maps.scene;
-  const FrameFilling filling(is_first ? patience : time_to_fill(wanted.moving), [&] {
+  const FrameFilling filling(is_first ? patience : time_to_fill(task), [&] {
     return stop.stop_requested() || (!is_first && !wanted.moving && outdated(task));
   });
   const Stopwatch of_drawing;

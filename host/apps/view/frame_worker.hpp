@@ -65,6 +65,7 @@ class FrameWorker {
     int samples = 1;
     std::uint64_t version = 0;
     bool quick = false;
+    bool shown = false;  ///< a frame of just this is there, and may become better
   };
 
   void work(std::stop_token stop);
@@ -72,7 +73,7 @@ class FrameWorker {
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
   std::shared_ptr<const Frame> draw(const std::stop_token& stop, const Task& task);
   bool outdated(const Task& task) const;
-  double time_to_fill(bool moving) const;
+  double time_to_fill(const Task& task) const;
 
   const int most_samples_;
   mutable std::mutex mutex_;

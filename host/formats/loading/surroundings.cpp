@@ -19,9 +19,9 @@ namespace {
 constexpr const char* fewer_lux = "give fewer lux";
 
 void check_lux(const char* light, double lux) {
-  if (lux > 0.0 && lux <= limits::max_illuminance) return;
-  throw UsageError(fmt::format("{} of {:g} lux: give more than 0, and {:g} at most", light, lux,
-                               limits::max_illuminance));
+  if (lux >= limits::min_illuminance && lux <= limits::max_illuminance) return;
+  throw UsageError(fmt::format("{} of {:g} lux: give {:g} at least and {:g} at most", light, lux,
+                               limits::min_illuminance, limits::max_illuminance));
 }
 
 /// Of the light that was added last; `what` has said too much of it.

@@ -70,9 +70,10 @@ std::uint64_t EndLight::bytes() const {
   return statistics.value_bytes + statistics.index_bytes;
 }
 
-Estimates EndLight::irradiance(const PrimaryHits& nodes) {
-  costs_.estimated += nodes.size();
-  return of_nodes_.at(nodes, Progress::none());
+EndLight::Costs EndLight::costs() const {
+  Costs costs = costs_;
+  costs.estimated += nodes_.valued();
+  return costs;
 }
 
 void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
@@ -127,7 +128,7 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
 /// Values the nodes that hits need.
 void EndLight::fill(const PrimaryHits& hits, const Progress& progress) {
   if (!maps_) maps_.emplace(rays_, parameters_);
-  maps_->maps.fill(hits, *this, progress);
+  maps_->maps.fill(hits, nodes_, progress);
   maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
 }
 

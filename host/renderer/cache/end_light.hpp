@@ -33,9 +33,28 @@ struct IndirectLight {
   EndEstimates own;                   ///< of the run
 };
 
+/// Values nodes by the light at their points.
+class ValuedBy : public NodeSource {
+ public:
+  /// The reference is kept. What a point gets from it does not depend on the points beside it.
+  explicit ValuedBy(estimate::LightAtPoints& light) : light_(light) {}
+
+  NodeValues value(const NodeBatch& batch, const Progress&) override {
+    valued_ += batch.points.size();
+    return {light_.at(batch.points, Progress::none()), {}, {}};
+  }
+
+  /// Nodes so far.
+  std::uint64_t valued() const { return valued_; }
+
+ private:
+  estimate::LightAtPoints& light_;
+  std::uint64_t valued_ = 0;
+};
+
 /// Irradiance where rays end, read from light maps that photon estimates value when a ray first
 /// ends there.
-class EndLight : private PointSource {
+class EndLight {
  public:
   /// References are kept.
   ///   photons   answers for ends that light maps do not serve, and `of_nodes` for nodes: the same
@@ -44,7 +63,7 @@ class EndLight : private PointSource {
   ///   maps      of one level: a cell is known by its first node
   EndLight(const RayScene& rays, estimate::LightAtPoints& photons,
            estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
-      : rays_(rays), photons_(photons), of_nodes_(of_nodes), parameters_(maps) {}
+      : rays_(rays), photons_(photons), nodes_(of_nodes), parameters_(maps) {}
 
   /// Finds an estimate for each end.
   /// Errors: as DeviceEstimators; Interrupted.
@@ -66,8 +85,8 @@ class EndLight : private PointSource {
   double spacing() const { return parameters_.spacing; }
 
   /// Of the light maps; `forget` empties them.
-  std::uint64_t bytes() const override;
-  void forget() override { maps_.reset(); }
+  std::uint64_t bytes() const;
+  void forget() { maps_.reset(); }
 
   /// What all calls took so far.
   struct Costs {
@@ -75,10 +94,9 @@ class EndLight : private PointSource {
     std::uint64_t ends = 0;
     std::uint64_t estimated = 0;  ///< places where photons were looked up
   };
-  const Costs& costs() const { return costs_; }
+  Costs costs() const;
 
  private:
-  Estimates irradiance(const PrimaryHits& nodes) override;
   void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void fill(const PrimaryHits& hits, const Progress& progress);
@@ -89,7 +107,7 @@ class EndLight : private PointSource {
 
   const RayScene& rays_;
   estimate::LightAtPoints& photons_;
-  estimate::LightAtPoints& of_nodes_;
+  ValuedBy nodes_;
   /// What nodes of a cell must differ by to be looked at where something stands in it.
   static constexpr double any_contrast = 0;
 
@@ -103,7 +121,7 @@ class EndLight : private PointSource {
   };
   const LightMapParameters parameters_;
   std::optional<Maps> maps_;  ///< made when the first ray ends
-  Costs costs_;
+  Costs costs_;  ///< without nodes
 };
 
 }  // namespace photile::cache

@@ -39,18 +39,6 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
                                         double radius, double angle_degrees, double spacing,
                                         double detail, std::span<const double> powers);
 
-/// Values nodes by what another says of their points.
-class ValuedBy : public PointSource {
- public:
-  explicit ValuedBy(estimate::LightAtPoints& light) : light_(light) {}
-  Estimates irradiance(const PrimaryHits& nodes) override {
-    return light_.at(nodes, Progress::none());
-  }
-
- private:
-  estimate::LightAtPoints& light_;
-};
-
 /// What the light of hits is read from.
 struct HitReading {
   static constexpr int own_estimate = -1, ends = 0;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
+#include <random>
 #include <set>
 #include <utility>
 
@@ -28,15 +29,18 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
-/// Between the name of an output and the number of the process that writes it.
-constexpr std::string_view infix = ".photile.";
+/// What names of temporary files begin with. 16 random hexadecimal digits follow: process numbers
+/// are the same in two containers, and a name of the longest length has no room for more.
+constexpr std::string_view prefix = ".photile.";
 
-/// Whether it is a name that `temporary_` has.
 bool is_temporary(std::string_view name) {
-  const std::size_t place = name.rfind(infix);
-  if (!name.starts_with('.') || place == std::string_view::npos) return false;
-  const std::string_view number = name.substr(place + infix.size());
-  return !number.empty() && number.find_first_not_of("0123456789") == std::string_view::npos;
+  return name.starts_with(prefix) && name.size() == prefix.size() + 16 &&
+         name.find_first_not_of("0123456789abcdef", prefix.size()) == std::string_view::npos;
+}
+
+std::string temporary_name() {
+  std::random_device random;
+  return fmt::format("{}{:08x}{:08x}", prefix, random(), random());
 }
 
 /// Removes the temporary files in a folder that no process holds: those of killed runs. A lock says
@@ -79,15 +83,20 @@ OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(fi
     throw OutputError(fmt::format(
         "{}: is a symbolic link that leads to itself; name a file to be written", file.string()));
   }
+  if (!found && errno == ENAMETOOLONG) {
+    throw OutputError(
+        fmt::format("{}: the name is too long for a file; give a shorter one", file.string()));
+  }
   if (found && !S_ISREG(status.st_mode)) {
     throw OutputError(
         fmt::format("{}: is not a regular file; name a file to be written", file.string()));
   }
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   remove_abandoned(folder);
-  temporary_ = folder / fmt::format(".{}{}{}", target_.filename().string(), infix, ::getpid());
-  ::unlink(temporary_.c_str());  // left by a killed process that had the same number
-  descriptor_ = create_locked(temporary_);
+  do {
+    temporary_ = folder / temporary_name();
+    descriptor_ = create_locked(temporary_);
+  } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) {
     throw OutputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
                                   file.string(), std::strerror(errno)));

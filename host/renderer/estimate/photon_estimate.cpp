@@ -102,12 +102,28 @@ Estimates PhotonEstimate::estimate(const PrimaryHits& points) {
 
 Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
   Estimates result;
+  std::vector<double> seconds(devices_.size());
+  std::vector<Estimates> parts(devices_.size());
   for (std::size_t first = 0; first < points.size();) {
     const std::size_t count = level.balance.round(points.size() - first);
-    estimate_round(level, points, first, count, result);
+    const std::vector<std::size_t> cuts = level.balance.cuts(count);
+    for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {
+      const Stopwatch stopwatch;
+      parts[i] = level.estimators[i].estimate(points, first + cuts[i], cuts[i + 1] - cuts[i]);
+      seconds[i] = stopwatch.seconds();
+    });
+    for (std::size_t i = 0; i < devices_.size(); ++i) {
+      result.append(std::move(parts[i]));
+      level.balance.record(i, cuts[i + 1] - cuts[i], seconds[i]);
+    }
+    level.balance.end_round();
     first += count;
   }
-  if (!seen_) return result;
+  if (seen_) leave_out_hidden(level, points, result);
+  return result;
+}
+
+void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result) {
   const std::vector<std::uint32_t> lit =
       SeenPhotons::lit(result, points.size(), layer_powers_.size());
   for (std::size_t first = 0; first < lit.size(); first += lists_at_a_time) {
@@ -116,24 +132,6 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
     const NeighbourLists near = level.estimators.front().nearest(reordered(points, 0, chosen));
     seen_->leave_out_hidden(points, chosen, near, result);
   }
-  return result;
-}
-
-void PhotonEstimate::estimate_round(Level& level, const PrimaryHits& points, std::size_t first,
-                                    std::size_t count, Estimates& result) {
-  const std::vector<std::size_t> cuts = level.balance.cuts(count);
-  std::vector<double> seconds(devices_.size());
-  std::vector<Estimates> parts(devices_.size());
-  for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {
-    const Stopwatch stopwatch;
-    parts[i] = level.estimators[i].estimate(points, first + cuts[i], cuts[i + 1] - cuts[i]);
-    seconds[i] = stopwatch.seconds();
-  });
-  for (std::size_t i = 0; i < devices_.size(); ++i) {
-    result.append(std::move(parts[i]));
-    level.balance.record(i, cuts[i + 1] - cuts[i], seconds[i]);
-  }
-  level.balance.end_round();
 }
 
 }  // namespace photile::estimate

@@ -61,10 +61,11 @@ class PhotonEstimate : public LightAtPoints {
   /// Positions of points by their maps, and by place on each map; empty where they are in the order
   /// of their maps.
   std::vector<std::uint32_t> order_of(const PrimaryHits& points) const;
+  /// Of points in the order of their maps, by the k of each level or by their own.
   Estimates estimate(const PrimaryHits& points);
   Estimates estimate(Level& level, const PrimaryHits& points);
-  void estimate_round(Level& level, const PrimaryHits& points, std::size_t first, std::size_t count,
-                      Estimates& result);
+  /// Takes photons that their points do not see out of the estimates.
+  void leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result);
 
   std::span<Device> devices_;
   std::span<const double> layer_powers_;

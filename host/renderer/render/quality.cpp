@@ -18,7 +18,7 @@ std::string_view name_of(Quality quality) {
 std::string_view description_of(Quality quality) {
   switch (quality) {
     case Quality::draft:
-      return "quick, and mottled by the noise of photons";
+      return "quick, and blurred: light is averaged over many photons";
     case Quality::good:
       return "clean to the eye";
     case Quality::best:

@@ -83,9 +83,9 @@ Setting row(std::string_view name, std::string_view reader, ValueRange range, st
                     const SettingValue& value) { assign(field<members...>(parameters), value); }};
 }
 
-/// A row that qualities set: good and final to these values, draft to the default.
-Setting by_quality(Setting setting, std::uint64_t good, std::uint64_t best) {
-  setting.by_quality = {setting.value(P{}), good, best};
+/// A row that qualities set.
+Setting by_quality(Setting setting, std::uint64_t draft, std::uint64_t good, std::uint64_t best) {
+  setting.by_quality = {draft, good, best};
   return setting;
 }
 
@@ -142,7 +142,7 @@ std::vector<Setting> picture_rows() {
       by_quality(row<&P::film, &Film::samples_per_pixel>(
                      "samples_per_pixel", hits, WholeNumbers{1, limits::max_samples_per_pixel},
                      "primary rays per pixel, over all passes; at least one in each", not_kept),
-                 16, 64),
+                 defaults::samples_per_pixel, 16, 64),
       row<&P::seed>("seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
       row<&P::max_specular_depth>("max_specular_depth", hits,
@@ -158,7 +158,7 @@ std::vector<Setting> photon_rows() {
                      "photons_emitted", paths,
                      WholeNumbers{limits::min_photons, limits::max_emitted_photons},
                      "paths over all lights", kept_as_it_is),
-                 500'000, 2'000'000),
+                 defaults::emitted_photons, 500'000, 2'000'000),
       row<&P::photons, &PhotonPaths::quota>(
           "quota", paths, words_of(all_photon_quotas),
           "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
@@ -181,7 +181,7 @@ std::vector<Setting> estimate_rows() {
       by_quality(of_groups(row<&P::neighbours>("neighbours", estimate,
                                                WholeNumbers{1, limits::max_neighbours},
                                                "photons of an estimate", kept_for_radius)),
-                 100, 100),
+                 500, 100, 100),
       row<&P::least_neighbours>(
           "least_neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
           "each hit has its own number of neighbours, from this one up, as its bias allows",
@@ -219,7 +219,7 @@ std::vector<Setting> estimate_rows() {
                      "light_map_rays", "light maps", WholeNumbers{1, limits::max_gathering_rays},
                      "rays, and looks at lamps, by which nodes of light maps gather light",
                      not_kept, "the photon estimate values nodes"),
-                 64, 256),
+                 0, 64, 256),
       row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
                                 "largest distance between the finest nodes of light maps", not_kept,
                                 "an eighth of the coarsest, by the photons", "m"),

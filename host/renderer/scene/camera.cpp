@@ -1,10 +1,45 @@
 #include "photile/camera.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "scene/coordinate_limit.hpp"
+
 namespace photile {
+namespace {
+
+/// Rays of a camera that fails here would be NaN or infinite, which Embree does not survive.
+void check(const Camera& camera) {
+  if (!scene::within_limit(camera.position)) {
+    throw UsageError(
+        fmt::format("camera '{}': its position is no number within {:g} m of the origin",
+                    camera.name, limits::max_coordinate));
+  }
+  for (const glm::dvec3& axis : {camera.forward, camera.up, camera.right}) {
+    if (std::abs(glm::length(axis) - 1) < 1e-3) continue;
+    throw UsageError(
+        fmt::format("camera '{}': forward, up and right must be vectors of length 1", camera.name));
+  }
+  const double angle = camera.vertical_field_of_view;
+  const bool is_angle = angle > 0 && angle <= glm::two_pi<double>();
+  if (camera.projection == Projection::orthographic
+          ? !(camera.orthographic_height > 0 &&
+              camera.orthographic_height <= limits::max_coordinate)
+          : !is_angle) {
+    throw UsageError(fmt::format("camera '{}': its field of view must be above 0 and at most {}",
+                                 camera.name,
+                                 camera.projection == Projection::orthographic
+                                     ? fmt::format("{:g} m", limits::max_coordinate)
+                                     : std::string("360 degrees")));
+  }
+}
+
+}  // namespace
 
 Camera Camera::look_at(const glm::dvec3& position, const glm::dvec3& target,
                        const glm::dvec3& up_hint, double vertical_field_of_view) {
@@ -38,6 +73,7 @@ FilmDirections::FilmDirections(const Camera& camera, int width, int height)
       height_(height),
       projection_(camera.projection),
       half_angle_(0.5 * camera.vertical_field_of_view) {
+  check(camera);
   double half_height = 1;
   if (projection_ == Projection::perspective) half_height = std::tan(half_angle_);
   if (projection_ == Projection::orthographic) half_height = 0.5 * camera.orthographic_height;

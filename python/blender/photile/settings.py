@@ -31,7 +31,7 @@ class PhotileSettings(bpy.types.PropertyGroup):
     quality: EnumProperty(
         name="Quality",
         items=(
-            ("draft", "Draft", "Quick, and mottled by the noise of photons"),
+            ("draft", "Draft", "Quick, and blurred: light is averaged over many photons"),
             ("good", "Good", "Clean to the eye"),
             ("final", "Final", "More of everything, for stills"),
         ),
