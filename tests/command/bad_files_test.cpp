@@ -84,8 +84,7 @@ TEST_CASE("a picture of a scene without lights is an input error that says so; i
   const Outcome render = run_photile({"render", scene, "-o", folder / "out.exr"});
   CHECK_THAT(last_error(render, bad_input), Contains("no lights"));
   CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
-  const Outcome info = run_photile({"info", scene});
-  CHECK(info.exit_code == 0);
+  const Outcome info = succeed({"info", scene});
   CHECK_THAT(info.output + info.errors, Contains("no lights"));
 }
 
@@ -118,8 +117,7 @@ TEST_CASE("triangles without area are dropped, counted and reported") {
   folder.write("box.mtl", box_mtl());
   const std::string scene =
       folder.write("box.obj", box_obj() + "o thin\nusemtl wall\nf 1 2 2\nf 3 3 3\n");
-  const Outcome outcome = run_photile({"info", "--json", scene});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"info", "--json", scene});
   const auto facts = nlohmann::json::parse(outcome.output);
   CHECK(facts["degenerate_triangles"] == 2);
   CHECK(facts["triangles"] == 16);
@@ -276,8 +274,7 @@ TEST_CASE("JSON that is nested a million deep is refused in a line") {
 /// The only line of a render that was refused before it began: no device line came before.
 std::string refusal(const std::vector<std::string>& outputs, int exit_code) {
   const FileFolder folder;
-  std::vector<std::string> arguments{"render", write_box(folder)};
-  arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+  std::vector<std::string> arguments = typed("render", write_box(folder), outputs);
   return only_error(run_photile(arguments), exit_code);
 }
 

@@ -27,8 +27,7 @@ Run without_platforms(const FileFolder& folder, std::vector<std::string> argumen
 }
 
 TEST_CASE("the list of devices is JSON and marks exactly one as selected") {
-  const Outcome outcome = run_photile({"devices", "--json"});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"devices", "--json"});
   const auto devices = nlohmann::json::parse(outcome.output);
   REQUIRE(devices.size() >= 1);
   CHECK(std::count_if(devices.begin(), devices.end(),
@@ -40,8 +39,7 @@ TEST_CASE("the list of devices is JSON and marks exactly one as selected") {
 
 TEST_CASE("the list of devices has a line for each and marks the selected one with a star") {
   const auto count = nlohmann::json::parse(run_photile({"devices", "--json"}).output).size();
-  const Outcome outcome = run_photile({"devices"});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"devices"});
   CHECK(static_cast<std::size_t>(std::count(outcome.output.begin(), outcome.output.end(), '\n')) ==
         count + 1);
   CHECK_THAT(outcome.output, Contains("* 0:0"));
@@ -59,7 +57,7 @@ TEST_CASE("without any OpenCL platform every command that needs one says so and 
 
 TEST_CASE("what needs no device works without any OpenCL platform") {
   const FileFolder folder;
-  CHECK(run_photile(without_platforms(folder, {"info", write_box(folder)})).exit_code == 0);
+  succeed(without_platforms(folder, {"info", write_box(folder)}));
 }
 
 TEST_CASE("an unknown device is refused with the list of those there are") {
@@ -80,15 +78,12 @@ TEST_CASE("after devices --compile the first picture of an interior compiles not
   Run run;
   run.environment["XDG_CACHE_HOME"] = folder / "cache";
   run.arguments = {"devices", "--compile"};
-  const Outcome compiled = run_photile(run);
-  INFO(compiled.errors);
-  REQUIRE(compiled.exit_code == 0);
+  const Outcome compiled = succeed(run);
   CHECK_THAT(compiled.errors, Contains(" compiled, ") && !Contains(": 0 compiled"));
   const std::string room = source_folder() / "scenes/living-room/living-room.gltf";
   run.arguments = {"render",    room,   "-o",     folder / "out.png",
                    "--photons", "200k", "--size", "16x12"};
-  const Outcome rendered = run_photile(run);
-  REQUIRE(rendered.exit_code == 0);
+  const Outcome rendered = succeed(run);
   CHECK_THAT(rendered.errors, Contains(": 0 compiled"));
 }
 
@@ -97,12 +92,11 @@ TEST_CASE("two halves of a device render the file of the whole, and the record n
   Run run;
   run.arguments = {"render", write_box(folder), "-o",    folder / "whole.png", "--photons",
                    "5k",     "--size",          "64x48", "--quality",          "draft"};
-  REQUIRE(run_photile(run).exit_code == 0);
+  succeed(run);
   run.arguments[3] = folder / "halves.png";
   run.arguments.insert(run.arguments.end(), {"--stats", folder / "stats.json"});
   run.environment["PHOTILE_DEVICE"] = "0:0/2";
-  const Outcome outcome = run_photile(run);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(run);
   CHECK(folder.read("halves.png") == folder.read("whole.png"));
   CHECK_THAT(outcome.errors, Contains("device: 0:0.0 ") && Contains("device: 0:0.1 ") &&
                                  Contains("share of 0:0.0") && Contains("share of 0:0.1"));
@@ -114,8 +108,7 @@ TEST_CASE("two halves of a device render the file of the whole, and the record n
 }
 
 TEST_CASE("the list of devices marks the whole of which parts are chosen") {
-  const Outcome outcome = run_photile({"devices", "--device", "0:0/2"});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"devices", "--device", "0:0/2"});
   CHECK_THAT(outcome.output, Contains("* 0:0 "));
 }
 
@@ -125,15 +118,14 @@ TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {
   run.environment["PHOTILE_DEVICE"] = "no-such-device";
   CHECK_THAT(only_error(run_photile(run), no_device), Contains("no-such-device"));
   run.arguments = {"devices", "--device", "0:0"};
-  CHECK(run_photile(run).exit_code == 0);
+  succeed(run);
 }
 
 TEST_CASE("the test of devices passes, and not with kernels that compute wrong areas", "[slow]") {
   const FileFolder folder;
   Run run;
   run.arguments = {"devices", "--test"};
-  const Outcome right = run_photile(run);
-  CHECK(right.exit_code == 0);
+  const Outcome right = succeed(run);
   CHECK_THAT(right.output, Contains("passed ("));
 
   const auto file = std::filesystem::path("surface/clipped_disc.clh");
@@ -164,10 +156,7 @@ Outcome run_on(const std::string& type, const std::vector<std::string>& argument
   run.arguments = arguments;
   run.environment["PHOTILE_DEVICE"] = type;
   if (type == "gpu") run.environment["OPENCL_LAYERS"] = PHOTILE_GPU_LAYER;
-  Outcome outcome = run_photile(run);
-  INFO(outcome.errors);
-  CHECK(outcome.exit_code == 0);
-  return outcome;
+  return succeed(run);
 }
 
 /// Runs the command on a CPU and as a GPU, each in a folder of its own that holds the box.
@@ -239,12 +228,8 @@ void check_begins(const std::vector<std::string>& arguments, const std::string& 
 TEST_CASE("as a GPU, render and measure find the light of the Cornell box that a CPU finds") {
   const std::string scene = source_folder() / "scenes/cornell-box/cornell-box.obj";
   const OnBoth rendered([&](const FileFolder& folder) {
-    return std::vector<std::string>{"render",    scene,
-                                    "-o",        folder / "box.exr",
-                                    "--stats",   folder / "box.json",
-                                    "--photons", "20k",
-                                    "--size",    "16x16",
-                                    "--quality", "draft"};
+    return typed("render", scene, "-o", folder / "box.exr", "--stats", folder / "box.json",
+                 "--photons 20k --size 16x16 --quality draft");
   });
   check_same_picture(rendered, "box.exr");
   for (const FileFolder* folder : {&rendered.cpu, &rendered.gpu}) {
@@ -255,13 +240,8 @@ TEST_CASE("as a GPU, render and measure find the light of the Cornell box that a
     CHECK_THAT(record["tuning"].get<std::string>(), Contains(gpu ? "lanes" : "select"));
   }
   const OnBoth measured([&](const FileFolder& folder) {
-    return std::vector<std::string>{
-        "measure",   scene,
-        "--points",  folder.write("middle.pts", "0.28 0.1 -0.28 0 1 0\n"),
-        "-o",        folder / "box.json",
-        "--photons", "20k",
-        "--rays",    "64",
-        "--repeats", "2"};
+    return typed("measure", scene, "--points", folder.write("middle.pts", "0.28 0.1 -0.28 0 1 0\n"),
+                 "-o", folder / "box.json", "--photons 20k --rays 64 --repeats 2");
   });
   check_same_values(measured, "box.json");
 }
@@ -280,22 +260,9 @@ TEST_CASE("as a GPU, a device has kernels compiled ahead", "[slow]") {
 
 TEST_CASE("as a GPU, glare rates what it rates on a CPU", "[slow]") {
   const OnBoth folders([](const FileFolder& folder) {
-    return std::vector<std::string>{"glare",
-                                    write_box(folder),
-                                    "--observers",
-                                    folder.write("eyes.pts", "0.2 0 0.1 0 1 0\n"),
-                                    "-o",
-                                    folder / "glare.json",
-                                    "--photons",
-                                    "20k",
-                                    "--rays",
-                                    "64",
-                                    "--repeats",
-                                    "2",
-                                    "--samples",
-                                    "1",
-                                    "--picture-size",
-                                    "64"};
+    return typed("glare", write_box(folder), "--observers",
+                 folder.write("eyes.pts", "0.2 0 0.1 0 1 0\n"), "-o", folder / "glare.json",
+                 "--photons 20k --rays 64 --repeats 2 --samples 1 --picture-size 64");
   });
   check_same_values(folders, "glare.json");
 }
@@ -306,18 +273,11 @@ TEST_CASE("as a GPU, daylight finds the year that it finds on a CPU", "[slow]") 
       return [lux](int, int, int hour) { return hour > 8 && hour < 17 ? lux : 0; };
     };
     folder.write("box.mtl", box_mtl());
-    return std::vector<std::string>{
-        "daylight",    folder.write("open.obj", open_box_obj()),
-        "--inside",    "0,0,0",
-        "--plane",     "floor+0.75",
-        "--wall-band", "0.2",
-        "--weather",   folder.write("year.epw", weather_text(by_day(400), by_day(150))),
-        "--lamps-to",  "500",
-        "--patches",   "145",
-        "-o",          folder / "year.json",
-        "--photons",   "20k",
-        "--rays",      "64",
-        "--repeats",   "2"};
+    return typed("daylight", folder.write("open.obj", open_box_obj()),
+                 "--inside 0,0,0 --plane floor+0.75 --wall-band 0.2 --weather",
+                 folder.write("year.epw", weather_text(by_day(400), by_day(150))),
+                 "--lamps-to 500 --patches 145 -o", folder / "year.json",
+                 "--photons 20k --rays 64 --repeats 2");
   });
   check_same_values(folders, "year.json");
 }
@@ -327,9 +287,8 @@ TEST_CASE("as a GPU, walk renders the frames of a CPU", "[slow]") {
     const std::string path = folder.write("path.json", R"([
         {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
         {"time": 1, "position": [0.5, 0, 0.9], "look_at": [0, 0, -1], "fov": 60}])");
-    return std::vector<std::string>{
-        "walk", write_box(folder), "-o",    folder / "f.#.exr", "--fps", "1",      "--camera-path",
-        path,   "--quality",       "draft", "--photons",        "20k",   "--size", "16x12"};
+    return typed("walk", write_box(folder), "-o", folder / "f.#.exr", "--fps 1 --camera-path", path,
+                 "--quality draft --photons 20k --size 16x12");
   });
   check_same_picture(folders, "f.1.exr");
   check_same_picture(folders, "f.2.exr");
@@ -351,12 +310,8 @@ TEST_CASE("as a GPU, photons that were traced to a file give the picture of a CP
   run_on("gpu",
          {"trace", write_box(photons), "-o", photons / "box.photons", "--photons", "20k", "-q"});
   const OnBoth folders([&](const FileFolder& folder) {
-    return std::vector<std::string>{"render",      photons / "box.obj",
-                                    "--load-maps", photons / "box.photons",
-                                    "--photons",   "20k",
-                                    "-o",          folder / "box.exr",
-                                    "--quality",   "draft",
-                                    "--size",      "16x12"};
+    return typed("render", photons / "box.obj", "--load-maps", photons / "box.photons",
+                 "--photons 20k -o", folder / "box.exr", "--quality draft --size 16x12");
   });
   check_same_picture(folders, "box.exr");
 }

@@ -18,11 +18,8 @@ using Catch::Contains;
 
 /// Few photons and rays: seconds, not accuracy.
 std::vector<std::string> glare(const std::string& scene, std::vector<std::string> more) {
-  std::vector<std::string> arguments{
-      "glare", scene,       "--photons", "20k",     "--rays",         "64", "--repeats",
-      "2",     "--samples", "1",         "--quiet", "--picture-size", "64"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return typed("glare", scene,
+               "--photons 20k --rays 64 --repeats 2 --samples 1 --quiet --picture-size 64", more);
 }
 
 std::size_t lines_of_text(const std::string& text) {
@@ -33,10 +30,8 @@ TEST_CASE("glare rates each observer and writes the same to all of its files") {
   const FileFolder folder;
   const std::string eyes = folder.write("eyes.pts", "# two\n0.2 0 0.1 0 1 0\n0 0 0 1 0 0\n");
   const Outcome outcome =
-      run_photile(glare(write_box(folder), {"--observers", eyes, "-o", folder / "a.csv", "-o",
-                                            folder / "a.json", "--pictures", folder / "views"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+      succeed(glare(write_box(folder), {"--observers", eyes, "-o", folder / "a.csv", "-o",
+                                        folder / "a.json", "--pictures", folder / "views"}));
   CHECK_THAT(outcome.output, Contains("UGR") && Contains("DGP") && Contains("eyes 2"));
   const auto record = nlohmann::json::parse(folder.read("a.json"));
   REQUIRE(record["observers"].size() == 2);
@@ -56,10 +51,8 @@ TEST_CASE("glare rates each observer and writes the same to all of its files") {
 TEST_CASE("a grid has four directions of view at each point, and no pictures") {
   const FileFolder folder;
   const Outcome outcome =
-      run_photile(glare(write_box(folder), {"--grid", "floor+1.2", "--spacing", "0.5",
-                                            "--wall-band", "0.2", "-o", folder / "a.json"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+      succeed(glare(write_box(folder), {"--grid", "floor+1.2", "--spacing", "0.5", "--wall-band",
+                                        "0.2", "-o", folder / "a.json"}));
   const auto record = nlohmann::json::parse(folder.read("a.json"));
   const std::size_t views = record["observers"].size();
   CHECK(views >= 4);
@@ -84,14 +77,12 @@ TEST_CASE("render projects as it is told, black beyond the circle of a fisheye")
   const FileFolder folder;
   const std::string scene = write_box(folder);
   const std::string projection = GENERATE("angular", "fisheye", "equirectangular", "orthographic");
-  std::vector<std::string> arguments{
-      "render", scene,          "--quality", "draft", "--photons",      "20k", "--samples",     "1",
-      "-q",     "--projection", projection,  "-o",    folder / "a.exr", "-o",  folder / "a.hdr"};
+  std::vector<std::string> arguments =
+      typed("render", scene, "--quality draft --photons 20k --samples 1 -q --projection",
+            projection, "-o", folder / "a.exr", "-o", folder / "a.hdr");
   // Parallel rays that start outside the box would see its dark outside.
   if (projection == "orthographic") arguments.insert(arguments.end(), {"--field-of-view", "0.5"});
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(arguments);
   const Image picture = read_image(folder / "a.exr");
   const bool round = projection == "angular" || projection == "fisheye";
   const bool sphere = projection == "equirectangular";
@@ -107,8 +98,8 @@ TEST_CASE("render projects as it is told, black beyond the circle of a fisheye")
 TEST_CASE("a field of view has to fit its projection") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
-  CHECK_THAT(only_error(run_photile({"render", scene, "-q", "-o", folder / "a.exr", "--projection",
-                                     "fisheye", "--field-of-view", "200"}),
+  CHECK_THAT(only_error(run_photile(typed("render", scene, "-q -o", folder / "a.exr",
+                                          "--projection fisheye --field-of-view 200")),
                         usage),
              Contains("--field-of-view 200") && Contains("180"));
 }
@@ -120,9 +111,7 @@ TEST_CASE("ies says what a lamp is and prints its UGR table") {
   text += "300 250 120 0\n";
   const std::string file = folder.write("lamp.ies", text);
   const Outcome outcome =
-      run_photile({"ies", file, "--ugr-table", "-o", folder / "a.csv", "-o", folder / "a.json"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+      succeed({"ies", file, "--ugr-table", "-o", folder / "a.csv", "-o", folder / "a.json"});
   CHECK_THAT(outcome.output, Contains("1.2 m along azimuth 0 x 0.1 m along 90") &&
                                  Contains("crosswise") && Contains("12H x 8H"));
   CHECK(lines_of_text(folder.read("a.csv")) == 20);
@@ -137,19 +126,14 @@ TEST_CASE("ies says what a lamp is and prints its UGR table") {
 // `photile render --glare`.
 
 std::vector<std::string> render(const std::string& scene, std::vector<std::string> more) {
-  std::vector<std::string> arguments{"render",    scene, "--size",    "40x30",
-                                     "--samples", "1",   "--quality", "draft"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return typed("render", scene, "--size 40x30 --samples 1 --quality draft", more);
 }
 
 TEST_CASE("matt walls have no reflections to mark, with photons or paths") {
   const std::string integrator = GENERATE("photon-map", "path");
   const FileFolder folder;
-  const Outcome outcome = run_photile(
+  const Outcome outcome = succeed(
       render(write_box(folder), {"--glare", folder / "glare.png", "--integrator", integrator}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("glare: no reflection is above"));
   CHECK(read_image(folder / "glare.png").width == 40);
 }

@@ -16,8 +16,7 @@ using Catch::Contains;
 
 nlohmann::json info(const std::string& scene, std::vector<std::string> options = {}) {
   options.insert(options.begin(), {"info", "--json", scene});
-  const Outcome outcome = run_photile(options);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(options);
   CHECK(outcome.errors.empty());
   return nlohmann::json::parse(outcome.output);
 }
@@ -81,8 +80,7 @@ TEST_CASE("info applies the emissive scale and the lumens per watt that it is gi
 
 TEST_CASE("info as text names every light and material") {
   const FileFolder folder;
-  const Outcome outcome = run_photile({"info", write_box(folder)});
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"info", write_box(folder)});
   CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&
                                  Contains("material: wall: diffuse, 12 triangles"));
 }
@@ -162,9 +160,8 @@ std::string write_floor(const FileFolder& folder) {
 
 TEST_CASE("info lists a sun and a sky with their lumens") {
   const FileFolder folder;
-  const Outcome outcome = run_photile(
+  const Outcome outcome = succeed(
       {"info", write_floor(folder), "--json", "--sun", "180,45,50000", "--sky", "overcast=10000"});
-  REQUIRE(outcome.exit_code == 0);
   const auto facts = nlohmann::json::parse(outcome.output);
   REQUIRE(facts["lights"].size() == 2);
   CHECK(facts["lights"][0]["name"] == "sun");
@@ -178,11 +175,9 @@ TEST_CASE("both integrators render a floor under a sky, as a layer that can be r
   const FileFolder folder;
   const std::string integrator = GENERATE("photon-map", "path");
   const std::string picture = folder / "floor.exr";
-  const Outcome outcome =
-      run_photile({"render", write_floor(folder), "-o", picture, "--size", "64x48", "--samples",
-                   "4", "--integrator", integrator, "--quality", "draft", "--sky", "uniform=6830"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_floor(folder), "-o", picture,
+                "--size 64x48 --samples 4 --integrator", integrator,
+                "--quality draft --sky uniform=6830"));
   const Image image = read_image(picture);
   const auto* sky = image.find("Combined_sky.G");
   const auto* illuminance = image.find("Illuminance_sky.Y");
@@ -195,8 +190,7 @@ TEST_CASE("both integrators render a floor under a sky, as a layer that can be r
   float brightest = 0;
   for (const float radiance : *sky) brightest = std::max(brightest, radiance);
   CHECK(brightest >= Approx(10 / 3.14159265).epsilon(0.01));
-  CHECK(run_photile({"relight", picture, "--light", "sky=x2", "-o", folder / "twice.exr"})
-            .exit_code == 0);
+  succeed({"relight", picture, "--light", "sky=x2", "-o", folder / "twice.exr"});
 }
 
 TEST_CASE("a malformed option of a light is one line") {
@@ -204,8 +198,7 @@ TEST_CASE("a malformed option of a light is one line") {
   const std::string scene = write_box(folder);
   const std::string lamp = folder.write("lamp.ies", "no lamp\n");
   const auto refused = [&](const std::vector<std::string>& options, int code, const char* words) {
-    std::vector<std::string> arguments{"info", scene};
-    arguments.insert(arguments.end(), options.begin(), options.end());
+    std::vector<std::string> arguments = typed("info", scene, options);
     CHECK_THAT(only_error(run_photile(arguments), code), Contains(words));
   };
   refused({"--sun", "1,2"}, 2, "AZIMUTH,ELEVATION,LUX");

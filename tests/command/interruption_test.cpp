@@ -66,12 +66,11 @@ Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments
 TEST_CASE("killed a hundred times at any moment, a render leaves the old picture or a new one",
           "[slow]") {
   const FileFolder folder;
-  const std::vector<std::string> arguments{
-      "render", write_box(folder),  "-o",        folder / "out.exr",
-      "-o",     folder / "out.png", "--photons", "20k",
-      "--size", "200x150",          "--quality", "draft"};
+  const std::vector<std::string> arguments =
+      typed("render", write_box(folder), "-o", folder / "out.exr", "-o", folder / "out.png",
+            "--photons 20k --size 200x150 --quality draft");
   const auto begin = Clock::now();
-  REQUIRE(run_photile(arguments).exit_code == 0);
+  succeed(arguments);
   const auto whole = std::chrono::duration<double>(Clock::now() - begin);
   const std::vector<float> expected = *read_image(folder / "out.exr").find("G");
   const std::string png = folder.read("out.png");
@@ -96,7 +95,7 @@ TEST_CASE("killed a hundred times at any moment, a render leaves the old picture
   }
   CHECK(killed > 20);
   CHECK(old > 20);
-  REQUIRE(run_photile(arguments).exit_code == 0);
+  succeed(arguments);
   CHECK(folder.file_count() == 4);  // the scene's, and the pictures: nothing of killed runs
 }
 
@@ -130,9 +129,8 @@ TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name a
     skip("this process may mount nothing");
     return;
   }
-  REQUIRE(run_photile({"render", folder / "box.obj", "-o", folder / "large.exr", "--photons", "5k",
-                       "--size", "200x150", "--quality", "draft"})
-              .exit_code == 0);
+  succeed(typed("render", folder / "box.obj", "-o", folder / "large.exr",
+                "--photons 5k --size 200x150 --quality draft"));
   std::string points;
   for (int i = 0; i < 3'000; ++i) points += "0.1 -0.9 0.1 0 1 0\n";
   folder.write("many.pts", points);
@@ -197,9 +195,7 @@ TEST_CASE("a bar copes with nothing done, too much done and an unknown total") {
 
 TEST_CASE("a render without a terminal prints plain lines, the device first") {
   const FileFolder folder;
-  const Outcome outcome = run_photile(small_render(folder));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(small_render(folder));
   CHECK(outcome.output.empty());
   CHECK(outcome.errors.find_first_of("\r\033") == std::string::npos);
   const auto lines = outcome.error_lines();
@@ -213,9 +209,7 @@ TEST_CASE("a render on a terminal draws a bar on one line and removes it") {
   const FileFolder folder;
   Run run = small_render(folder);
   run.terminal = true;
-  const Outcome outcome = run_photile(run);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(run);
   CHECK_THAT(outcome.errors, Contains("\r") && Contains("%"));
   // Between two carriage returns no more than the terminal's 99 usable columns are printed.
   std::size_t column = 0, widest = 0;
@@ -232,8 +226,7 @@ TEST_CASE("a quiet render prints nothing, on a terminal or not") {
   Run run = small_render(folder);
   run.arguments.emplace_back("--quiet");
   run.terminal = GENERATE(false, true);
-  const Outcome outcome = run_photile(run);
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed(run);
   CHECK(outcome.output.empty());
   CHECK(outcome.errors.empty());
 }

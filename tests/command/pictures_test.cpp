@@ -25,20 +25,14 @@ using Catch::Contains;
 std::string render_box(const FileFolder& folder, const std::string& name,
                        const std::vector<std::string>& options = {},
                        const std::string& size = "32x32") {
-  std::vector<std::string> arguments{"render", write_box(folder), "-o", folder / name, "--photons",
-                                     "20k",    "--size",          size, "--quality",   "draft"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(folder), "-o", folder / name, "--photons 20k --size", size,
+                "--quality draft", options));
   return folder / name;
 }
 
 nlohmann::json compare(const FileFolder& folder, const std::string& a, const std::string& b) {
-  const Outcome outcome = run_photile(
-      {"compare", a, b, "-o", folder / "compared.png", "--json", folder / "compared.json"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome =
+      succeed({"compare", a, b, "-o", folder / "compared.png", "--json", folder / "compared.json"});
   CHECK_THAT(outcome.output, Contains("left"));
   return nlohmann::json::parse(folder.read("compared.json"));
 }
@@ -99,13 +93,11 @@ TEST_CASE("a lamp that is off in the second, or a layer in one picture alone, is
   const FileFolder folder;
   const std::string whole = render_box(folder, "a.exr");
   const Outcome off =
-      run_photile({"compare", whole, render_box(folder, "b.exr", {"--light", "left=off"})});
-  CHECK(off.exit_code == 0);
+      succeed({"compare", whole, render_box(folder, "b.exr", {"--light", "left=off"})});
   CHECK_THAT(off.output, Contains("luminance, mean") && Contains("lux") && Contains("ratio") &&
                              Contains("0 W") && !Contains("error"));
   const Outcome grouped =
-      run_photile({"compare", whole, render_box(folder, "c.exr", {"--light-group", "*=both"})});
-  CHECK(grouped.exit_code == 0);
+      succeed({"compare", whole, render_box(folder, "c.exr", {"--light-group", "*=both"})});
   CHECK_THAT(grouped.output,
              Contains("left: only in the first") && Contains("both: only in the second"));
 }
@@ -116,14 +108,9 @@ TEST_CASE("two moods of a picture are compared by their levels") {
   const std::string moods = folder.write("a.moods.json", R"({"photile_moods": 1, "moods": {
       "bright": {"left": {"power": 20, "unit": "W"}, "right": {"power": 0, "unit": "W", "on": false}},
       "half": {"left": {"power": 10, "unit": "W"}, "right": {"power": 5, "unit": "W", "on": false}}}})");
-  const std::vector<std::string> two{"compare", picture,
-                                     "--mood",  "bright",
-                                     "--mood",  "half",
-                                     "--json",  folder / "levels.json",
-                                     "-o",      folder / "two.png"};
-  const Outcome outcome = run_photile(two);  // the file beside the picture
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const std::vector<std::string> two = typed("compare", picture, "--mood bright --mood half --json",
+                                             folder / "levels.json", "-o", folder / "two.png");
+  const Outcome outcome = succeed(two);  // the file beside the picture
   const auto record = nlohmann::json::parse(folder.read("levels.json"));
   CHECK(record["first"] == "bright");
   REQUIRE(record["levels"].size() == 6);
@@ -149,9 +136,7 @@ TEST_CASE("a mood is the same in render, relight and measure as its powers by --
   const std::string by_light = render_box(folder, "light.exr", plain);
   CHECK(read_image(by_mood).channels == read_image(by_light).channels);
   const std::string whole = render_box(folder, "whole.exr");
-  REQUIRE(
-      run_photile({"relight", whole, "--mood", "night", "-o", folder / "night.exr"}).exit_code ==
-      0);
+  succeed({"relight", whole, "--mood", "night", "-o", folder / "night.exr"});
   const Image relit = read_image(folder / "night.exr"), rendered = read_image(by_light);
   for (std::size_t i = 0; i < rendered.pixels(); ++i) {
     REQUIRE((*relit.find("G"))[i] == Approx((*rendered.find("G"))[i]).epsilon(1e-5));
@@ -216,9 +201,7 @@ std::string write_picture(const FileFolder& folder) {
 }
 
 void run(const std::vector<std::string>& arguments) {
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(arguments);
   CHECK_THAT(outcome.errors, !Contains("warning"));
 }
 
@@ -329,10 +312,10 @@ TEST_CASE("a drawing in false colour needs its values and a PNG") {
 
 /// What the dynamic linker prints while a command runs.
 std::string loaded_by(const std::vector<std::string>& arguments) {
-  const Outcome outcome =
-      run_photile({.arguments = arguments, .environment = {{"LD_DEBUG", "files"}}});
-  CAPTURE(arguments);
-  CHECK(outcome.exit_code == 0);
+  Run run;
+  run.arguments = arguments;
+  run.environment["LD_DEBUG"] = "files";
+  const Outcome outcome = succeed(run);
   CHECK_THAT(outcome.errors, Catch::Contains("libOpenEXR"));
   return outcome.errors;
 }
@@ -340,9 +323,8 @@ std::string loaded_by(const std::vector<std::string>& arguments) {
 TEST_CASE("OpenImageIO is loaded where a picture is read that is no EXR, and nowhere else") {
   const FileFolder folder;
   const std::string box = write_box(folder), picture = folder / "a.exr";
-  const std::vector<std::string> render{"render",    box,     "-o",        picture,
-                                        "--size",    "16x12", "--quality", "draft",
-                                        "--photons", "2k",    "--quiet"};
+  const std::vector<std::string> render =
+      typed("render", box, "-o", picture, "--size 16x12 --quality draft --photons 2k --quiet");
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"--version"}, render,
         std::vector<std::string>{"measure", box, "--plane", "floor+0.75", "--photons", "2k",

@@ -21,12 +21,7 @@ namespace {
 using Catch::Contains;
 
 void render(const FileFolder& folder, const std::vector<std::string>& options) {
-  std::vector<std::string> arguments{"render", write_box(folder), "--photons",
-                                     "100k",   "--quality",       "draft"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(folder), "--photons 100k --quality draft", options));
 }
 
 double mean(const Image& picture, const std::string& channel) {
@@ -184,11 +179,8 @@ TEST_CASE("the stages add up with maps that are kept, with reflections and by pa
   CHECK_THAT(names_with({"--load-maps", folder / "a.maps"}),
              VectorContains(std::string("load photons")));
   const FileFolder by_paths;
-  const Outcome outcome =
-      run_photile({"render", write_box(by_paths), "--integrator", "path", "--size", "16x12", "-o",
-                   by_paths / "a.png", "--stats", by_paths / "a.json"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(by_paths), "--integrator path --size 16x12 -o",
+                by_paths / "a.png", "--stats", by_paths / "a.json"));
   checked_stages(nlohmann::json::parse(by_paths.read("a.json")));
 }
 
@@ -203,9 +195,8 @@ TEST_CASE("naive maps are darker than those of neighbour groups at borders, henc
 TEST_CASE("a profiled render lists the time of each kernel") {
   const FileFolder folder;
   const Outcome outcome =
-      run_photile({"render", write_box(folder), "--photons", "10k", "--size", "16x12", "-o",
-                   folder / "a.png", "--quality", "draft", "--set", "profile=on"});
-  CHECK(outcome.exit_code == 0);
+      succeed(typed("render", write_box(folder), "--photons 10k --size 16x12 -o", folder / "a.png",
+                    "--quality draft --set profile=on"));
   CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
 }
 
@@ -261,10 +252,8 @@ TEST_CASE("where no surface stores photons the lamps are seen, and a line says t
       "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
   folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
   const std::string quality = GENERATE("draft", "good");
-  const Outcome outcome = run_photile({"render", scene, "-o", folder / "out.exr", "--photons",
-                                       "100", "--size", "4x4", "--quality", quality});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(typed("render", scene, "-o", folder / "out.exr",
+                                        "--photons 100 --size 4x4 --quality", quality));
   CHECK_THAT(outcome.errors, Contains("lamp.obj: no surface but mirrors and glass is lit"));
   const Image picture = read_image(folder / "out.exr");
   const std::vector<float>& red = *picture.find("R");
@@ -275,10 +264,7 @@ TEST_CASE("where no surface stores photons the lamps are seen, and a line says t
 
 std::vector<std::string> by_paths(const FileFolder& folder,
                                   const std::vector<std::string>& options) {
-  std::vector<std::string> arguments{"render", write_box(folder), "--integrator",
-                                     "path",   "--size",          "16x12"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  return arguments;
+  return typed("render", write_box(folder), "--integrator path --size 16x12", options);
 }
 
 TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
@@ -286,9 +272,7 @@ TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
   Run run;
   run.arguments = by_paths(folder, {"-o", folder / "a.exr", "--stats", folder / "a.json"});
   run.environment["OCL_ICD_VENDORS"] = folder / "no runtimes";
-  const Outcome outcome = run_photile(run);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(run);
 
   const Image picture = read_image(folder / "a.exr");
   CHECK(picture.find("Combined_left.R") != nullptr);
@@ -300,8 +284,7 @@ TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
   CHECK(statistics["parameters"]["integrator"] == "path");
   CHECK_FALSE(statistics.contains("photons_stored"));
 
-  REQUIRE(run_photile({"relight", folder / "a.exr", "--light", "left=off", "-o", folder / "b.exr"})
-              .exit_code == 0);
+  succeed({"relight", folder / "a.exr", "--light", "left=off", "-o", folder / "b.exr"});
   CHECK(*read_image(folder / "b.exr").find("R") == *picture.find("Combined_right.R"));
 }
 
@@ -320,8 +303,7 @@ TEST_CASE("options of photon maps are usage errors beside --integrator path") {
                                                                  {"--set", "program_cache=off"},
                                                                  {"--set", "profile=on"}}));
   const FileFolder folder;
-  std::vector<std::string> options{"-o", folder / "a.exr"};
-  options.insert(options.end(), option.begin(), option.end());
+  std::vector<std::string> options = typed("-o", folder / "a.exr", option);
   const std::string name = option[0] == "-k" ? "--neighbours" : option[0];
   CHECK_THAT(only_error(run_photile(by_paths(folder, options)), 2),
              Contains(name) && Contains("photon maps"));
@@ -367,8 +349,7 @@ TEST_CASE("a room without lamps is lit by a sky in every command") {
     all.emplace_back("--quiet");
     return all;
   };
-  const std::vector<std::string> picture{"--quality", "draft", "--photons", "2k",
-                                         "-k",        "20",    "--size",    "16x12"};
+  const std::vector<std::string> picture = typed("--quality draft --photons 2k -k 20 --size 16x12");
   for (const auto& command :
        {joined({"render", room, "-o", folder / "a.exr"}, {sky, picture}),
         joined({"walk", room, "-o", folder / "walk.png", "--camera-path",
@@ -384,20 +365,17 @@ TEST_CASE("a room without lamps is lit by a sky in every command") {
                 "2", "--photons", "10k"},
                {sky})}) {
     CAPTURE(command[0], command[3]);
-    const Outcome outcome = run_photile(command);
-    INFO(outcome.errors);
-    CHECK(outcome.exit_code == 0);
+    succeed(command);
   }
 }
 
 TEST_CASE("info takes a room without lamps and says what is missing, others refuse it") {
   const FileFolder folder;
   const std::string room = write_unlit_box(folder);
-  const Outcome info = run_photile({"info", room});
-  CHECK(info.exit_code == 0);
+  const Outcome info = succeed({"info", room});
   CHECK_THAT(info.output, Contains("material: wall") && Contains("warning: no lights") &&
                               Contains("--luminaires") && Contains("--sky"));
-  CHECK(run_photile({"info", room, "--json"}).exit_code == 0);
+  succeed({"info", room, "--json"});
   CHECK_THAT(
       only_error(run_photile({"render", room, "-o", folder / "a.exr", "--quiet"}), bad_input),
       Contains("no lights"));
@@ -409,18 +387,9 @@ constexpr int seeds = 6;
 
 void render_picture(const FileFolder& folder, const std::string& file, const std::string& seed,
                     const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"render",    write_box(folder),
-                                     "-o",        file,
-                                     "--size",    "24x18",
-                                     "--samples", "4",
-                                     "--photons", "50k",
-                                     "-k",        "50",
-                                     "--set",     "light_map_rays=16",
-                                     "--seed",    seed};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(folder), "-o", file,
+                "--size 24x18 --samples 4 --photons 50k -k 50 --set light_map_rays=16 --seed", seed,
+                more));
 }
 
 /// A picture and its errors, of this seed.
@@ -467,9 +436,7 @@ TEST_CASE("stating errors changes no bit of the picture") {
 TEST_CASE("errors are relit as pictures are: a light's own in proportion to its power") {
   const FileFolder folder;
   render(folder, 1);
-  REQUIRE(run_photile({"relight", folder / "1-errors.exr", "--light", "left=x3", "-o",
-                       folder / "relit.exr"})
-              .exit_code == 0);
+  succeed({"relight", folder / "1-errors.exr", "--light", "left=x3", "-o", folder / "relit.exr"});
   const Image before = read_image(folder / "1-errors.exr"),
               after = read_image(folder / "relit.exr");
   const auto& own = *before.find("Combined_left.G");
@@ -484,9 +451,8 @@ TEST_CASE("errors are relit as pictures are: a light's own in proportion to its 
 TEST_CASE("errors are not stated where no nodes gather") {
   const FileFolder folder;
   const auto refusal = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"render",         write_box(folder), "-o",
-                                       folder / "a.exr", "--errors",        folder / "errors.exr"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> arguments = typed("render", write_box(folder), "-o", folder / "a.exr",
+                                               "--errors", folder / "errors.exr", more);
     return only_error(run_photile(arguments), usage);
   };
   CHECK_THAT(refusal({"--quality", "draft"}), Contains("--errors") && Contains("--quality good"));

@@ -40,8 +40,7 @@ TEST_CASE("an empty value is refused, and takes no other word in its place") {
   for (const std::string option : {"--stats", "--save-maps", "--png", "--glare", "--errors"}) {
     for (const std::vector<std::string>& words :
          {std::vector<std::string>{option + "=", notes}, std::vector<std::string>{option, ""}}) {
-      std::vector<std::string> arguments{"render", scene, "-o", folder / "out.exr"};
-      arguments.insert(arguments.end(), words.begin(), words.end());
+      std::vector<std::string> arguments = typed("render", scene, "-o", folder / "out.exr", words);
       CHECK_THAT(only_error(run_photile(arguments), usage), Contains(option) && Contains("empty"));
     }
   }
@@ -139,8 +138,8 @@ TEST_CASE("a sky too dark for its radiance to be a number is refused") {
   const FileFolder folder;
   for (const std::string sky : {"clear=1e-50", "perez=1,1e-300"}) {
     const Outcome outcome =
-        run_photile({"render", write_box(folder), "-o", folder / "out.exr", "--sky", sky, "--site",
-                     "52,13,1", "--time", "2026-06-21T12:00", "--size", "8x8"});
+        run_photile(typed("render", write_box(folder), "-o", folder / "out.exr", "--sky", sky,
+                          "--site 52,13,1 --time 2026-06-21T12:00 --size 8x8"));
     CHECK_THAT(last_error(outcome, usage), Contains("lux") && Contains("at least"));
   }
 }
@@ -148,8 +147,8 @@ TEST_CASE("a sky too dark for its radiance to be a number is refused") {
 TEST_CASE("parallel rays that span more than scenes may hold are refused") {
   const FileFolder folder;
   const Outcome outcome =
-      run_photile({"render", write_box(folder), "-o", folder / "out.exr", "--projection",
-                   "orthographic", "--field-of-view", "1e19", "--size", "8x8"});
+      run_photile(typed("render", write_box(folder), "-o", folder / "out.exr",
+                        "--projection orthographic --field-of-view 1e19 --size 8x8"));
   CHECK_THAT(last_error(outcome, usage), Contains("--field-of-view"));
 }
 
@@ -160,8 +159,7 @@ TEST_CASE("an unknown camera is a usage error that lists the cameras") {
 }
 
 TEST_CASE("the version names photile and what it was built with") {
-  const Outcome outcome = run_photile({"--version"});
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"--version"});
   CHECK_THAT(outcome.output, Contains("photile 0.") && Contains("Embree          3.") &&
                                  Contains("OpenEXR         3.") && Contains("TBB") &&
                                  Contains("OpenCL headers"));
@@ -172,8 +170,7 @@ TEST_CASE("the help of a command shows the settings of its usual quality") {
       {{"render", Quality::good}, {"view", Quality::good}, {"trade", Quality::draft}}));
   RenderParameters parameters;
   set_quality(parameters, usual);
-  const Outcome outcome = run_photile({command, "--help"});
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed({command, "--help"});
   const auto shows = [&](auto number) { return Contains("N=" + std::to_string(number)); };
   CHECK_THAT(outcome.output,
              shows(parameters.photons.emitted_photons) && shows(parameters.neighbours));
@@ -197,8 +194,7 @@ std::string content_of(const std::filesystem::path& file) {
 }
 
 TEST_CASE("the documentation holds the tables of settings as the command prints them") {
-  const Outcome tables = run_photile({"settings", "--markdown"});
-  REQUIRE(tables.exit_code == 0);
+  const Outcome tables = succeed({"settings", "--markdown"});
   const std::size_t blank = tables.output.find("\n\n");
   const std::string all = tables.output.substr(0, blank), qualities = tables.output.substr(blank);
   REQUIRE(std::count(all.begin(), all.end(), '\n') > 10);
@@ -245,8 +241,8 @@ TEST_CASE("what --set does not know is refused in a line that says what to type"
       }));
   const FileFolder folder;
   const std::string output = command == "measure" ? "out.csv" : "out.exr";
-  std::vector<std::string> all{command, write_box(folder), "-o", folder / output};
-  all.insert(all.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> all =
+      typed(command, write_box(folder), "-o", folder / output, arguments);
   CAPTURE(all);
   CHECK_THAT(only_error(run_photile(all), usage), Contains(remedy));
 }
@@ -257,7 +253,7 @@ TEST_CASE("settings of scenes and devices are set by name, too") {
   const auto radiance = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.begin(), {"render", scene, "--size", "8x6", "--photons", "5k", "--quality",
                                "draft", "-o", folder / name, "-q"});
-    REQUIRE(run_photile(more).exit_code == 0);
+    succeed(more);
     return *read_image(folder / name).find("R");
   };
   const auto usual = radiance("a.exr", {});
@@ -268,17 +264,10 @@ TEST_CASE("settings of scenes and devices are set by name, too") {
 
 TEST_CASE("a picture and its statistics tell every setting that it was made with") {
   const FileFolder folder;
-  REQUIRE(run_photile({"render",    write_box(folder),
-                       "-o",        folder / "a.exr",
-                       "--size",    "16x12",
-                       "--photons", "5k",
-                       "--quality", "draft",
-                       "--set",     "quota=equal",
-                       "--set",     "structure=kdtree-2d",
-                       "--set",     "photons_per_cell=0.1",
-                       "--set",     "passes=3",
-                       "--stats",   folder / "a.json"})
-              .exit_code == 0);
+  succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
+                "--size 16x12 --photons 5k --quality draft --set quota=equal --set "
+                "structure=kdtree-2d --set photons_per_cell=0.1 --set passes=3 --stats",
+                folder / "a.json"));
   const Image picture = read_image(folder / "a.exr");
   const auto recorded = nlohmann::json::parse(folder.read("a.json"))["parameters"];
   for (const Setting& setting : settings()) {
@@ -300,11 +289,8 @@ TEST_CASE("a picture and its statistics tell every setting that it was made with
 TEST_CASE("--quality sets settings that go together, and those given beside it count") {
   const FileFolder folder;
   const auto made_with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{
-        "render", write_box(folder), "-o", folder / "a.exr", "--size",
-        "8x6",    "--photons",       "5k", "--stats",        folder / "a.json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    REQUIRE(run_photile(arguments).exit_code == 0);
+    succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
+                  "--size 8x6 --photons 5k --stats", folder / "a.json", more));
     const auto record = nlohmann::json::parse(folder.read("a.json"));
     CHECK(record["asked"]["quality"] == (more.front() == "--quality" ? more[1] : "good"));
     return record["parameters"];
@@ -332,10 +318,9 @@ TEST_CASE("nodes gather in pictures unless another method is asked for") {
                                                       {"--set", "light_maps=off", false},
                                                       {"--set", "passes=2", false}}));
   CAPTURE(option);
-  REQUIRE(run_photile({"render", write_box(folder), "-o", folder / "a.exr", "--size", "8x6",
-                       "--photons", "5k", "-k", "50", "--samples", "2", option, value, "--stats",
-                       folder / "a.json"})
-              .exit_code == 0);
+  succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
+                "--size 8x6 --photons 5k -k 50 --samples 2", option, value, "--stats",
+                folder / "a.json"));
   const auto used = nlohmann::json::parse(folder.read("a.json"))["parameters"];
   CHECK((used["light_map_rays"] > 0) == gather);
 }
@@ -343,8 +328,8 @@ TEST_CASE("nodes gather in pictures unless another method is asked for") {
 TEST_CASE("settings that go with no other are refused by the names of their options") {
   const FileFolder folder;
   const auto refusal = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"render", write_box(folder), "-o", folder / "out.exr"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> arguments =
+        typed("render", write_box(folder), "-o", folder / "out.exr", more);
     return only_error(run_photile(arguments), usage);
   };
   CHECK_THAT(refusal({"--set", "least_neighbours=60", "-k", "50"}),
