@@ -323,7 +323,7 @@ std::string layered_exr() {
 enum class Outcome { picture, refused };
 
 Outcome relight_bytes(const TemporaryFolder& folder, const std::string& bytes) {
-  write_bytes(folder / "damaged.exr", bytes);
+  put(folder / "damaged.exr", bytes);
   try {
     const Image relit = relight(read_image(folder / "damaged.exr"), {{"lamp", "x2"}});
     for (const std::vector<float>& plane : relit.channels) {
@@ -393,7 +393,7 @@ TEST_CASE("a small EXR that announces gigabytes is refused without taking them")
   damaged.back().insert(8, "x\0stringvector\0\x08\0\0\0\0\0\0\x70text"s);
   for (const std::string& bytes : damaged) {
     CAPTURE(&bytes - damaged.data());
-    write_bytes(folder / "damaged.exr", bytes);
+    put(folder / "damaged.exr", bytes);
     const MemoryMeter meter;
     CHECK_THROWS_AS(relit_picture(folder / "damaged.exr", {}), InputError);
     CHECK(meter.peak() < std::size_t{256} << 20);
@@ -438,11 +438,11 @@ void write_black(const std::filesystem::path& file, const std::vector<int>& widt
 TEST_CASE("what is no picture is refused in one line that names the file") {
   const TemporaryFolder folder;
   CHECK(refusal(folder / "missing.exr").find("no such file") != std::string::npos);
-  write_bytes(folder / "empty.exr", "");
+  put(folder / "empty.exr", "");
   CHECK(refusal(folder / "empty.exr").find("empty") != std::string::npos);
-  write_bytes(folder / "text.exr", "this is no picture\n");
+  put(folder / "text.exr", "this is no picture\n");
   refusal(folder / "text.exr");
-  write_bytes(folder / "text.odd", "this is no picture\n");
+  put(folder / "text.odd", "this is no picture\n");
   refusal(folder / "text.odd");
   std::filesystem::create_directory(folder / "folder.exr");
   CHECK(refusal(folder / "folder.exr").find("not a regular file") != std::string::npos);
@@ -475,7 +475,7 @@ TEST_CASE("tiles that are larger than a small picture are refused before they ta
   const std::string before("tiledesc\0\x09\0\0\0", 13);
   const std::uint32_t sides[2] = {21'764, 1'024};  // 255 MiB, beside OpenEXR's own buffers
   std::memcpy(&bytes[bytes.find(before) + before.size()], sides, sizeof sides);
-  write_bytes(folder / "tiles.exr", bytes);
+  put(folder / "tiles.exr", bytes);
   CHECK(refusal(folder / "tiles.exr").find("smaller ones") != std::string::npos);
 }
 
@@ -518,7 +518,7 @@ TEST_CASE("an EXR whose writer ended before it wrote the table of its blocks is 
   };
   while (entry() != table + table_bytes) ++table;
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(table), table_bytes, '\0');
-  write_bytes(folder / "a.exr", bytes);
+  put(folder / "a.exr", bytes);
   CHECK(same_bits(read_image(folder / "a.exr").channels.at(0), pixels));
 }
 
@@ -528,7 +528,7 @@ TEST_CASE("a line end in the name of a part does not get into names of channels"
   CHECK(read_image(folder / "two.exr").channel_names.back() == "part1.c0");
   std::string bytes = bytes_of(folder / "two.exr");
   bytes[bytes.find("part1") + 3] = '\n';
-  write_bytes(folder / "two.exr", bytes);
+  put(folder / "two.exr", bytes);
   CHECK(refusal(folder / "two.exr").find("no text") != std::string::npos);
 }
 

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "files/warnings.hpp"
+#include "message_of.hpp"
 #include "photile/image.hpp"
 #include "photile/sensors.hpp"
 #include "pictures/texture_decoder.hpp"
@@ -261,14 +262,11 @@ TEST_CASE("a material reflects the share that is asked for, and keeps its hue") 
 TEST_CASE("reflectances that cannot be are refused with the remedy") {
   const auto refused = [&](const char* text, const char* words) {
     SceneLoadOptions options;
-    try {
+    const auto load = [&] {
       options.reflectances = {ReflectanceChange::parse(text)};
       square_of(json::object(), options);
-    } catch (const UsageError& error) {
-      CHECK_THAT(error.what(), Catch::Contains(words));
-      return;
-    }
-    FAIL(text);
+    };
+    CHECK_THAT(message_of<UsageError>(load), Catch::Contains(words));
   };
   refused("*=0", "--set lambertian=on");  // the lobe reflects more
   refused("*=0.95", "exceeds 1");

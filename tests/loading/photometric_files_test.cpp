@@ -5,6 +5,7 @@
 #include <random>
 
 #include "files/warnings.hpp"
+#include "message_of.hpp"
 #include "photometric_texts.hpp"
 #include "photometry/eulumdat_reader.hpp"
 #include "photometry/ies_reader.hpp"
@@ -24,12 +25,7 @@ IntensityDistribution read_ies(const std::string& text) {
 }
 
 std::string ies_refusal(const std::string& text) {
-  try {
-    read_ies(text);
-  } catch (const ResourceError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<ResourceError>([&] { read_ies(text); });
 }
 
 /// A direction at gamma from -z and at azimuth C from +x by +y.
