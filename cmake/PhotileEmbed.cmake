@@ -1,11 +1,13 @@
 # photile_embed_kernels(<target>): compiles the texts of kernels/**/*.cl, kernels/**/*.clh and
 # include/photile/device/*.h into <target>, as host/renderer/device/embedded_files.hpp declares them. A kernel
-# is known by its path below kernels/, a shared header by "photile/device/<name>".
+# is known by its path below kernels/, a shared header by "photile/device/<name>". Those of
+# kernels/structures are left out: bench/structures has them.
 function(photile_embed_kernels target)
   set(script ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/embed_files.cmake)
   set(kernel_root ${PROJECT_SOURCE_DIR}/kernels)
   set(header_root ${PROJECT_SOURCE_DIR}/include)
   file(GLOB_RECURSE kernels CONFIGURE_DEPENDS ${kernel_root}/*.cl ${kernel_root}/*.clh)
+  list(FILTER kernels EXCLUDE REGEX "/structures/")
   file(GLOB headers CONFIGURE_DEPENDS ${header_root}/photile/device/*.h)
 
   # The list of files goes through a file of its own: it changes when a file comes or goes, and a

@@ -29,7 +29,7 @@ struct Subject {
   std::vector<Place> places;
 };
 
-/// Of the plate's hits those in the middle, and those whose discs cross one edge, or a corner.
+/// The plate's hits: those in the middle, and those whose discs cross one edge, or a corner.
 Subject plate(const BenchOptions& options) {
   const Workload workload = plane_workload(options.quick ? 20'000 : 1'000'000);
   Subject subject{workload.scene, workload.photons(options.quick ? 5'000 : 20'000), {}};

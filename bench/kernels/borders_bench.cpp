@@ -6,7 +6,7 @@
 
 #include "photile/sensors.hpp"
 #include "support/bench_record.hpp"
-#include "validation/room.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace {
 

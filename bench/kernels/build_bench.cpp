@@ -1,9 +1,6 @@
 // Building what is searched: neighbour groups and photon maps (duplicates included) against the
 // index of nanoflann, which builds on one thread.
-#include <array>
-#include <span>
-
-#include "photile/photon_maps.hpp"
+#include "structures/structure.hpp"
 #include "support/bench_record.hpp"
 #include "support/host_search.hpp"
 #include "support/naive_build.hpp"
@@ -21,10 +18,9 @@ struct Case {
   double radius;
 };
 
-/// Groups, and maps of each of the structures.
-nlohmann::json map_times(const Case& c, const NamedMapMode& mode,
-                         std::span<const MapStructure> structures, const Repeats& repeats,
-                         Device& device) {
+/// Groups, and maps in grids or, with `every`, in each of the structures.
+nlohmann::json map_times(const Case& c, const NamedMapMode& mode, bool every,
+                         const Repeats& repeats, Device& device) {
   const Scene& scene = *c.workload.scene;
   NeighbourGroups groups;
   const Timing group_time =
@@ -34,15 +30,18 @@ nlohmann::json map_times(const Case& c, const NamedMapMode& mode,
                      {"photons", c.photons.size()},
                      {"radius", c.radius},
                      {"groups", to_json(group_time)}};
-  for (const MapStructure structure : structures) {
+  for (const structures::Structure& structure : structures::all()) {
+    const bool cells = structure.name == "uniform-grid";
+    // Brute force has nothing to build.
+    if (structure.name == "brute-force" || (!cells && !every)) continue;
     PhotonMapStatistics statistics;
     const Timing timing = measure(repeats, [&] {
-      const PhotonMaps maps(device, scene, c.photons, groups,
-                            {.radius = c.radius, .structure = structure});
-      statistics = maps.statistics();
+      statistics =
+          structures::build(structure, device, scene, c.photons, groups, {.radius = c.radius})
+              .statistics();
     });
-    row[std::string(name_of(structure))] = to_json(timing);
-    if (structure != MapStructure::uniform_grid) continue;
+    row[structure.name] = to_json(timing);
+    if (!cells) continue;
     row["references"] = statistics.references;
     row["device bytes"] = statistics.device_bytes;
   }
@@ -53,22 +52,14 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
               Device& device, BenchRecord& record) {
   Case c{workload, workload.photons(photon_count), 0};
   c.radius = automatic_radius(c.photons, defaults::neighbours);
-  constexpr std::array grids{MapStructure::uniform_grid};
-  constexpr std::array grids_and_trees{MapStructure::uniform_grid,
-                                       MapStructure::kdtree_2d,
-                                       MapStructure::kdtree_3d,
-                                       MapStructure::kdtree_global,
-                                       MapStructure::kdtree_left_balanced,
-                                       MapStructure::wide_bvh,
-                                       MapStructure::hashed_grid};
-  nlohmann::json row = map_times(c, product_maps, grids_and_trees, options.repeats, device);
+  nlohmann::json row = map_times(c, product_maps, true, options.repeats, device);
   const Photons& photons = c.photons;
   const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
   const SearchInput input{photons, filter, workload.scene->lights.size()};
   row["nanoflann"] = to_json(measure(options.repeats, [&] { make_nanoflann_index(photons); }));
   row["embree"] = to_json(measure(options.repeats, [&] { make_embree_search(input); }));
   record.add(std::move(row));
-  row = map_times(c, paper_maps, grids, options.repeats, device);
+  row = map_times(c, paper_maps, false, options.repeats, device);
   const NaiveBuild naive = time_naive_build(*workload.scene, photons, c.radius,
                                             defaults::group_angle_degrees, options.repeats);
   row["naive"] = to_json(naive.timing);

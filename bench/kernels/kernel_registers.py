@@ -88,7 +88,7 @@ class Nvidia:
     """Registers a thread, bytes of stack and of local memory, and the share of a multiprocessor's
     threads that run at a time."""
 
-    # Of a multiprocessor (CUDA C++ Programming Guide, table of technical specifications).
+    # Limits of a multiprocessor (CUDA C++ Programming Guide, table of technical specifications).
     LIMITS = {"sm_90": (64, 32, 233472), "sm_89": (48, 24, 102400)}
 
     def __init__(self, compiler, ptxas, architecture):

@@ -50,7 +50,7 @@ Subject whole_living_room(const Size& size) {
   return subject;
 }
 
-/// The same photons and hits, without what the needs leave out.
+/// The photons and hits of `subject`, without what the needs leave out.
 Subject restricted(Subject subject, const SceneNeeds& needs) {
   if (needs.light_count == 1) {
     subject.scene.lights.resize(1);

@@ -14,6 +14,8 @@
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/statistics.hpp"
+#include "structures/structure.hpp"
+#include "structures/visits.hpp"
 #include "support/bench_record.hpp"
 #include "support/estimate_check.hpp"
 #include "support/hit_sample.hpp"
@@ -21,7 +23,6 @@
 #include "support/least_work.hpp"
 #include "support/morton_order.hpp"
 #include "support/point_bench.hpp"
-#include "support/visits.hpp"
 #include "support/workload.hpp"
 
 namespace {
@@ -74,10 +75,10 @@ const std::vector<Plan>& plans() {
 
 /// Left out are brute force where it would take minutes, and the trees over millions of photons at
 /// every k but one: their builds would take most of the run.
-bool worth_running(MapStructure structure, std::size_t photons, int k) {
+bool worth_running(const structures::Structure& structure, std::size_t photons, int k) {
   constexpr std::size_t most_for_brute_force = 15'000, most_for_every_k = 3'000'000;
-  if (structure == MapStructure::brute_force) return photons <= most_for_brute_force;
-  if (structure == MapStructure::uniform_grid) return true;
+  if (structure.name == "brute-force") return photons <= most_for_brute_force;
+  if (structure.is_grid()) return true;
   return photons <= most_for_every_k || k == defaults::neighbours;
 }
 
@@ -96,7 +97,7 @@ struct Case {
 /// A sample of hits contains those of every larger stride up to this.
 constexpr std::size_t most_stride = 64;
 
-/// As many hits as `run` affords: a warm-up and three repeats within the budget.
+/// A sample of as many hits as `run` affords: a warm-up and three repeats within the budget.
 HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
                           const std::function<void(const PrimaryHits&)>& run) {
   constexpr double passes = 4;
@@ -158,7 +159,7 @@ class KnnBench {
         // Rivals differ little in how much their order matters: once is enough.
         if (k == defaults::neighbours) run_host(c, "nanoflann-morton", *list, morton_order);
         run_host(c, "embree", *embree, given_order);
-        for (const MapStructure structure : all_map_structures) {
+        for (const structures::Structure& structure : structures::all()) {
           if (!wanted(structure) || !worth_running(structure, photons.size(), k)) continue;
           run_device(c, structure);
         }
@@ -181,9 +182,9 @@ class KnnBench {
     return order;
   }
 
-  bool wanted(MapStructure structure) const {
-    return structures_.empty() || std::find(structures_.begin(), structures_.end(),
-                                            name_of(structure)) != structures_.end();
+  bool wanted(const structures::Structure& structure) const {
+    return structures_.empty() ||
+           std::find(structures_.begin(), structures_.end(), structure.name) != structures_.end();
   }
 
   /// The times of a row, and how near they come to what no search can do without.
@@ -216,12 +217,12 @@ class KnnBench {
         c.check.radii_that_differ(answers.squared_radius, asked.index));
   }
 
-  void run_device(const Case& c, MapStructure structure) {
-    const std::string name(name_of(structure));
+  void run_device(const Case& c, const structures::Structure& structure) {
+    const std::string& name = structure.name;
     try {
-      const PhotonMaps maps(
-          device_, *c.workload.scene, c.photons, c.groups,
-          {.radius = c.radius, .photons_per_cell = photons_per_cell_, .structure = structure});
+      const PhotonMaps maps =
+          structures::build(structure, device_, *c.workload.scene, c.photons, c.groups,
+                            {.radius = c.radius, .photons_per_cell = photons_per_cell_});
       Estimator estimator(
           maps, *c.workload.scene,
           {.neighbours = c.k, .radius = c.radius, .tuning = tuning_, .area = AreaMode::disc});
@@ -231,10 +232,10 @@ class KnnBench {
       nlohmann::json row = row_of(c, name, asked);
       set_seconds(row, c, asked, measure(repeats_, [&] { estimate(asked.hits); }));
       row["references"] = maps.statistics().references;
-      if (counts_visits(structure)) {
+      if (!structure.is_grid()) {
         constexpr std::size_t most_hits = 4096;
         const HitSample some = thinned(block_sample(c.hits, most_stride), most_hits);
-        const Visits visits = count_visits(maps, some.hits, c.k);
+        const structures::Visits visits = structures::count_visits(maps, some.hits, c.k);
         row["nodes visited"] = visits.nodes;
         row["photons visited"] = visits.photons;
       }
@@ -312,8 +313,8 @@ int main(int argument_count, char** arguments) {
   command.add_option("--workloads", settings.workloads, "what is measured; default: all")
       ->check(CLI::IsMember(workloads));
   std::vector<std::string> structures, strategies;
-  for (const MapStructure structure : all_map_structures) {
-    structures.emplace_back(name_of(structure));
+  for (const structures::Structure& structure : structures::all()) {
+    structures.push_back(structure.name);
   }
   for (const EstimateStrategy strategy : all_estimate_strategies) {
     strategies.emplace_back(name_of(strategy));

@@ -22,7 +22,7 @@ struct Settings {
   bool triangles = true;
 };
 
-/// Of all threads of this process, user and system.
+/// Processor time of all threads of this process, user and system.
 double processor_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

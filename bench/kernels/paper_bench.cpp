@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "photile/estimator.hpp"
+#include "structures/structure.hpp"
 #include "support/bench_record.hpp"
 #include "support/estimate_check.hpp"
 #include "support/kernel_seconds.hpp"
@@ -42,20 +43,20 @@ bool run(BenchOptions& options) {
   std::uint64_t faults = 0;
 
   struct Variant {
-    MapStructure structure;
+    std::string structure;
     NamedMapMode maps;
   };
-  for (const auto& [structure, mode] : {Variant{MapStructure::kdtree_global, product_maps},
-                                        Variant{MapStructure::uniform_grid, paper_maps},
-                                        Variant{MapStructure::uniform_grid, product_maps}}) {
+  for (const auto& [structure, mode] :
+       {Variant{"kdtree-global", product_maps}, Variant{"uniform-grid", paper_maps},
+        Variant{"uniform-grid", product_maps}}) {
     NeighbourGroups groups;
     const Timing group_time = measure(options.repeats, [&] {
       groups = find_map_groups(*workload.scene, photons, mode.mode, {radius});
     });
     PhotonMapStatistics statistics;
     const auto build = [&] {
-      return PhotonMaps(device, *workload.scene, photons, groups,
-                        {.radius = radius, .structure = structure});
+      return structures::build(structures::named(structure), device, *workload.scene, photons,
+                               groups, {.radius = radius});
     };
     const Timing build_time = measure(options.repeats, [&] { statistics = build().statistics(); });
     const PhotonMaps maps = build();
@@ -73,15 +74,18 @@ bool run(BenchOptions& options) {
     Estimates estimates;
     const Timing whole = measure(options.repeats, [&] { estimates = estimator.estimate(hits); });
     const EstimateCheck check(oracle, photons.size(), {defaults::neighbours, radius}, hits);
-    faults += check.count_faults(fmt::format("{}, maps of {}", name_of(structure), mode.name),
-                                 estimator, estimates);
-    nlohmann::json row{
-        {"structure", name_of(structure)},      {"maps of", mode.name},
-        {"references", statistics.references},  {"device bytes", statistics.device_bytes},
-        {"maps", to_json(build_time)},          {"search kernels", to_json(search)},
-        {"estimate kernels", to_json(kernels)}, {"estimate", to_json(whole)}};
+    faults += check.count_faults(fmt::format("{}, maps of {}", structure, mode.name), estimator,
+                                 estimates);
+    nlohmann::json row{{"structure", structure},
+                       {"maps of", mode.name},
+                       {"references", statistics.references},
+                       {"device bytes", statistics.device_bytes},
+                       {"maps", to_json(build_time)},
+                       {"search kernels", to_json(search)},
+                       {"estimate kernels", to_json(kernels)},
+                       {"estimate", to_json(whole)}};
     // Any photon may be a neighbour in the one global tree; it has no use for groups.
-    if (structure == MapStructure::uniform_grid) row["groups"] = to_json(group_time);
+    if (structure == "uniform-grid") row["groups"] = to_json(group_time);
     record.add(std::move(row));
   }
   record.write();

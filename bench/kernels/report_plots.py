@@ -21,9 +21,18 @@ STYLES = {
 SUMMARY_K = 50
 
 
+def style_of(structure):
+    """Its colour, line and marker; of one that has none in the table, the same in every plot."""
+    number = sum(map(ord, structure))
+    chosen = list(STYLES.values())[number % len(STYLES)]
+    return STYLES.get(structure, (chosen[0], ":", "<>hX"[number % 4]))
+
+
 def draw_times(axis, rows):
     """Microseconds a query against photons, a line a structure, with the spread of the repeats."""
-    for structure, (colour, line, marker) in STYLES.items():
+    others = dict.fromkeys(row["structure"] for row in rows if row["structure"] not in STYLES)
+    for structure in [*STYLES, *others]:
+        colour, line, marker = style_of(structure)
         chosen = sorted((row for row in rows if row["structure"] == structure),
                         key=lambda row: row["photons"])
         if not chosen:
@@ -77,7 +86,7 @@ def draw_ratios(knn, caption, folder):
         figure, axes = panels(len(ks), caption)
         for axis, k in zip(axes, ks):
             for structure, of_photons in cases[workload, k].items():
-                colour, line, marker = STYLES[structure]
+                colour, line, marker = style_of(structure)
                 photons = sorted(of_photons)
                 axis.plot(photons, [of_photons[count] for count in photons], line, marker=marker,
                           color=colour, label=structure, markersize=4)

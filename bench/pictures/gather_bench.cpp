@@ -31,7 +31,8 @@ struct Sizes {
   std::uint64_t gathered_photons = 500'000, looked_up_photons = 4'000'000;
 };
 
-/// Of all threads of the process, the device's among them where it is this processor.
+/// Processor time of all threads of the process, the device's among them where it is this
+/// processor.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 std::vector<std::uint64_t> numbers(std::size_t count) {

@@ -23,7 +23,6 @@
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 #include "view/viewpoint.hpp"
@@ -93,7 +92,7 @@ void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camer
   }
 }
 
-/// Of an interior of the shared scenes, path-traced; nothing where it is missing.
+/// The path-traced reference of an interior of the shared scenes; nothing where it is missing.
 std::optional<Image> reference_of(const std::string& name) {
   const char* folder = std::getenv("PHOTILE_SHARED_SCENES");
   const std::filesystem::path file =

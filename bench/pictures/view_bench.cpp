@@ -10,7 +10,6 @@
 #include "support/bench_record.hpp"
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "view/display.hpp"
 #include "view/viewpoint.hpp"

@@ -72,7 +72,7 @@ def seen_scene(meshes, view, width, height):
          "scene.camera.lookat.orig": [float(v) for v in position],
          "scene.camera.lookat.target": [float(v) for v in position - forward],
          "scene.camera.up": [float(v) for v in up],
-         # Of the shorter side, which the screen window measures as 2.
+         # The field of view is that of the shorter side, which the screen window measures as 2.
          "scene.camera.fieldofview": math.degrees(view.vertical_field_of_view),
          # Rows that begin at the bottom leave the picture one row too low.
          "scene.camera.screenwindow": [-aspect, aspect, -1.0 - 2.0 / height, 1.0 - 2.0 / height],

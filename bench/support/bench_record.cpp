@@ -33,7 +33,7 @@ std::string date() {
   return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
 }
 
-/// Of the sources that the bench was built from; "unknown" without git.
+/// The commit of the sources that the bench was built from; "unknown" without git.
 std::string commit() {
   std::string text;
   if (FILE* const git =
@@ -45,7 +45,7 @@ std::string commit() {
   return text.empty() ? "unknown" : text;
 }
 
-/// Of the process, without its name; empty on systems without /proc.
+/// The arguments of the process, without its name; empty on systems without /proc.
 std::vector<std::string> command_line() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> words;

@@ -11,8 +11,8 @@
 
 namespace photile::bench {
 
-/// Of the JSON files (docs/bench-points.md): raised when a name changes its meaning or goes, not
-/// when one comes.
+/// The version of the JSON files (docs/bench-points.md) is raised when a name changes its meaning
+/// or goes, not when one comes.
 inline constexpr int schema_version = 1;
 
 struct BenchOptions {

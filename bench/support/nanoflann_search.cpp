@@ -82,7 +82,7 @@ class FilteredList {
   std::uint32_t sided_triangle_ = 0;
 };
 
-/// The same with a heap.
+/// The filtered candidates, kept in a heap.
 class FilteredHeap {
  public:
   using DistanceType = float;

@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "photile/errors.hpp"
+#include "photile/estimator.hpp"
 #include "photile/photon_cloud.hpp"
 #include "photile/statistics.hpp"
+#include "structures/structure.hpp"
 #include "support/estimate_check.hpp"
 #include "support/host_search.hpp"
 #include "support/kernel_seconds.hpp"
@@ -18,10 +20,14 @@
 namespace photile::bench {
 namespace {
 
-/// Brute force over more photons would take minutes.
-bool worth_running(MapStructure structure, std::size_t photons) {
+using structures::Structure;
+
+/// Left out are brute force over so many photons that it takes minutes, and structures of a map
+/// each: without a scene there are no triangles that have one.
+bool worth_running(const Structure& structure, std::size_t photons) {
   constexpr std::size_t most_for_brute_force = 15'000;
-  return structure != MapStructure::brute_force || photons <= most_for_brute_force;
+  if (structure.name == "brute-force") return photons <= most_for_brute_force;
+  return structure.global || structure.is_grid();
 }
 
 class PointBench {
@@ -61,8 +67,9 @@ class PointBench {
       check_.emplace(oracle_, stored_.size(), TimedEstimate{k, radius}, hits_);
       run_host(k, radius);
       for (Device& device : devices) {
-        for (const MapStructure structure : all_map_structures) {
-          if (!settings_.wants(structure) || !worth_running(structure, stored_.size())) continue;
+        for (const Structure& structure : structures::all()) {
+          if (!settings_.wants(structure.name) || !worth_running(structure, stored_.size()))
+            continue;
           run_device(device, structure, k, radius);
         }
       }
@@ -76,7 +83,7 @@ class PointBench {
     return file.normal.empty() ? "no normals" : "normals";
   }
 
-  /// Of photons, then of queries; without any all agree.
+  /// The normals of photons, then of queries; without any all agree.
   std::vector<glm::vec3> normals() const {
     std::vector<glm::vec3> all = photons_.normal;
     all.insert(all.end(), queries_.normal.begin(), queries_.normal.end());
@@ -110,43 +117,84 @@ class PointBench {
     time("embree", *embree, embree_seconds);
   }
 
-  void run_device(Device& device, MapStructure structure, int k, double radius) {
+  /// Photons in a structure: maps that place points themselves, or that are asked at hits.
+  struct Subject {
+    std::optional<PhotonCloud> cloud;
+    std::optional<PhotonMaps> maps;
+
+    const PhotonMapStatistics& statistics() const {
+      return cloud ? cloud->statistics() : maps->statistics();
+    }
+  };
+
+  Subject built(Device& device, const Structure& structure, double radius) const {
+    Subject subject;
+    if (structure.is_grid()) {
+      subject.cloud.emplace(device,
+                            CloudPhotons{.position = photons_.position, .normal = photons_.normal},
+                            CloudParameters{.radius = radius,
+                                            .photons_per_cell = structure.photons_per_cell > 0
+                                                                    ? structure.photons_per_cell
+                                                                    : settings_.photons_per_cell});
+    } else {
+      const double angle = photons_.normal.empty() ? 180.0 : defaults::group_angle_degrees;
+      subject.maps.emplace(
+          structures::build_over(structure, device, {stored_, filter_.normals(), angle}, radius));
+    }
+    return subject;
+  }
+
+  Estimates estimate(Subject& subject, int k) const {
+    if (subject.cloud) {
+      return subject.cloud->irradiance(queries_.position, queries_.normal, {.neighbours = k});
+    }
+    return Estimator(*subject.maps, Scene(), {.neighbours = k, .area = AreaMode::disc})
+        .estimate(hits_);
+  }
+
+  /// Of the k-th photon of each query, or of the search.
+  std::vector<float> squared_radii(Subject& subject, int k, double radius) const {
+    if (subject.maps) {
+      return Estimator(*subject.maps, Scene(), {.neighbours = k, .area = AreaMode::disc})
+          .nearest(hits_)
+          .squared_radius;
+    }
+    const CloudNeighbours found = subject.cloud->nearest(queries_.position, queries_.normal, k);
+    std::vector<float> squared_radius;
+    const auto width = static_cast<std::size_t>(k);
+    for (std::size_t i = 0; i < hits_.size(); ++i) {
+      const float farthest = found.squared_distance[(i + 1) * width - 1];
+      squared_radius.push_back(std::isinf(farthest)
+                                   ? static_cast<float>(radius) * static_cast<float>(radius)
+                                   : farthest);
+    }
+    return squared_radius;
+  }
+
+  void run_device(Device& device, const Structure& structure, int k, double radius) {
     const DeviceInfo& info = device.info();
     try {
       const Stopwatch build_watch;
-      PhotonCloud cloud(device, {.position = photons_.position, .normal = photons_.normal},
-                        {.radius = radius,
-                         .structure = structure,
-                         .photons_per_cell = settings_.photons_per_cell});
+      Subject subject = built(device, structure, radius);
       const double build_seconds = build_watch.seconds();
       Estimates estimates;
       std::vector<double> kernel_seconds;
       const Timing timing = measure_returned(repeats_, [&] {
         const Stopwatch watch;
-        kernel_seconds.push_back(kernel_seconds_of(device, [&] {
-          estimates = cloud.irradiance(queries_.position, queries_.normal, {.neighbours = k});
-        }));
+        kernel_seconds.push_back(
+            kernel_seconds_of(device, [&] { estimates = estimate(subject, k); }));
         return watch.seconds();
       });
       kernel_seconds.erase(kernel_seconds.begin());  // of the call that is not timed
-      nlohmann::json row = row_of(std::string(name_of(structure)), info.name, info.driver_version,
-                                  k, radius, timing);
+      nlohmann::json row =
+          row_of(structure.name, info.name, info.driver_version, k, radius, timing);
       row["kernel seconds"] = Timing{kernel_seconds}.median();
       row["build"] = build_seconds;
-      row["map bytes"] = cloud.statistics().device_bytes;
-      row["references"] = cloud.statistics().references;
-      const CloudNeighbours found = cloud.nearest(queries_.position, queries_.normal, k);
-      std::vector<float> squared_radius;
-      const auto width = static_cast<std::size_t>(k);
-      for (std::size_t i = 0; i < hits_.size(); ++i) {
-        const float farthest = found.squared_distance[(i + 1) * width - 1];
-        squared_radius.push_back(std::isinf(farthest)
-                                     ? static_cast<float>(radius) * static_cast<float>(radius)
-                                     : farthest);
-      }
-      add(std::move(row), estimates.irradiance, squared_radius);
+      row["map bytes"] = subject.statistics().device_bytes;
+      row["references"] = subject.statistics().references;
+      add(std::move(row), estimates.irradiance, squared_radii(subject, k, radius));
     } catch (const DeviceError& error) {
-      record_.add({{"structure", name_of(structure)},
+      record_.add({{"structure", structure.name},
                    {"device", info.name},
                    {"driver", info.driver_version},
                    {"k", k},

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "photile/photon_maps.hpp"
+#include "photile/defaults.hpp"
 #include "support/bench_record.hpp"
 
 namespace photile::bench {
@@ -18,16 +18,16 @@ struct PointBenchSettings {
   std::vector<std::string> structures = {};             ///< names; empty = all
   float photons_per_cell = defaults::photons_per_cell;  ///< of uniform grids
 
-  bool wants(MapStructure structure) const {
+  bool wants(const std::string& structure) const {
     return structures.empty() ||
-           std::find(structures.begin(), structures.end(), name_of(structure)) != structures.end();
+           std::find(structures.begin(), structures.end(), structure) != structures.end();
   }
 };
 
-/// Times the structures that are wanted on every device of options.device ("" = all), and nanoflann
-/// and Embree on the host. What the rows hold: docs/bench-points.md. Returns false where a radius
-/// or an irradiance is not the oracle's. Errors: those of read_points, of PhotonCloud and of the
-/// devices.
+/// Times the structures that are wanted, but for those of a map each, on every device of
+/// options.device ("" = all), and nanoflann and Embree on the host. What the rows hold:
+/// docs/bench-points.md. Returns false where a radius or an irradiance is not the oracle's. Errors:
+/// those of read_points, of PhotonCloud and of the devices.
 bool run_point_bench(const BenchOptions& options, const PointBenchSettings& settings);
 
 }  // namespace photile::bench

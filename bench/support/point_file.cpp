@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::bench {

@@ -29,7 +29,7 @@ struct Repeats {
 /// time.
 Timing measure(const Repeats& repeats, const std::function<void()>& run);
 
-/// As above, of something that times itself: `run` returns its seconds.
+/// Measures, as `measure` does, something that times itself: `run` returns its seconds.
 Timing measure_returned(const Repeats& repeats, const std::function<double()>& run);
 
 }  // namespace photile::bench

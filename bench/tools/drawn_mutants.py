@@ -83,7 +83,8 @@ KERNEL_CASES = {
     "surface": ("[#arctangent_test]", "[#logarithm_test]"),
     "render": ("maps that keep normals give the same bits within an eighth of the memory",),
     "bench": ("a search for all photons computes the distance of each once",)}
-# The same with a layer around OpenCL: what GPUs run, and what is read or written beyond a buffer.
+# These cases run with a layer around OpenCL, which shows what GPUs run, and what is read or written
+# beyond a buffer.
 LAYER_CASES = (
     ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"),
     ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))

@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FUZZER = ROOT / "build/coverage/tests/fuzz/photile_fuzz"
 PROFILES = ROOT / "build/coverage/profiles"
 READERS = ("host/formats/", "host/renderer/image/", "host/renderer/common/", "host/lighting/measuring/",
-           "host/lighting/daylight/occupancy", "host/lighting/daylight/blinds", "host/apps/",
+           "host/lighting/daylight/daylight_metrics", "host/lighting/daylight/sky_states", "host/apps/",
            "host/renderer/cache/light_map_contents")
 
 

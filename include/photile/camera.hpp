@@ -10,7 +10,7 @@
 
 namespace photile {
 
-/// How directions become places on the film. Radiance's view types are named.
+/// How directions become positions on the film. Radiance's view types are named.
 enum class Projection {
   perspective,      ///< a pinhole: -vtv
   fisheye,          ///< hemispherical: the sine of the angle to the axis is the radius: -vth

@@ -81,7 +81,7 @@ class Communicator {
 struct Shard {
   std::uint32_t index = 0, count = 1;
 
-  /// Of n elements this part has those from `begin(n)` up to, but without, `end(n)`.
+  /// This part has, of n elements, those from `begin(n)` up to, but without, `end(n)`.
   std::uint64_t begin(std::uint64_t n) const { return place(index, n); }
   std::uint64_t end(std::uint64_t n) const { return place(index + std::uint64_t{1}, n); }
 

@@ -54,7 +54,7 @@ inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on 
 inline constexpr float survival_of_reflectance = 1.5f;
 /// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
 inline constexpr float strong_lobe = 0.2f;
-/// Looks at lamps for each ray of a node; in the open, where light is bright beside dark and the
+/// Light samples for each ray of a node; in the open, where light is bright beside dark and the
 /// sky may be seen through a window, more.
 inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
 /// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
@@ -65,24 +65,25 @@ inline constexpr int looks_again = 4, most_looks_again = 256;
 /// cosine, whose variance has no bound: up to so many times. Surface less than 2 degrees above the
 /// horizon then counts less for them, by 2% of what light of all heights alike does.
 inline constexpr float most_inverse_cosine = 32;
-/// Places on each side that a place is averaged with, and so many times: fewer at finer levels,
+/// Points on each side that a point is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one place to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
-/// Standard errors by which places may differ, and by which standard errors of direct light may.
+/// Standard errors by which points may differ, and by which standard errors of direct light may.
 inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
 /// A light is judged apart from the others where the square of its own difference exceeds so many
 /// tolerated ones: 4.2 standard errors, which scatter in eight batches seldom brings about.
 inline constexpr double parting_difference = 2;
 /// Errors above this share of the light that they are of are not known: few rays found any.
 inline constexpr double known_error = 0.5;
-/// What coarser nodes say of a place counts as much as so many nodes of its own few rays: it is a
+/// What coarser nodes say of a point counts as much as so many nodes of its own few rays: it is a
 /// mean over many.
 inline constexpr double weight_of_parents = 3;
-/// Lines of sight between places of one surface run above it by this part of their length:
+/// Shadow rays between points of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
 inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
-/// Those from a hit to the photons of its estimate run above it by this part of the radius.
+/// Rays from a hit to the photons of its estimate are offset from the surface by this part of the
+/// radius.
 inline constexpr float photon_sight_lift = 0x1p-4f;
 
 // Glass
@@ -128,7 +129,7 @@ inline constexpr std::size_t clicked_repeats = 64;
 inline constexpr int view_sky_patches = 145;   ///< Tregenza's, of a sky that hours move
 inline constexpr int view_day = 80;            ///< of the year: the 21st of March
 inline constexpr double view_hour = 12;        ///< of that day, standard time
-inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room without any lamp yet
+inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room without any light yet
 inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that no file states
 
 // Several processes
@@ -154,7 +155,7 @@ inline constexpr double portal_looks = 0.6;
 inline constexpr int sky_patches = 577;            ///< Reinhart's, of a year of daylight
 inline constexpr double ground_reflectance = 0.2;  ///< of the ground that surrounds a scene
 inline constexpr double daylight_lux = 300;        ///< of daylight autonomy: LM-83 and EN 17037
-inline constexpr double lamp_efficacy = 100;       ///< lm/W, of lamps that dim with daylight
+inline constexpr double lamp_efficacy = 100;       ///< lm/W, of luminaires that dim with daylight
 inline constexpr int daylight_rays = 256;          ///< of each sensor and repeat
 inline constexpr int daylight_repeats = 4;
 

@@ -35,8 +35,8 @@ struct DeviceInfo {
   /// rounded. Without, results are right but for their last bits.
   bool denormals = false, exact_division = false;
   bool is_pocl = false;
-  /// Of the last test of this device, with this driver and these kernels: "passed", what was found
-  /// wrong, or "" where none is remembered; see test_device.
+  /// The result of the last test of this device, with this driver and these kernels: "passed", what
+  /// was found wrong, or "" where none is remembered; see test_device.
   std::string test_result;
 };
 
@@ -97,7 +97,8 @@ std::vector<Device> open_devices(const DeviceOptions& options = {});
 /// not, in one line; an error of the device is such a line, too.
 std::string test_device(Device& device);
 
-/// The same, and keeps the result for later runs (DeviceInfo::test_result).
+/// Tests the device, as test_device does, and keeps the result for later runs
+/// (DeviceInfo::test_result).
 std::string test_device_and_remember(Device& device);
 
 }  // namespace photile

@@ -141,7 +141,7 @@ class Estimator {
   /// maps (trace_primary_hits with PhotonMaps::map_of) need not be sorted.
   Estimates estimate(const PrimaryHits& hits);
 
-  /// The same for hits [first, first + count) alone.
+  /// Estimates hits [first, first + count) alone.
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
 
   /// The neighbours themselves, for tests and inspection.

@@ -87,7 +87,7 @@ struct ToneMapping {
 
 /// Factor that brings the log-average luminance of R, G, B to mid grey, over pixels of finite
 /// positive luminance within a factor of 20 of their median (Reinhard et al., "Photographic tone
-/// reproduction for digital images", 2002, without the outliers: lamps and black backgrounds). 1
+/// reproduction for digital images", 2002, without the outliers: lights and black backgrounds). 1
 /// where no pixel has any. Errors: InputError where there is no R, G or B.
 double automatic_exposure(const Image& scene_referred);
 
@@ -95,9 +95,9 @@ double automatic_exposure(const Image& scene_referred);
 /// curve. Every pixel keeps its hue. NaN and negative values count as 0.
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters);
 
-/// Errors of a picture. Pixels that see a lamp, more than 20 times as bright as the reference's
+/// Errors of a picture. Pixels that see a light, more than 20 times as bright as the reference's
 /// median, are left out of all of them, and so are those next to them: their share of a mean would
-/// hide the room's, and one sample more or less on the border of a lamp that of all other pixels.
+/// hide the room's, and one sample more or less on the border of a light that of all other pixels.
 struct PictureError {
   /// Mean over pixels and channels of (a - b)^2 / (b^2 + 0.01 m^2): a the picture, b the reference,
   /// m the mean of b. Its root is the error relative to what is seen, in a pixel.
@@ -105,7 +105,7 @@ struct PictureError {
   double mean_ratio = 1;  ///< mean of the picture over that of the reference
   /// Largest |mean(a) / mean(b) - 1| of the tiles of a sixteenth of the picture's height: bias that
   /// many pixels share, where a pixel's noise has averaged out. Tiles darker than a tenth of m, or
-  /// that mostly see lamps, do not count.
+  /// that mostly see lights, do not count.
   double worst_region = 0;
   /// Where that is: its upper left corner and size, pixels; empty where no tile counts.
   struct Region {
@@ -123,7 +123,7 @@ struct PictureError {
 PictureError picture_error(const Image& picture, const Image& reference);
 
 /// The pixels that count, and what a squared difference of their channels is divided by: 3 x
-/// pixels values, 0 where the pixel sees a lamp or is next to one that does. Errors: as above.
+/// pixels values, 0 where the pixel sees a light or is next to one that does. Errors: as above.
 class RelativeErrorWeights {
  public:
   explicit RelativeErrorWeights(const Image& reference);

@@ -122,7 +122,7 @@ class LayeredPicture {
   std::vector<std::string> overflows() const;
 
  protected:
-  /// As `read` and `root`, whatever the numbers.
+  /// Reads as `read` and `root` do, whatever the numbers.
   virtual LightRows read_any(std::size_t light, int first, int end) const = 0;
   virtual Image sum_any(int first, int end) const = 0;
 

@@ -55,17 +55,17 @@ struct LightLayers {
   LightLayers() = default;
   /// Black layers in the order of the names, sparse where they are many.
   LightLayers(int width, int height, const std::vector<std::string>& names);
-  /// Those of a scene, in the order of LightGroups::groups.
+  /// The layers of a scene, in the order of LightGroups::groups.
   LightLayers(int width, int height, const Scene& scene);
 
   bool sparse() const { return !rows.empty(); }
   std::uint64_t bytes() const;
-  /// The same with a plane per light: 16 bytes per pixel and light.
+  /// The layers with a plane per light: 16 bytes per pixel and light.
   LightLayers dense() const;
 };
 
 /// What becomes of the lights' layers: each is multiplied by a number and added to another. Of
-/// hundreds of patches of a sky one layer is left, which costs a film as much as one lamp.
+/// hundreds of patches of a sky one layer is left, which costs a film as much as one light.
 struct LightPooling {
   std::vector<std::string> layers;      ///< of the film
   std::vector<std::uint32_t> layer_of;  ///< per layer of the scene: into `layers`

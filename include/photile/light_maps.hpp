@@ -38,14 +38,14 @@ class Tiles;   // host/renderer/cache/tiles.hpp
 
 /// Nodes of light maps that are valued together.
 struct NodeBatch {
-  /// Where they are. Beyond the first `nodes` points follow places that lie around them: see
+  /// Where they are. Beyond the first `nodes` points follow positions that lie around them: see
   /// NodeSource::surroundings.
   PrimaryHits points;
   std::size_t nodes = 0;
-  std::vector<std::uint64_t> number;  ///< of each point: by its place alone, below 2^48
+  std::vector<std::uint64_t> number;  ///< of each point: by its position alone, below 2^48
   std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
-  /// Of each node: the numbers of those of coarser levels between which it lies, two or four, one
-  /// of two twice. All `no_parent` at the coarsest level.
+  /// For each cache sample the numbers of those of coarser levels between which it lies, two or
+  /// four, one of two twice. All `no_parent` at the coarsest level.
   std::vector<std::array<std::uint64_t, 4>> parents;
   static constexpr std::uint64_t no_parent = ~std::uint64_t{0};
   /// Point i of the coarsest lattice, or node i, is linked to neighbour[first_neighbour[i] ..
@@ -63,17 +63,18 @@ struct NodeValues {
   std::vector<float> distance;
 };
 
-/// What the nodes of light maps get their light from. What a node gets must depend on its place
+/// What the nodes of light maps get their light from. What a node gets must depend on its position
 /// alone.
 class NodeSource {
  public:
   virtual ~NodeSource() = default;
 
-  /// Values may depend on places around the node in its chart, in the coarsest lattice that has it.
+  /// Values may depend on positions around the node in its chart, in the coarsest lattice that has
+  /// it.
   struct Surroundings {
-    int window = 0;       ///< places on each side that a place of the coarsest level is linked to
-    int rounds = 0;       ///< links from one such place to the next
-    int fine_window = 0;  ///< places on each side that a node of a finer level is linked to
+    int window = 0;  ///< positions on each side that a position of the coarsest level is linked to
+    int rounds = 0;  ///< links from one such position to the next
+    int fine_window = 0;  ///< positions on each side that a node of a finer level is linked to
   };
   virtual Surroundings surroundings() const { return {}; }
 
@@ -166,8 +167,8 @@ class LightMaps {
   /// tell it, or without light. Errors of neighbours are taken for the same.
   double relative_error(const NodeBlend& blend) const;
 
-  /// Whether what stands between a place and its nodes matters: they differ by more than this part
-  /// of the brightest, or all are dark, or something is close to one.
+  /// Whether what stands between a position and its nodes matters: they differ by more than this
+  /// part of the brightest, or all are dark, or something is close to one.
   bool uneven(const NodeBlend& blend, double contrast) const;
 
   /// The point of the surface that a node stands for.

@@ -33,7 +33,7 @@ struct EnvironmentPicture {
   double rotation_degrees = 0;  ///< clockwise as seen from above
 };
 
-/// A place on Earth; parsed from LATITUDE,LONGITUDE,TIME_ZONE.
+/// A site on Earth; parsed from LATITUDE,LONGITUDE,TIME_ZONE.
 struct Site {
   double latitude_degrees = 0;   ///< north of the equator
   double longitude_degrees = 0;  ///< east of Greenwich
@@ -58,7 +58,7 @@ struct SkySituation {
   std::filesystem::path weather = {};  ///< an EPW file, "" = none
 };
 
-/// The sun; parsed from AZIMUTH,ELEVATION,LUX, or from LUX alone where a time tells the place.
+/// The sun; parsed from AZIMUTH,ELEVATION,LUX, or from LUX alone where a time tells the position.
 struct Sun {
   double azimuth_degrees = 0;    ///< clockwise from north, which is -z; east is +x
   double elevation_degrees = 0;  ///< above the horizon, y upwards

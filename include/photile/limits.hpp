@@ -17,7 +17,7 @@ inline constexpr std::uint32_t max_shards = 1'000'000;  ///< parts of all paths,
 inline constexpr int max_passes = 65'536;
 inline constexpr int max_specular_depth = 1'000'000;  ///< mirrors and glass that a ray follows
 inline constexpr int max_neighbours = 1'000'000;      ///< k
-inline constexpr int max_direct_rays = 4096;          ///< looks at lamps from a hit
+inline constexpr int max_direct_rays = 4096;          ///< light samples from a hit
 inline constexpr int max_gathering_rays = 4096;       ///< from a point; each has its random numbers
 
 // Radii of search
@@ -34,7 +34,7 @@ inline constexpr double max_radius = 1e13;
 inline constexpr std::uint64_t max_group_members = 1'000'000'000;
 
 // Light maps
-inline constexpr int max_light_map_levels = 12;  ///< of refinement: places fit 32 bits
+inline constexpr int max_light_map_levels = 12;  ///< of refinement: positions fit 32 bits
 
 // Scene
 inline constexpr std::uint64_t max_file_bytes = 2ull << 30;      ///< the scene file itself
@@ -50,7 +50,7 @@ inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulation
 inline constexpr int max_node_depth = 512;
 /// Each takes 600 bytes and 2 us before a triangle of it is seen.
 inline constexpr std::uint64_t max_nodes = 250'000;
-/// Places of nodes beyond their number: shared children multiply. The format has none.
+/// Instances of nodes beyond their number: shared children multiply. The format has none.
 inline constexpr std::uint64_t max_repeated_visits = 100'000;
 inline constexpr std::uint64_t max_node_visits = max_nodes + max_repeated_visits;
 inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack
@@ -89,11 +89,11 @@ inline constexpr int max_image_side = 16'384;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
 inline constexpr int max_cube_map_side = max_image_side / 4;  ///< of a face: four of them go round
 inline constexpr int max_image_channels = 1'024;              ///< of a picture in memory
-/// Of an EXR in a single part, which every program reads. OpenEXR compresses blocks of 16 rows of a
-/// part, two for each thread: with more lights they would take as much memory as the picture, and
-/// from 1,024 channels on other programs refuse the file.
+/// The most channels of an EXR in a single part, which every program reads. OpenEXR compresses
+/// blocks of 16 rows of a part, two for each thread: with more lights they would take as much
+/// memory as the picture, and from 1,024 channels on other programs refuse the file.
 inline constexpr std::size_t max_single_part_lights = 64;
-/// Of a picture that is read a few rows at a time: a root and all lights.
+/// The most channels of a picture that is read a few rows at a time: a root and all lights.
 inline constexpr std::size_t max_layered_channels = 4 + 4 * max_lights;
 inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// Decoded bytes for each encoded one, in pictures above the size that is not worth a check: a
@@ -110,7 +110,7 @@ inline constexpr int max_samples_per_pixel = 65'536;
 /// Beyond, 2^stops times a bright pixel leaves the range of a float.
 inline constexpr double max_exposure_stops = 64;
 
-/// Of a text beside the scene: points, planes, camera paths, moods.
+/// The most bytes of a text beside the scene: points, planes, camera paths, moods.
 inline constexpr std::uint64_t max_input_text_bytes = 256ull << 20;
 
 // Measuring

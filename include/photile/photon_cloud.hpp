@@ -26,8 +26,7 @@ struct CloudParameters {
   double radius = 0;  ///< metres, > 0: no neighbour is farther
   /// Largest angle between the normals of a point and of its neighbours, in [0, 180].
   double angle_degrees = defaults::group_angle_degrees;
-  MapStructure structure = MapStructure::uniform_grid;
-  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at, in uniform grids
+  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at
 };
 
 /// The neighbours of points: row-major [point][k], nearest first.

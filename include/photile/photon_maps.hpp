@@ -1,12 +1,10 @@
 // Photon maps on the device: one 2D uniform grid per sided triangle (Graglia et al. 2012,
-// section 2.2) or patch, or a structure to compare it with.
+// section 2.2) or patch.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "photile/defaults.hpp"
@@ -18,50 +16,9 @@
 
 namespace photile {
 
-/// How the photons of a map are found. All structures return the same neighbours.
-enum class MapStructure {
-  uniform_grid,   ///< a 2D grid in the plane of each triangle: the method of the paper
-  kdtree_2d,      ///< a kd-tree in the plane of each triangle
-  kdtree_3d,      ///< a kd-tree in space for each triangle
-  kdtree_global,  ///< one kd-tree over all photons, filtered by normal: the classic photon map
-  kdtree_left_balanced,  ///< such a tree without pointers, searched without a stack
-  wide_bvh,              ///< boxes in boxes over all photons, eight in each
-  hashed_grid,           ///< cubic cells over all photons, in a hash table
-  brute_force            ///< every photon of the triangle's map
-};
-
-/// What is known of a structure by its name.
-struct MapStructureRow {
-  MapStructure structure;
-  std::string_view name;  ///< of the setting structure
-  /// One for all photons, filtered by normal, in place of one for each triangle or patch.
-  bool global;
-};
-inline constexpr std::array map_structure_table = {
-    MapStructureRow{MapStructure::uniform_grid, "uniform-grid", false},
-    MapStructureRow{MapStructure::kdtree_2d, "kdtree-2d", false},
-    MapStructureRow{MapStructure::kdtree_3d, "kdtree-3d", false},
-    MapStructureRow{MapStructure::kdtree_global, "kdtree-global", true},
-    MapStructureRow{MapStructure::kdtree_left_balanced, "kdtree-left-balanced", true},
-    MapStructureRow{MapStructure::wide_bvh, "wide-bvh", true},
-    MapStructureRow{MapStructure::hashed_grid, "hashed-grid", true},
-    MapStructureRow{MapStructure::brute_force, "brute-force", false}};
-
-inline constexpr std::array all_map_structures = [] {
-  std::array<MapStructure, map_structure_table.size()> structures{};
-  for (std::size_t i = 0; i < structures.size(); ++i) {
-    structures[i] = map_structure_table[i].structure;
-  }
-  return structures;
-}();
-
-std::string_view name_of(MapStructure structure);
-bool is_global(MapStructure structure);
-
 struct PhotonMapParameters {
   double radius = 0;  ///< metres, > 0: no neighbour is farther; at most the groups' radius
-  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at, in uniform grids
-  MapStructure structure = MapStructure::uniform_grid;
+  float photons_per_cell = defaults::photons_per_cell;  ///< aimed at
   /// Whether a CPU device keeps maps in large pages of memory. Estimates of millions of hits are
   /// quicker by them; to clear them takes longer, where the system has none ready.
   bool large_pages = true;
@@ -69,12 +26,11 @@ struct PhotonMapParameters {
 
 struct PhotonMapStatistics {
   std::uint64_t photons = 0;
-  std::uint64_t references = 0;   ///< entries over all maps; references / photons = copies
-  std::uint64_t maps = 0;         ///< that hold a photon
-  std::uint64_t mixed_maps = 0;   ///< of them, those whose queries filter by normal
-  std::uint64_t cells = 0;        ///< of grids
-  std::uint64_t nodes = 0;        ///< of trees
-  std::uint64_t largest_map = 0;  ///< entries
+  std::uint64_t references = 0;  ///< entries over all maps; references / photons = copies
+  std::uint64_t maps = 0;        ///< that hold a photon
+  std::uint64_t mixed_maps = 0;  ///< of them, those whose queries filter by normal
+  std::uint64_t cells = 0;
+  std::uint64_t largest_map = 0;              ///< entries
   std::vector<std::uint32_t> map_sizes = {};  ///< photons of each map that holds one, ascending
   std::uint64_t pages = 0;          ///< runs of maps that are moved to and from the device
   std::uint64_t device_bytes = 0;   ///< of all pages, wherever they lie
@@ -95,16 +51,15 @@ PhotonMaps maps_in(std::unique_ptr<MapStore> store);
 /// runtime.
 class PhotonMaps {
  public:
-  /// Builds on the device (kd-trees on the host). Errors: UsageError for a radius beyond the
-  /// groups', or a global tree with naive groups; DeviceMemoryError when the device's memory does
-  /// not suffice even page by page; Interrupted.
+  /// Builds on the device. Errors: UsageError for a radius beyond the groups'; DeviceMemoryError
+  /// when the device's memory does not suffice even page by page; Interrupted.
   ///   wanted   per map of the groups: 1 for those to make, which hold what they would among all;
-  ///            empty: all, as a global tree always does
+  ///            empty: all
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none(), std::span<const std::uint8_t> wanted = {});
-  /// The same of photons that nobody else needs: their arrays are given back as soon as the maps
-  /// hold copies, so that they do not lie in memory beside all of those.
+  /// Builds the maps of photons that nobody else needs: their arrays are given back as soon as the
+  /// maps hold copies, so that they do not lie in memory beside all of those.
   PhotonMaps(Device& device, const Scene& scene, Photons&& photons, const NeighbourGroups& groups,
              const PhotonMapParameters& parameters, Progress& progress = Progress::none(),
              std::span<const std::uint8_t> wanted = {});

@@ -46,11 +46,12 @@ struct Photons {
   std::vector<std::uint32_t> first_of;
   std::vector<std::uint64_t> emitted_per_light;  ///< paths started
 
-  /// Of all photons, where these are the part that one process holds; null: these are all.
+  /// What is known of all photons where these are the part that one process holds; null: these are
+  /// all.
   std::shared_ptr<const PhotonsOfAll> of_all;
 
   std::size_t size() const { return position.size(); }
-  /// Of all processes.
+  /// The number of photons of all processes.
   std::uint64_t total() const { return of_all ? of_all->count : size(); }
   std::uint64_t bytes() const;
 };
@@ -82,16 +83,16 @@ struct PhotonTracerParameters {
   std::uint64_t seed = defaults::seed;
   int max_path_length = defaults::max_path_length;  ///< surface interactions
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
-  /// Whether photons that come straight from a lamp, or through panes of thin glass, are stored.
+  /// Whether photons that come directly from a light, or through panes of thin glass, are stored.
   bool store_direct = true;
   /// Whether photons that came by mirrors, or by glass that bends or reflects them, and nothing
   /// else are stored once more, on their own.
   bool keep_caustics = false;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
-  /// Of all paths, in the order light, path: what is traced. Flux and Photons::emitted_per_light
-  /// are those of all paths, so that the photons of all shards together (merge_runs) are those of
-  /// one process, bit for bit.
+  /// The part of all paths, in the order light, path, that is traced. Flux and
+  /// Photons::emitted_per_light are those of all paths, so that the photons of all shards together
+  /// (merge_runs) are those of one process, bit for bit.
   Shard shard = {};
 };
 

@@ -62,7 +62,7 @@ struct PrimaryHits {
   std::size_t size() const { return position.size(); }
 };
 
-/// Light that needs no estimate: a lamp seen directly or through mirrors and glass, or what a hit
+/// Light that needs no estimate: a light seen directly or through mirrors and glass, or what a hit
 /// gets straight from one. Adds to the layer of its light.
 struct SeenEmission {
   std::uint32_t pixel;
@@ -80,7 +80,7 @@ struct PrimaryHitParameters {
   /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
   int pass = 0;
   int passes = 1;
-  /// > 0: each hit gets the light that comes straight from lamps by so many looks at them, and so
+  /// > 0: each hit gets the light that comes directly from lights by so many looks at them, and so
   /// many directions of its own, and photons have to bring the rest alone
   /// (PhotonTracerParameters::store_direct).
   int direct_rays = 0;

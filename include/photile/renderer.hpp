@@ -39,7 +39,7 @@ struct Film {
   int samples_per_pixel = defaults::samples_per_pixel;
 };
 
-/// The paths that leave the lamps.
+/// The paths that leave the lights.
 struct PhotonPaths {
   std::uint64_t emitted_photons = defaults::emitted_photons;  ///< over all lights
   PhotonQuota quota = PhotonQuota::balanced;
@@ -77,15 +77,14 @@ struct RenderParameters {
   /// as its estimate can have before bias shows above the noise. 0 = all have `neighbours`.
   int least_neighbours = 0;
   float photons_per_cell = defaults::photons_per_cell;
-  MapStructure structure = MapStructure::uniform_grid;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
-  /// > 0: light straight from lamps is found by so many looks at them from each hit. 0 = photons
+  /// > 0: light directly from lights is found by so many looks at them from each hit. 0 = photons
   /// bring it.
   int direct_rays = 0;
   GlossMode gloss = GlossMode::automatic;
   LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/light-maps.md
-  /// > 0: nodes of light maps gather light by so many rays each, and as many looks at lamps, fewer
+  /// > 0: nodes of light maps gather light by so many rays each, and as many light samples, fewer
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
   int light_map_rays = 0;
   double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = by the photons
@@ -150,7 +149,7 @@ enum class Quality {
 std::string_view name_of(Quality quality);
 inline constexpr std::array all_qualities = {Quality::draft, Quality::good, Quality::best};
 
-/// Its place in all_qualities.
+/// Its position in all_qualities.
 constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t>(quality); }
 
 /// What its pictures are like.
@@ -173,7 +172,7 @@ struct PreparedPhotons {
   Photons photons;
   NeighbourGroups groups;  ///< empty: found when maps are built
   double radius = 0;       ///< metres: of the maps; 0 where groups are not there
-  /// Of them, those that came by mirrors and glass alone; where rays gather.
+  /// The photons that came by mirrors and glass alone; where rays gather.
   std::optional<Photons> caustics = std::nullopt;
   /// What light maps of these photons held, if they are kept. Where its settings are those of the
   /// rendering, maps are built from the photons when an estimate is first needed.
@@ -265,7 +264,7 @@ class SceneRenderer {
 /// What leads a denoiser over edges: means of each pixel, row by row from the top. Mirrors and
 /// glass show what is seen by them, in their tint.
 struct DenoisingGuides {
-  std::vector<glm::vec3> albedo;  ///< in [0, 1]; 1 where a lamp or the surroundings are seen
+  std::vector<glm::vec3> albedo;  ///< in [0, 1]; 1 where a light or the surroundings are seen
   std::vector<glm::vec3> normal;  ///< in world space, of the mean of the samples, not longer than 1
 };
 
@@ -289,7 +288,7 @@ class Denoiser {
   const std::string& version() const { return version_; }
 
   /// The layers with the radiance of each denoised on its own, led by the guides; the illuminance
-  /// as it is. What a layer has does not depend on the powers of lamps, so that mixing stays
+  /// as it is. What a layer has does not depend on the powers of lights, so that mixing stays
   /// linear; but the sum of denoised layers is not the denoised sum. A plane for each light: 16
   /// bytes per pixel and light.
   ///   errors   standard errors of the layers, where they are known: a value moves by at most

@@ -40,7 +40,7 @@ class EnvironmentMap {
   double solid_angle(int row) const;
   /// Index of the texel that a unit direction points to.
   std::size_t texel_towards(const glm::vec3& direction) const;
-  /// Direction of a place of the picture; `column` in [0, width], and the share `v` in [0, 1] of
+  /// Direction of a point of the picture; `column` in [0, width], and the share `v` in [0, 1] of
   /// the solid angle of its row that lies above.
   glm::dvec3 direction_at(double column, int row, double v) const;
 
@@ -111,7 +111,7 @@ class IntensityDistribution {
   /// lm that a cell emits.
   double cell_flux(std::size_t column, std::size_t row) const;
 
-  /// A place in a cell; `u` of the way from its first azimuth to its last, `v` of the way between
+  /// A point in a cell; `u` of the way from its first azimuth to its last, `v` of the way between
   /// the cosines of its polar angles, each in [0, 1].
   struct Place {
     glm::dvec3 direction;  ///< unit, in the lamp's space
@@ -159,7 +159,8 @@ class Texture {
   /// it repeats outside [0,1).
   glm::vec3 sample(glm::vec2 uv) const;
 
-  /// The same of the bytes as they are, RGBA in [0,1]: alpha, normals and factors are no colours.
+  /// The texel from the bytes as they are, RGBA in [0,1]: alpha, normals and factors are no
+  /// colours.
   glm::vec4 sample_data(glm::vec2 uv) const;
 
   /// Whether every alpha is 1.
@@ -258,15 +259,15 @@ struct Light {
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, where the light shines to
   float inner_cone_angle = 0.0f;           ///< radians, spot
   float outer_cone_angle = 0.7853982f;     ///< radians, spot
-  /// Of a point or area light: into Scene::distributions; `none` = the same intensity, or radiance,
-  /// everywhere.
+  /// The intensities of a point or area light: an index into Scene::distributions; `none` = the
+  /// same intensity, or radiance, everywhere.
   std::uint32_t distribution = none;
-  /// Unit, perpendicular to `direction`: the x axis of a lamp whose -z axis is `direction`.
+  /// Unit, perpendicular to `direction`: the x axis of a light whose -z axis is `direction`.
   glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
   float angular_diameter = 0.0f;  ///< radians, of a directional light's disc; 0 = parallel light
-  /// Of a directional light that is an even patch of the sky in place of a disc: azimuths from and
-  /// to, radians clockwise from -z as seen from above, and the sines of the elevations from and to.
-  /// All 0 = none.
+  /// The bounds of a directional light that is an even patch of the sky in place of a disc:
+  /// azimuths from and to, radians clockwise from -z as seen from above, and the sines of the
+  /// elevations from and to. All 0 = none.
   glm::vec4 sky_patch{0.0f};
 
   std::uint32_t environment = none;  ///< of an environment light: into Scene::environments
@@ -292,7 +293,7 @@ struct Portal {
   glm::vec3 v{0.0f};
 };
 
-/// A mesh that several places of the scene repeat, in a space of its own around its centre.
+/// A mesh that the scene repeats at several positions, in a space of its own around its centre.
 struct SharedMesh {
   std::vector<glm::vec3> vertices;
   std::vector<glm::uvec3> triangles;  ///< vertex indices
@@ -381,9 +382,9 @@ inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
 }
 inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
 
-/// A place, and a direction, of the file's world in the scene's own coordinates, and back.
-glm::dvec3 place_in_scene(const Scene& scene, const glm::dvec3& world);
-glm::dvec3 place_in_world(const Scene& scene, const glm::dvec3& place);
+/// A point, and a direction, of the file's world in the scene's own coordinates, and back.
+glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world);
+glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& place);
 glm::dvec3 direction_in_scene(const Scene& scene, const glm::dvec3& world);
 glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction);
 
@@ -408,7 +409,7 @@ BoundingSphere bounding_sphere(const Scene& scene);
 struct SceneLoadOptions {
   float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
-  /// Of the scenes in a glTF file: name or index; "" = the file's default, else its first.
+  /// Which of the scenes in a glTF file: name or index; "" = the file's default, else its first.
   std::string scene = {};
   /// Which axis of the file points up: "x", "y", "z", "-x", "-y" or "-z"; the scene is turned so
   /// that it becomes y. "" = y, and a warning where the geometry looks as if it were z.
@@ -424,7 +425,8 @@ struct SceneLoadOptions {
   bool lambertian = false;   ///< dielectrics have no specular lobe
   bool may_be_dark = false;  ///< no error where there is no light
   SkySituation situation = {};
-  std::filesystem::path luminaires = {};  ///< lamps to place, JSON (docs/luminaires.md); "" = none
+  std::filesystem::path luminaires =
+      {};  ///< luminaires to place, JSON (docs/luminaires.md); "" = none
   /// What stands for the content of that file while it is edited, "" = the file; a scene without
   /// any light then gets one to see by.
   std::string luminaires_text = {};

@@ -22,11 +22,11 @@ enum class SensorResponse {
   semi_cylindrical
 };
 
-/// A place where light is measured.
+/// A point where light is measured.
 struct Sensor {
   glm::dvec3 position{0.0};          ///< metres
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from
-  /// `gather` only. False: light straight from lamps within the scene, or through panes, is left
+  /// `gather` only. False: light directly from lights within the scene, or through panes, is left
   /// out: what remains is indirect light, and that of sun and sky.
   bool sees_lamps = true;
   std::optional<SensorResponse> response = std::nullopt;  ///< `gather` only; none = its own
@@ -43,7 +43,7 @@ Sensor in_scene(const Scene& scene, Sensor sensor);
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress = Progress::none());
 
-/// The same by `trace_paths`, from `paths` paths of each sensor.
+/// Measures the sensors by `trace_paths`, from `paths` paths of each sensor.
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress = Progress::none());
 
@@ -52,7 +52,7 @@ struct GatherParameters {
   int rays = defaults::measuring_rays;  ///< of each sensor
 };
 
-/// The light at sensors anywhere, on a surface or in the air: lamps by rays to them, reflected
+/// The light at sensors anywhere, on a surface or in the air: lights by rays to them, reflected
 /// light by rays to the surfaces around, whose radiance `render` estimates (final gather: Jensen,
 /// "Realistic image synthesis using photon mapping", 2001, chapter 9). The result's layers are one
 /// pixel wide, sensor i is row i: `radiance` is irradiance / pi, W/(m2 sr) or cd/m2 of a white
@@ -64,7 +64,7 @@ RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress = Progress::none());
 
-/// The same by `trace_paths`: unbiased, a path from where each ray ends.
+/// Gathers by `trace_paths`: unbiased, a path from where each ray ends.
 PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sensors,
                                  const GatherParameters& gathering, std::uint64_t seed,
                                  Progress& progress = Progress::none());

@@ -73,7 +73,7 @@ struct SurfaceIndex {
 SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint32_t>& landed,
                            double radius, double angle_degrees);
 
-/// The same, and finds dark parts.
+/// Indexes the surface and finds its unlit regions.
 ///   photons   sorted by sided triangle; where several processes hold them, those of the maps that
 ///             are theirs, and all call this
 SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double radius,

@@ -9,7 +9,7 @@ static float cells_to(float place, int i) {
 }
 
 // Words hold one PhotileHashedGrid.
-static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+static void find_nearest(Search* search, const Structure* in, uint photons, NearestList* list) {
   __global const PhotileHashedGrid* grid = (__global const PhotileHashedGrid*)in->nodes;
   search->grid = grid;
   const float3 hit = search->hit;
@@ -36,7 +36,7 @@ static void find_nearest(Search* search, const Structure* in, uint map, NearestL
       for (int y = from.y; y <= to.y; ++y) {
         const float dy = cells_to(place.y, y);
         const bool whole_row = abs(z - centre.z) == (uint)shell || abs(y - centre.y) == (uint)shell;
-        // Of other rows only the two ends belong to the shell.
+        // Only the two ends of other rows belong to the shell.
         const int step = whole_row ? 1 : 2 * shell;
         for (int x = whole_row ? from.x : centre.x - shell; x <= centre.x + shell; x += step) {
           if (x < from.x || x > to.x) continue;

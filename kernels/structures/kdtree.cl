@@ -3,8 +3,12 @@
 // distance to a subtree's region is kept up to date axis by axis.
 
 #include "grid/cell.clh"
-#include "photile/device/kdtree.h"
+#include "structures/kdtree.h"
 #include "structures/search.clh"
+
+#ifndef TREE_2D
+#define TREE_2D 0  // 1: splits are in the plane of the map's triangle, else in space
+#endif
 
 typedef struct {
   uint node;
@@ -51,14 +55,14 @@ static void nearest_in_subtree(Search* search, uint root, __global const Photile
 }
 
 // Nodes are PhotileTreeNode.
-static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
-  const uint root = in->root[map];
+static void find_nearest(Search* search, const Structure* in, uint photons, NearestList* list) {
+  const uint root = in->root[photons];
   if (root == 0xFFFFFFFFu) return;
   __global const PhotileTreeNode* tree = (__global const PhotileTreeNode*)in->nodes;
   float3 point = search->hit;
   float slack = 0.0f;
   if (TREE_2D) {
-    __global const PhotileGrid* frame = &in->frames[map];
+    __global const PhotileGrid* frame = &in->frames[photons];
     point = (float3)(project(search->hit, frame), 0.0f);
     slack = frame->slack;
   }

@@ -2,7 +2,7 @@
 // photons, both looked at as one vector; the idea is that of Wald, Benthin and Boulos, "Getting rid
 // of packets" (2008). Nearest children first, with a stack.
 
-#include "photile/device/wide_bvh.h"
+#include "structures/wide_bvh.h"
 #include "structures/search.clh"
 
 typedef struct {
@@ -15,8 +15,8 @@ static float8 distances_along(float hit, __global const float* low, __global con
   return fmax(fmax(vload8(0, low) - hit, hit - vload8(0, high)), (float8)(0.0f));
 }
 
-// Nodes are those of photile/device/wide_bvh.h, the root first.
-static void find_nearest(Search* search, const Structure* in, uint map, NearestList* list) {
+// Nodes are those of structures/wide_bvh.h, the root first.
+static void find_nearest(Search* search, const Structure* in, uint photons, NearestList* list) {
   Pending stack[PHOTILE_WIDE_STACK];
   int depth = 0;
   Pending here = {0, 0.0f};

@@ -21,14 +21,14 @@ from .errors import (
     UsageError,
 )
 from .measuring import Illuminance, grid, measure
-from .photons import NONE, STRUCTURES, Neighbours, PhotonMaps, Photons, trace
+from .photons import NONE, Neighbours, PhotonMaps, Photons, trace
 from .pictures import SETTINGS, LightState, Picture, png_of, relight, render
 from .scenes import Camera, Light, Material, Scene, load
 
 __version__: str = _photile.version
 
 __all__ = [
-    "NONE", "SETTINGS", "STRUCTURES", "Camera", "DeviceError", "DeviceMemoryError", "Error",
+    "NONE", "SETTINGS", "Camera", "DeviceError", "DeviceMemoryError", "Error",
     "Illuminance", "InputError", "KernelBuildError", "Light", "LightState", "Material",
     "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "UsageError",
     "devices", "grid", "load", "measure", "png_of", "relight", "render", "test_devices", "trace",

@@ -16,7 +16,6 @@ Callback = Optional[Callable[[str, int, int, str], object]]
 version: str
 none: int
 lumen_per_watt: float
-structures: tuple[str, ...]
 
 def devices() -> list[dict[str, Any]]: ...
 def test_devices(selector: str) -> str: ...
@@ -106,7 +105,6 @@ class PhotonMaps:
         radius: float,
         neighbours: int,
         angle: float,
-        structure: str,
         photons_per_cell: float,
         device: str,
         progress: Callback,

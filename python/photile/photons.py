@@ -11,13 +11,10 @@ from . import _photile
 from .errors import InputError, UsageError
 from .scenes import Scene
 
-__all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "STRUCTURES", "trace"]
+__all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "trace"]
 
 NONE: int = _photile.none
 """What stands where there is no neighbour, no light, no material."""
-
-STRUCTURES: tuple[str, ...] = _photile.structures
-"""Names of the structures of `PhotonMaps`; all find the same neighbours."""
 
 _POINTS_AT_A_TIME = 1 << 20  # Ctrl-C is heard between them
 
@@ -204,10 +201,8 @@ class PhotonMaps:
         That the radius is chosen for.
     angle : float
         Degrees, in [0, 180].
-    structure : str
-        One of ``photile.STRUCTURES``; all find the same neighbours.
     photons_per_cell : float
-        That uniform grids aim at.
+        That grids aim at.
     device : str
         As for `render`; of several the first.
     progress : callable, optional
@@ -233,7 +228,6 @@ class PhotonMaps:
         radius: Optional[float] = None,
         neighbours: int = 50,
         angle: float = 60.0,
-        structure: str = "uniform-grid",
         photons_per_cell: float = 4.0,
         device: str = "",
         progress: _photile.Callback = None,
@@ -261,7 +255,6 @@ class PhotonMaps:
             radius or 0.0,
             neighbours,
             angle,
-            structure,
             photons_per_cell,
             device,
             progress,
@@ -277,7 +270,7 @@ class PhotonMaps:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """Photons, references (entries over all maps), maps, cells, nodes, bytes and seconds."""
+        """Photons, references (entries over all maps), maps, cells, bytes and seconds."""
         return self._core.statistics()
 
     def nearest(

@@ -268,7 +268,7 @@ def render(
         to the logger "photile".
     **settings
         By their names in ``photile.SETTINGS``: ``photons_emitted=100_000``, ``neighbours=80``,
-        ``seed=7``, ``structure="kdtree-2d"``.
+        ``seed=7``, ``maps="naive"``.
 
     Returns
     -------

@@ -29,7 +29,7 @@ struct OpenDevices {
   std::mutex mutex;
 };
 
-/// Those that a selector means, opened when they are first asked for. Errors: DeviceError.
+/// The devices that a selector means, opened when they are first asked for. Errors: DeviceError.
 std::shared_ptr<OpenDevices> devices_of(const std::string& selector);
 
 /// A tuple (name, position, forward, up, vertical field of view in radians), in the file's world,

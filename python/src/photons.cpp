@@ -54,15 +54,6 @@ py::object normals_of(const PhotonTracerResult& traced, const Scene& scene) {
   return taken<float>(std::move(normals), {count, 3});
 }
 
-MapStructure structure_named(const std::string& name) {
-  std::string all;
-  for (const MapStructureRow& row : map_structure_table) {
-    if (row.name == name) return row.structure;
-    all += (all.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw UsageError("structure: '" + name + "' is not one of " + all);
-}
-
 DensityKernel kernel_named(const std::string& name) {
   for (const DensityKernel kernel : all_density_kernels) {
     if (name_of(kernel) == name) return kernel;
@@ -81,17 +72,15 @@ class Maps {
  public:
   Maps(const Array<float>& positions, const std::optional<Array<float>>& normals,
        const std::optional<Array<float>>& flux, const std::optional<Array<std::uint16_t>>& lights,
-       double radius, int neighbours, double angle, const std::string& structure,
-       float photons_per_cell, const std::string& device, const py::object& progress) {
+       double radius, int neighbours, double angle, float photons_per_cell,
+       const std::string& device, const py::object& progress) {
     const CloudPhotons photons{
         .position = rows_of<glm::vec3>(positions, "positions"),
         .normal = rows_or_none<glm::vec3>(normals, "normals"),
         .flux = rows_or_none<glm::vec3>(flux, "flux"),
         .light = lights ? values_of(*lights, "lights") : std::span<const std::uint16_t>()};
-    CloudParameters parameters{.radius = radius,
-                               .angle_degrees = angle,
-                               .structure = structure_named(structure),
-                               .photons_per_cell = photons_per_cell};
+    CloudParameters parameters{
+        .radius = radius, .angle_degrees = angle, .photons_per_cell = photons_per_cell};
     run_in_thread(progress, [&](Progress& told) {
       if (parameters.radius == 0) {
         Photons copied;
@@ -156,7 +145,6 @@ class Maps {
     row["references"] = all.references;
     row["maps"] = all.maps;
     row["cells"] = all.cells;
-    row["nodes"] = all.nodes;
     row["largest_map"] = all.largest_map;
     row["device_bytes"] = all.device_bytes;
     row["seconds"] = all.seconds;
@@ -220,16 +208,12 @@ void define_photons(py::module_& module) {
   py::class_<Maps>(module, "PhotonMaps")
       .def(py::init<const Array<float>&, const std::optional<Array<float>>&,
                     const std::optional<Array<float>>&, const std::optional<Array<std::uint16_t>>&,
-                    double, int, double, const std::string&, float, const std::string&,
-                    const py::object&>())
+                    double, int, double, float, const std::string&, const py::object&>())
       .def("__len__", &Maps::size)
       .def_property_readonly("radius", &Maps::radius)
       .def("statistics", &Maps::statistics)
       .def("nearest", &Maps::nearest)
       .def("irradiance", &Maps::irradiance);
-  py::list names;
-  for (const MapStructureRow& row : map_structure_table) names.append(row.name);
-  module.attr("structures") = py::tuple(names);
 }
 
 }  // namespace photile::python

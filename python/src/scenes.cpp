@@ -187,7 +187,7 @@ py::list lights_of_scene(const Scene& scene) {
     row["kind"] = light_kinds[static_cast<std::size_t>(light.kind)];
     row["power"] = light.power;
     row["color"] = triple(light.color);
-    row["position"] = triple(place_in_world(scene, glm::dvec3(light.position)));
+    row["position"] = triple(position_in_world(scene, glm::dvec3(light.position)));
     row["direction"] = triple(direction_in_world(scene, glm::dvec3(light.direction)));
     row["two_sided"] = light.two_sided;
     row["inner_angle"] = glm::degrees(light.inner_cone_angle);

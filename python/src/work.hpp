@@ -19,7 +19,7 @@ namespace photile::python {
 /// stopped.
 void run_in_thread(const pybind11::object& callback, const std::function<void(Progress&)>& work);
 
-/// The same, with a result.
+/// Runs work that has a result.
 template <class Work>
 auto run(const pybind11::object& callback, const Work& work) {
   using Result = decltype(work(std::declval<Progress&>()));

@@ -19,7 +19,7 @@ float gentle(const glm::vec3& p, std::uint32_t s) {
   return brighter * (3.0f + std::sin(2 * p.x) * std::cos(p.y) + std::sin(1.5f * p.z));
 }
 
-/// As a graphics processor looks a texture up.
+/// Looks a texture up as a graphics processor does.
 float bilinear(const std::vector<glm::vec3>& texels, std::uint32_t width, std::uint32_t height,
                const glm::vec2& uv) {
   const float x = uv.x * static_cast<float>(width) - 0.5f;

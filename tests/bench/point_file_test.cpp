@@ -21,7 +21,7 @@ std::filesystem::path written(const TemporaryFolder& folder, const std::string& 
   return folder.path / name;
 }
 
-/// As numpy.save writes an array, by the format's description (NEP 1).
+/// Writes an array as numpy.save does, by the format's description (NEP 1).
 template <class Number>
 std::string npy(const std::string& type, const std::string& order, const std::string& shape,
                 const std::vector<Number>& numbers) {

@@ -1,9 +1,10 @@
 // What searches of trees look at, as the benches count it.
-#include "support/visits.hpp"
+#include "structures/visits.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -16,11 +17,11 @@ TEST_CASE("a search for all photons computes the distance of each once") {
   const Photons photons = test::uniform_photons(scene, count, 1, false);
   const PrimaryHits hits = test::uniform_hits(scene, 10, 2, false);
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
-  for (const MapStructure structure :
-       {MapStructure::kdtree_3d, MapStructure::kdtree_left_balanced}) {
-    CAPTURE(name_of(structure));
-    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
-    const bench::Visits visits = bench::count_visits(maps, hits, 2 * count);
+  for (const std::string_view structure : {"kdtree-3d", "kdtree-left-balanced"}) {
+    CAPTURE(structure);
+    const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+                                              photons, groups, {radius, 4});
+    const structures::Visits visits = structures::count_visits(maps, hits, 2 * count);
     CHECK(visits.photons == count);
     CHECK(visits.nodes >= 1);
   }

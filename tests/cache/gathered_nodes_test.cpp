@@ -15,7 +15,7 @@
 #include "gathering.hpp"
 #include "photile/light_maps.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

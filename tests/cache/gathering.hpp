@@ -10,7 +10,7 @@
 #include "gathering_photons.hpp"
 #include "photile/sensors.hpp"
 #include "test_device.hpp"
-#include "trace/sensor_hits.hpp"
+#include "trace/sensors.hpp"
 
 namespace photile::test {
 

@@ -131,8 +131,8 @@ TEST_CASE("filter: without noise nothing changes, and what is dark stays dark") 
 }
 
 TEST_CASE("filter: light that few rays find is spread over the points that found none of it") {
-  // As of a sky through a small window: a batch finds it in one of ten times, so that two points of
-  // five found nothing, and do not know that they err.
+  // The light of a sky through a small window: a batch finds it in one of ten times, so that two
+  // points of five found nothing, and do not know that they err.
   constexpr double found = 0.1;
   const Truth even = [](int, int) { return 1.0; };
   cache::GatheredIrradiance rare = noisy(even, 0, 1);

@@ -15,7 +15,7 @@
 #include "render/path_estimate.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

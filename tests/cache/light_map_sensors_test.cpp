@@ -127,7 +127,7 @@ TEST_CASE("Sensors in a furnished room read what estimates at the ends of their 
   CHECK(nodes == 0);
   const std::vector<double> between_nodes = mean_of(LightMapMode::on, nodes);
   CHECK(nodes > 0);
-  // The same rays and photons: what differs is the mean over 256 interpolations.
+  // Rays and photons are the same; what differs is the mean over 256 interpolations.
   CHECK(error_of(between_nodes, at_ends) < 0.01 * 0.01);
 }
 

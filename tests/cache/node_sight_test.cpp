@@ -8,7 +8,7 @@
 #include "photile/defaults.hpp"
 #include "photile/scene_builder.hpp"
 #include "test_scenes.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::test {
 namespace {

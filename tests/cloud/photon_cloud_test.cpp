@@ -91,12 +91,15 @@ std::size_t count_wrong(const Cloud& cloud, const CloudNeighbours& found, double
   return wrong;
 }
 
+/// Of grids: as usual, and one for all.
+constexpr std::array cells{defaults::photons_per_cell, 1e12f};
+
 void check_neighbours(const Cloud& cloud, double radius, std::initializer_list<int> ks,
                       double angle_degrees = 60) {
-  for (const MapStructure structure : all_map_structures) {
-    PhotonCloud maps(device(), cloud.photons(), {radius, angle_degrees, structure});
+  for (const float photons_per_cell : cells) {
+    PhotonCloud maps(device(), cloud.photons(), {radius, angle_degrees, photons_per_cell});
     for (const int k : ks) {
-      CAPTURE(name_of(structure), k, radius, cloud.position.size());
+      CAPTURE(photons_per_cell, k, radius, cloud.position.size());
       const CloudNeighbours found = maps.nearest(cloud.points, cloud.point_normals, k);
       REQUIRE(found.photons.size() == cloud.points.size() * static_cast<std::size_t>(k));
       CHECK(count_wrong(cloud, found, radius, angle_degrees) == 0);
@@ -200,10 +203,11 @@ TEST_CASE("irradiance is the flux of the k - 1 nearest over the disc through the
     cloud.light.push_back(static_cast<std::uint16_t>(random() % 3));
   }
   constexpr double radius = 0.12;
-  for (const MapStructure structure : all_map_structures) {
-    PhotonCloud maps(device(), cloud.photons(), {.radius = radius, .structure = structure});
+  for (const float photons_per_cell : cells) {
+    PhotonCloud maps(device(), cloud.photons(),
+                     {.radius = radius, .photons_per_cell = photons_per_cell});
     for (const int k : {20, 400}) {
-      CAPTURE(name_of(structure), k);
+      CAPTURE(photons_per_cell, k);
       const Estimates found = maps.irradiance(cloud.points, cloud.point_normals, {.neighbours = k});
       REQUIRE(found.irradiance.size() == 3 * cloud.points.size());
       std::size_t wrong = 0;

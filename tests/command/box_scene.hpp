@@ -14,7 +14,7 @@ std::string write_box(const FileFolder& folder);
 /// The text of the box's OBJ, to be spoilt by a test; it names box.mtl.
 std::string box_obj();
 
-/// The same with a wall left out.
+/// The box with a wall left out.
 std::string open_box_obj();
 
 /// The text of box.mtl.

@@ -63,7 +63,7 @@ TEST_CASE("a year of daylight fills its files") {
     CHECK(values == hours);
   }
   CHECK(lines == points);
-  // The same values as NumPy has them: after a head that tells their number, four bytes each.
+  // NumPy has the values after a head that tells their number, four bytes each.
   const std::string array = folder.read("bee/__static_apertures__/default/total/working_plane.npy");
   CHECK_THAT(array,
              Contains("'shape': (" + std::to_string(points) + ", " + std::to_string(hours) + ")"));

@@ -69,7 +69,7 @@ TEST_CASE("measure writes the same values to all of its files") {
   CHECK_THAT(folder.read("a.svg"), Contains("<svg") && Contains("lux") && Contains("</svg>"));
   CHECK_THAT(folder.read("a.html"),
              Contains("E<sub>m</sub>") && Contains("</svg>") && Contains("</html>") &&
-                 Contains("<h2>Lamps</h2>") && Contains("<td>right</td>") &&
+                 Contains("<h2>Luminaires</h2>") && Contains("<td>right</td>") &&
                  Contains("<h2>Reflectances</h2>") && Contains("<dt>seed</dt>"));
 }
 

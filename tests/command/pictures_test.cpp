@@ -292,7 +292,7 @@ TEST_CASE("a drawing in false colour needs its values and a PNG") {
              Contains("--c"));
   CHECK_THAT(error({"relight", picture, "--illuminance", folder / "a.png", "-s", "-3"}, 2),
              Contains("-3"));
-  // As other programs write light groups.
+  // Light groups as other programs write them.
   Image foreign;
   foreign.width = foreign.height = 1;
   for (const char* channel : {"Combined_key.R", "Combined_key.G", "Combined_key.B"}) {

@@ -296,7 +296,6 @@ TEST_CASE("options of photon maps are usage errors beside --integrator path") {
                                                                  {"--set", "radius=0.1"},
                                                                  {"--set", "angle_degrees=30"},
                                                                  {"--set", "maps=auto"},
-                                                                 {"--set", "structure=kdtree-2d"},
                                                                  {"--set", "photons_per_cell=2"},
                                                                  {"--device", "cpu"},
                                                                  {"--set", "device_memory=1"},
@@ -420,7 +419,7 @@ TEST_CASE("the stated errors of a light are the scatter of its layer from seed t
       }
       measured += (squares - sum * sum / seeds) / (seeds - 1);
     }
-    // Of variances. What is stated does not hold what photons share.
+    // A ratio of variances: the stated error leaves out what photons share.
     CHECK(stated / measured > 0.4);
     CHECK(stated / measured < 2.0);
   }

@@ -27,7 +27,7 @@ MTL = "newmtl wall\nKd 0.7 0.6 0.5\nnewmtl lamp\nKd 0 0 0\nKe 5 5 20\n"
 PLANES = [
     {"name": "desk <1> & \"2\"", "origin": [-0.8, -0.25, 0.8], "u": [1.6, 0, 0], "v": [0, 0, -0.8],
      "columns": 8, "rows": 4},
-    # As narrow as a shelf: its title is longer than it is wide.
+    # A plane as narrow as a shelf: its title is longer than it is wide.
     {"name": "the narrow shelf behind the door", "origin": [-0.8, 0.2, 0.8], "u": [0.1, 0, 0],
      "v": [0, 0, -1.6], "columns": 1, "rows": 16},
 ]
@@ -117,7 +117,7 @@ def main():
         if not re.match(re.escape(f"{grid['name']}: {grid['points']} points"), heading):
             fail(f"{heading!r} is no heading of {grid['name']!r}")
     tables = body.findall("table")
-    if len(tables) != len(grids) + 2 or headings[len(grids):-1] != ["Lamps", "Reflectances"]:
+    if len(tables) != len(grids) + 2 or headings[len(grids):-1] != ["Luminaires", "Reflectances"]:
         fail(f"{len(tables)} tables under {len(headings)} headings for {len(grids)} grids")
     for table, grid in zip(tables, grids):
         check_figures(table, grid)

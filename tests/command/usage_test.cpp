@@ -8,8 +8,8 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
-#include "command/number_format.hpp"
 #include "command/setting_options.hpp"
+#include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
@@ -265,9 +265,8 @@ TEST_CASE("settings of scenes and devices are set by name, too") {
 TEST_CASE("a picture and its statistics tell every setting that it was made with") {
   const FileFolder folder;
   succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
-                "--size 16x12 --photons 5k --quality draft --set quota=equal --set "
-                "structure=kdtree-2d --set photons_per_cell=0.1 --set passes=3 --stats",
-                folder / "a.json"));
+                "--size 16x12 --photons 5k --quality draft --set quota=equal",
+                "--set photons_per_cell=0.1 --set passes=3 --stats", folder / "a.json"));
   const Image picture = read_image(folder / "a.exr");
   const auto recorded = nlohmann::json::parse(folder.read("a.json"))["parameters"];
   for (const Setting& setting : settings()) {
@@ -278,7 +277,6 @@ TEST_CASE("a picture and its statistics tell every setting that it was made with
   }
   CHECK(picture.attributes.at("photile.quality") == "draft");
   CHECK(picture.attributes.at("photile.quota") == "equal");
-  CHECK(picture.attributes.at("photile.structure") == "kdtree-2d");
   CHECK(picture.attributes.at("photile.photons_per_cell") == "0.1");
   CHECK(recorded["photons_emitted"] == 5000);
   CHECK(recorded["samples_per_pixel"] == 6);  // a multiple of the passes
@@ -334,8 +332,6 @@ TEST_CASE("settings that go with no other are refused by the names of their opti
   };
   CHECK_THAT(refusal({"--set", "least_neighbours=60", "-k", "50"}),
              Contains("least_neighbours") && Contains("60") && Contains("50"));
-  CHECK_THAT(refusal({"--set", "maps=naive", "--set", "structure=kdtree-global"}),
-             Contains("structure") && Contains("naive"));
 }
 
 // Counts and sizes as typed.

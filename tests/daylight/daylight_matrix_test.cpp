@@ -9,8 +9,8 @@
 #include "daylight/annual_daylight.hpp"
 #include "room_with_window.hpp"
 #include "trace/distant_light.hpp"
-#include "validation/form_factors.hpp"
-#include "weather/sky_lights.hpp"
+#include "validation/analytic_cases.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::test {
 
@@ -205,7 +205,7 @@ TEST_CASE("in the open an hour has its diffuse lux, and the sun's by its elevati
   builder.add(point_light("lamp", {0, 1, 0}));
   const Scene scene = builder.build();
   const Sensor sensor{{0, 0, 0}, {0, 1, 0}};
-  const StraightLight straight(scene, std::span(&sensor, 1));
+  const DirectLight straight(scene, std::span(&sensor, 1));
   const auto sun_by_rays = sun_profile(straight, hours, 0.4, 1.0);
   const auto by_rays = annual_profile(matrix, hours, patches, sun_by_rays);
   const auto by_patches = annual_profile(matrix, hours, patches, {});

@@ -7,13 +7,11 @@
 #include <functional>
 #include <numbers>
 
-#include "daylight/blinds.hpp"
-#include "daylight/occupancy.hpp"
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
 #include "room_with_window.hpp"
 #include "temporary_folder.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {
@@ -39,7 +37,7 @@ std::vector<SkyHour> equal_days() {
   return hours;
 }
 
-/// The same lux every day, by hour.
+/// A year of the same lux every day, by hour.
 std::vector<float> daily(const std::function<float(int hour)>& lux) {
   std::vector<float> year;
   for (int i = 0; i < 8760; ++i) year.push_back(lux(i % 24));
@@ -74,7 +72,7 @@ TEST_CASE("autonomy, useful daylight, sun and median of a point are counted by t
   CHECK(point.useful[3] == Approx(0.3));
   CHECK(point.sun_hours == 365);
   CHECK(point.mean_lux == Approx(13600 / 24.0));
-  // Of the twelve hours from 6 on six have 300 lux or more.
+  // Six of the twelve hours from 6 on have 300 lux or more.
   CHECK(point.median_lux == 300);
 }
 
@@ -232,7 +230,7 @@ TEST_CASE("a closed pane lets through what is asked for") {
       sum += state.matrix.coefficient(0, patch);
     return sum;
   };
-  // Of glass of index 1.5 both faces together reflect 7.7% of light that falls upright.
+  // Both faces of glass of index 1.5 together reflect 7.7% of light at normal incidence.
   CHECK(all(states[0]) == Approx(bare * 0.923).epsilon(0.02));
   CHECK(all(states[1]) == Approx(bare * 0.05).epsilon(0.02));
 }

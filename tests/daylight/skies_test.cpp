@@ -5,13 +5,10 @@
 #include <map>
 #include <numbers>
 
-#include "loading/relit_sky.hpp"
-#include "loading/sky_situation.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "weather/perez_sky.hpp"
-#include "weather/sky_lights.hpp"
 #include "weather/sky_patches.hpp"
-#include "weather/sun_position.hpp"
 
 namespace photile::test {
 namespace {

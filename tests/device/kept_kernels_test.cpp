@@ -202,7 +202,7 @@ TEST_CASE("a damaged pack of PoCL's files ends in the right result and one warni
 TEST_CASE("damaged files in the folder of a killed process are never used, and go") {
   const TemporaryFolder cache;
   probe(cache.path);
-  // As a process leaves them that was killed while PoCL wrote: each file empty, cut, or garbage.
+  // Files as a process leaves them that was killed while PoCL wrote: each empty, cut, or garbage.
   for (const int damage : {0, 1, 2}) {
     probe(cache.path, "abort");
     int files = 0;

@@ -4,6 +4,7 @@
 
 #include "neighbour_comparison.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -57,13 +58,13 @@ TEST_CASE("neighbours equal the oracle's among 2^20 + 1 photons") {
   const double radius = 0.05;
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  for (const MapStructure structure :
-       {MapStructure::uniform_grid, MapStructure::kdtree_global, MapStructure::kdtree_left_balanced,
-        MapStructure::wide_bvh, MapStructure::hashed_grid}) {
-    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+  for (const structures::Structure& structure : structures::all()) {
+    if (!structure.global && structure.name != "uniform-grid") continue;
+    const PhotonMaps maps =
+        structures::build(structure, test::device(), scene, photons, groups, {radius, 4});
     for (const int k : {1, 50, 100'000}) {
       Estimator estimator(maps, scene, {k, 0});
-      CAPTURE(name_of(structure), k);
+      CAPTURE(structure.name, k);
       CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
                                     static_cast<float>(radius)) == 0);
     }

@@ -8,6 +8,7 @@
 #include "oracle/clipped_area.hpp"
 #include "photon_sets.hpp"
 #include "source_folder.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 #include "test_tunings.hpp"
 
@@ -38,12 +39,13 @@ void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const 
   const std::size_t lights = scene.lights.size();
   const auto expected = expected_clipped(scene, photons, *surface, hits, k, radius, kernel);
   const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
-  for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
+  for (const std::string_view structure : {"uniform-grid", "kdtree-3d"}) {
     for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
-      if (structure != MapStructure::uniform_grid && tuning.strategy != EstimateStrategy::select) {
+      if (structure != "uniform-grid" && tuning.strategy != EstimateStrategy::select) {
         continue;
       }
-      const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+      const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+                                                photons, groups, {radius, 4});
       EstimateParameters parameters;
       parameters.neighbours = k;
       parameters.kernel = kernel;
@@ -52,13 +54,13 @@ void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const 
       const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
       const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
       REQUIRE(irradiance.size() == hits.size() * lights);
-      CAPTURE(name_of(structure), name_of(tuning.strategy), name_of(kernel), k, radius, lights);
+      CAPTURE(structure, name_of(tuning.strategy), name_of(kernel), k, radius, lights);
       CHECK(test::worst_difference(irradiance, expected) <= area_tolerance);
     }
   }
 }
 
-/// The same without dark parts: uniform photons leave none.
+/// Checks areas without unlit regions: uniform photons leave none.
 void check_clipped(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
                    double radius, int k, DensityKernel kernel, MapMode mode = MapMode::triangle) {
   check_clipped_to(std::make_shared<const SurfaceIndex>(

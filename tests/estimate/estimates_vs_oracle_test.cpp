@@ -4,6 +4,7 @@
 
 #include "estimates_comparison.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 #include "test_tunings.hpp"
 
@@ -16,14 +17,15 @@ void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryH
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const std::size_t lights = scene.lights.size();
   const auto expected = test::expected_irradiance(oracle, hits, k, radius);
-  for (const MapStructure structure : all_map_structures) {
-    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+  for (const structures::Structure& structure : structures::all()) {
+    const PhotonMaps maps =
+        structures::build(structure, test::device(), scene, photons, groups, {radius, 4});
     const Estimates estimates =
         Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc}).estimate(hits);
     const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
     REQUIRE(irradiance.size() == hits.size() * lights);
     CHECK(estimates.radiance.empty());
-    CAPTURE(name_of(structure), k, radius, lights);
+    CAPTURE(structure.name, k, radius, lights);
     CHECK(test::worst_difference(irradiance, expected) <= test::estimate_tolerance(k));
   }
 }

@@ -199,7 +199,7 @@ TEST_CASE("extremes: the second photon at a distance that selection compares wit
                         {radius});
   const Estimates estimates =
       Estimator(maps, scene, {.neighbours = 1, .area = AreaMode::disc}).estimate(hits);
-  // That of the nearer one, over the disc through it.
+  // The density of the nearer photon, over the disc through it.
   const double area = glm::pi<double>() * first * first;
   CHECK(estimates.irradiance.at(0).g == Approx(photons.flux[0].g / area).epsilon(1e-6));
 }

@@ -30,7 +30,7 @@ Photons photons_on_one(const Scene& scene) {
   return photons;
 }
 
-/// Those of the hits that lie on the first plate, or on the second.
+/// The hits that lie on the first plate, or on the second.
 PrimaryHits on_plate(const PrimaryHits& hits, bool second) {
   PrimaryHits result;
   for (std::size_t i = 0; i < hits.size(); ++i) {

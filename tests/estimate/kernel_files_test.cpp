@@ -68,7 +68,8 @@ std::vector<EstimateTuning> all_tunings() {
   return tunings;
 }
 
-/// Of what maps and areas a query may have, the least and the most, and each kernel.
+/// The defines with the least and the most that a query may have of maps and areas, for each
+/// kernel.
 std::vector<device::Defines> with_queries(const device::Defines& defines) {
   std::vector<device::Defines> all;
   for (const auto& [clipped, kernel] :
@@ -128,9 +129,6 @@ std::set<std::string> symbols() {
   return matches(text, std::regex("#ifndef ([A-Z0-9_]+)"));
 }
 
-/// Those of them that kernels other than the renderer's have.
-const std::set<std::string> of_structures{"TREE_2D", "LIST_CAPACITY", "COUNT_VISITS"};
-
 }  // namespace
 
 TEST_CASE("every kernel file compiles as it lies there") {
@@ -152,7 +150,7 @@ TEST_CASE("every specialisation that the host makes of a kernel compiles") {
 }
 
 TEST_CASE("the host sets the symbols that kernels know, all of them and no others") {
-  std::set<std::string> set_by_host = of_structures;
+  std::set<std::string> set_by_host;
   for (const auto& [file, options] : host_programs()) {
     set_by_host.merge(matches(options, std::regex("-D ([A-Z0-9_]+)=")));
   }

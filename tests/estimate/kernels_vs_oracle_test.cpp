@@ -4,6 +4,7 @@
 
 #include "estimates_comparison.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 #include "test_tunings.hpp"
 
@@ -25,10 +26,11 @@ struct Subject {
     hits = test::uniform_hits(scene, 200, 54);
   }
 
-  Estimates estimate(DensityKernel kernel, int k, MapStructure structure = {},
+  Estimates estimate(DensityKernel kernel, int k, std::string_view structure = "uniform-grid",
                      const std::optional<EstimateTuning>& tuning = std::nullopt) const {
-    const PhotonMaps maps(test::device(), scene, photons,
-                          find_neighbour_groups(scene, {radius, 60}), {radius, 4, structure});
+    const PhotonMaps maps =
+        structures::build(structures::named(structure), test::device(), scene, photons,
+                          find_neighbour_groups(scene, {radius, 60}), {radius, 4});
     EstimateParameters parameters{.neighbours = k, .area = AreaMode::disc, .kernel = kernel};
     parameters.tuning = tuning;
     return Estimator(maps, scene, parameters).estimate(hits);
@@ -65,14 +67,14 @@ TEST_CASE("weighted irradiance equals the oracle's for every structure and strat
   const DensityKernel kernel = GENERATE(from_range(weighting));
   constexpr int k = 50;
   CAPTURE(name_of(kernel));
-  for (const MapStructure structure : all_map_structures) {
-    CAPTURE(name_of(structure));
-    const Estimates estimates = subject.estimate(kernel, k, structure);
+  for (const structures::Structure& structure : structures::all()) {
+    CAPTURE(structure.name);
+    const Estimates estimates = subject.estimate(kernel, k, structure.name);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
     CAPTURE(name_of(tuning.strategy));
-    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, tuning);
+    const Estimates estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
 }
@@ -93,7 +95,7 @@ TEST_CASE("with fewer than k photons within the radius weights go by the full ra
   constexpr int k = 50;
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
     CAPTURE(name_of(kernel), name_of(tuning.strategy));
-    const Estimates estimates = subject.estimate(kernel, k, MapStructure::uniform_grid, tuning);
+    const Estimates estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
 }

@@ -5,6 +5,7 @@
 #include "estimates_comparison.hpp"
 #include "oracle/density_oracle.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -30,7 +31,7 @@ Estimates estimate(const Scene& scene, const Photons& photons, const PrimaryHits
   return Estimator(maps, scene, {neighbours, 0}).estimate(hits);
 }
 
-/// The same photons, of which only those of one light carry flux: the neighbours stay.
+/// Photons of which only those of one light carry flux: the neighbours stay.
 Photons alone(Photons photons, std::uint16_t light) {
   for (std::size_t i = 0; i < photons.size(); ++i) {
     if (photons.light[i] != light) photons.flux[i] = glm::vec3(0.0f);
@@ -149,10 +150,11 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
   if (glossy) test::add_lobes(hits, scene, 93);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
-  for (const MapStructure structure : {MapStructure::uniform_grid, MapStructure::kdtree_3d}) {
-    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+  for (const std::string_view structure : {"uniform-grid", "kdtree-3d"}) {
+    const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+                                              photons, groups, {radius, 4});
     for (const int neighbours : {1, 5, 12, compiled}) {
-      CAPTURE(lights, neighbours, name_of(structure));
+      CAPTURE(lights, neighbours, structure);
       EstimateParameters parameters;
       parameters.neighbours = neighbours;
       parameters.compiled_neighbours = compiled;
@@ -183,7 +185,7 @@ TEST_CASE("any number of lights up to 70 and any level of k keep to their buffer
     parameters.neighbours = neighbours;
     parameters.compiled_neighbours = compiled;
     const Estimates shared = Estimator(maps, scene, parameters).estimate(hits);
-    // Of one light the sum is known: that of all lights. Slots that overlap would change it.
+    // The sum of one light is known: it is that of all lights. Slots that overlap would change it.
     const Scene single = plate(1, false);
     Photons together = photons;
     together.light.clear();

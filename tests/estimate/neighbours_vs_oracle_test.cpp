@@ -5,6 +5,7 @@
 #include "neighbour_comparison.hpp"
 #include "photile/errors.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -15,12 +16,12 @@ void check_neighbours(const Scene& scene, const Photons& photons, const PrimaryH
                       float photons_per_cell = 4) {
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  for (const MapStructure structure : all_map_structures) {
-    const PhotonMaps maps(test::device(), scene, photons, groups,
-                          {radius, photons_per_cell, structure});
+  for (const structures::Structure& structure : structures::all()) {
+    const PhotonMaps maps = structures::build(structure, test::device(), scene, photons, groups,
+                                              {radius, photons_per_cell});
     for (const int k : neighbour_counts) {
       Estimator estimator(maps, scene, {k, 0});
-      CAPTURE(name_of(structure), k, radius, photons_per_cell, photons.size());
+      CAPTURE(structure.name, k, radius, photons_per_cell, photons.size());
       CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
                                     static_cast<float>(radius)) == 0);
     }
@@ -135,10 +136,10 @@ TEST_CASE("the radius is that of the k-th photon, however close behind it the ne
   PrimaryHits hits = test::uniform_hits(scene, 1, 46, false);
   hits.position[0] = {0, 0, 0};
   hits.sided_triangle[0] = 0;
-  for (const MapStructure structure : all_map_structures) {
-    const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
-                          {0.2, 4, structure});
-    CAPTURE(name_of(structure));
+  for (const structures::Structure& structure : structures::all()) {
+    const PhotonMaps maps = structures::build(structure, test::device(), scene, photons,
+                                              find_neighbour_groups(scene, {0.2, 60}), {0.2, 4});
+    CAPTURE(structure.name);
     CHECK(Estimator(maps, scene, {1, 0}).nearest(hits).squared_radius[0] == near * near);
     CHECK(Estimator(maps, scene, {2, 0}).nearest(hits).squared_radius[0] == far * far);
   }
@@ -159,13 +160,13 @@ TEST_CASE("ties at the border of the neighbourhood go to the smallest photon ind
   PrimaryHits hits = test::uniform_hits(scene, 1, 34, false);
   hits.position[0] = centre;
   hits.sided_triangle[0] = 0;
-  for (const MapStructure structure : all_map_structures) {
-    const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
-                          {0.2, 4, structure});
+  for (const structures::Structure& structure : structures::all()) {
+    const PhotonMaps maps = structures::build(structure, test::device(), scene, photons,
+                                              find_neighbour_groups(scene, {0.2, 60}), {0.2, 4});
     for (const int k : {1, 7, 39, 40}) {
       Estimator estimator(maps, scene, {k, 0});
       const NeighbourLists lists = estimator.nearest(hits);
-      CAPTURE(name_of(structure), k);
+      CAPTURE(structure.name, k);
       for (int i = 0; i < k; ++i) {
         CHECK(lists.photons[static_cast<std::size_t>(i)] == static_cast<std::uint32_t>(i));
       }

@@ -7,23 +7,26 @@
 #include "shared_scenes.hpp"
 #include "skipped.hpp"
 #include "source_folder.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
 namespace {
 
 void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_count, double radius,
-                 std::initializer_list<MapStructure> structures,
+                 std::span<const std::string_view> names,
                  std::initializer_list<int> neighbour_counts) {
   const Photons photons = test::uniform_photons(scene, photon_count, 51);
   const PrimaryHits hits = test::uniform_hits(scene, hit_count, 52);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   for (const MapMode mode : {MapMode::triangle, MapMode::patch, MapMode::automatic}) {
     const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
-    for (const MapStructure structure : structures) {
-      const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4, structure});
+    for (const std::string_view name : names) {
+      const structures::Structure& structure = structures::named(name);
+      const PhotonMaps maps =
+          structures::build(structure, test::device(), scene, photons, groups, {radius, 4});
       for (const int k : neighbour_counts) {
-        CAPTURE(name_of(structure), static_cast<int>(mode), k, radius);
+        CAPTURE(structure.name, static_cast<int>(mode), k, radius);
         Estimator estimator(maps, scene, {k, 0});
         CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
                                       static_cast<float>(radius)) == 0);
@@ -32,8 +35,8 @@ void check_modes(const Scene& scene, std::size_t photon_count, std::size_t hit_c
   }
 }
 
-constexpr auto every_structure = {MapStructure::uniform_grid, MapStructure::kdtree_2d,
-                                  MapStructure::kdtree_3d, MapStructure::brute_force};
+constexpr std::array<std::string_view, 4> every_structure = {"uniform-grid", "kdtree-2d",
+                                                             "kdtree-3d", "brute-force"};
 
 /// A finely tessellated sphere: triangles of a hundredth of the radius and poles of needles.
 Scene sphere() {
@@ -102,7 +105,8 @@ TEST_CASE(
       test::skip(std::string("no ") + file + " in the shared scenes");
       continue;
     }
-    check_modes(load_scene(folder / file), 200'000, 500, 0.2, {MapStructure::uniform_grid}, {50});
+    check_modes(load_scene(folder / file), 200'000, 500, 0.2, std::span(every_structure).first(1),
+                {50});
   }
 }
 

@@ -88,15 +88,14 @@ TEST_CASE("neighbours and irradiance in scenes at random are the oracle's") {
                                  MapMode::patch}[static_cast<std::size_t>(made.whole(0, 2))];
     const MapsUnderTest maps(made.scene(), photons, hits, radius, mode);
     const auto k = static_cast<std::size_t>(made.whole(0, 2));
-    const auto check = [&](MapStructure structure) {
+    const auto check = [&](const structures::Structure& structure) {
       maps.check(structure, std::span(neighbour_counts).subspan(k, 1), true);
     };
-    check(MapStructure::uniform_grid);
-    const auto other = static_cast<std::size_t>(
-        made.whole(0, 4 * static_cast<int>(std::size(all_map_structures)) - 1));
-    if (other < std::size(all_map_structures) && maps.has(all_map_structures[other])) {
-      check(all_map_structures[other]);
-    }
+    check(structures::named("uniform-grid"));
+    const auto all = structures::all();
+    const auto other =
+        static_cast<std::size_t>(made.whole(0, 4 * static_cast<int>(all.size()) - 1));
+    if (other < all.size() && maps.has(all[other])) check(all[other]);
   }
 }
 

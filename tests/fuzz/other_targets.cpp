@@ -5,13 +5,13 @@
 
 #include "command/setting_options.hpp"
 #include "command/validators.hpp"
-#include "daylight/blinds.hpp"
-#include "daylight/occupancy.hpp"
+#include "daylight/daylight_metrics.hpp"
+#include "daylight/sky_states.hpp"
 #include "fuzz_files.hpp"
 #include "glare/measure_glare.hpp"
-#include "loading/finishing.hpp"
 #include "loading/light_changes.hpp"
-#include "loading/up_axis.hpp"
+#include "loading/load_scene.hpp"
+#include "loading/surroundings.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
@@ -21,8 +21,8 @@
 #include "render/setting.hpp"
 #include "test_scenes.hpp"
 #include "view/moods.hpp"
-#include "walk/frame_names.hpp"
-#include "weather/sun_position.hpp"
+#include "walk/frames.hpp"
+#include "weather/perez_sky.hpp"
 
 namespace photile::test {
 namespace {

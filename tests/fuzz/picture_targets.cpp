@@ -16,7 +16,7 @@ void check_plane(const std::vector<float>& plane, std::size_t pixels) {
           "a pixel that is no number");
 }
 
-/// As an EXR is written: the root and then the lights.
+/// Reads a picture as an EXR is written: the root and then the lights.
 void check_picture(const LayeredPicture& picture) {
   const Image root = picture.root();
   for (const std::vector<float>& plane : root.channels) check_plane(plane, root.pixels());

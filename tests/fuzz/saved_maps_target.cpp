@@ -11,13 +11,13 @@
 #include "fuzz_files.hpp"
 #include "photile/light_maps.hpp"
 #include "saved_maps/saved_maps.hpp"
-#include "scene/scene_hash.hpp"
+#include "scene/scene_queries.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
 
-/// As docs/saved-maps.md has it: 104 bytes.
+/// The head as docs/saved-maps.md has it: 104 bytes.
 struct Head {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;

@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "photometry/photometric_file.hpp"
-#include "pictures/texture_decoder.hpp"
+#include "pictures/textures.hpp"
 #include "reading/camera_path.hpp"
 
 namespace photile::test {
 namespace {
 
-/// As every command that takes a scene: what is loaded has to be one that stages accept.
+/// Loads a scene as every command does: it has to be one that stages accept.
 bool accepts_scene(const std::filesystem::path& file) {
   return accepts([&] {
     const Scene scene = load_scene(file);

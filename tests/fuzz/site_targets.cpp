@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "daylight/occupancy.hpp"
-#include "files/warnings.hpp"
+#include "daylight/daylight_metrics.hpp"
+#include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
 #include "loading/luminaires.hpp"
 #include "measuring/requirements.hpp"
@@ -91,7 +91,7 @@ bool fuzz_luminaires(Bytes bytes) {
 bool fuzz_weather(Bytes bytes) {
   const auto file = file_of("weather.epw", bytes);
   return accepts([&] {
-    // As many hours as there are: a whole year has a megabyte.
+    // The file may have fewer hours than a year, whose text has a megabyte.
     const weather::WeatherYear year = weather::read_weather_hours(file);
     constexpr std::size_t most_checked = 8;
     for (std::size_t i = 0; i < std::min(most_checked, year.hours.size()); ++i) {

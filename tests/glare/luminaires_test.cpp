@@ -7,7 +7,7 @@
 
 #include "glare/measure_glare.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {

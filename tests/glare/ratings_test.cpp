@@ -8,7 +8,6 @@
 
 #include "glare/measure_glare.hpp"
 #include "glare/picture_sources.hpp"
-#include "glare/position_index.hpp"
 
 namespace photile::test {
 namespace {
@@ -19,7 +18,7 @@ using namespace photile::glare;
 
 const Observer ahead{"eye", glm::dvec3(0), {0, 1, 0}, {0, 0, 1}};
 
-/// Of a luminaire R ahead, T aside and H above.
+/// The position index of a luminaire R ahead, T aside and H above.
 double index_at(double t_over_r, double h_over_r) {
   return position_index(ahead, glm::normalize(glm::dvec3(t_over_r, 1, h_over_r)));
 }

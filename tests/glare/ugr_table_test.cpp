@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "glare/position_index.hpp"
+#include "glare/ratings.hpp"
 
 namespace photile::test {
 namespace {
@@ -63,7 +63,8 @@ TEST_CASE("a disc has the ratings of a sum over its array") {
       sum += luminance * luminance * area * h / (r2 * std::sqrt(r2)) / (p * p);
     }
   }
-  // Of a lambertian array that fills the ceiling the floor gets the form factor, nearly: k = 2.67.
+  // The floor below a Lambertian array that fills the ceiling gets nearly the form factor: k =
+  // 2.67.
   const TransferFactors factors = transfer_factors({8, 4}, {0.7, 0.5, 0.2});
   const double a = 8, b = 4;
   const double facing = 2 / (glm::pi<double>() * a * b) *
@@ -113,7 +114,7 @@ TEST_CASE("a long lamp that shines to its sides alone glares crosswise, not endw
   // C0 is across the length, as in EULUMDAT: seen crosswise it is bright.
   const UgrTable across = of_length(false);
   CHECK(across.crosswise[10][0] > across.endwise[10][0] + 3);
-  // The same light along the length, as an LM-63 file may have it, is bright endwise.
+  // Light along the length, as an LM-63 file may have it, is bright endwise.
   const UgrTable along = of_length(true);
   CHECK(along.endwise[10][0] > along.crosswise[10][0] + 3);
 }

@@ -42,7 +42,7 @@ struct TileComparison {
 /// over a thousand of them (Sidak). Throws std::logic_error where the tiles are not the same.
 TileComparison compare(const TileMeans& before, const TileMeans& now);
 
-/// As CSV: picture, tile, and mean and deviation of R, G, B and E.
+/// The means as CSV: picture, tile, and mean and deviation of R, G, B and E.
 std::string to_csv(const std::vector<TileMeans>& pictures);
 std::vector<TileMeans> from_csv(const std::string& text);
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/box_tree.hpp"
-#include "groups/photon_blocks.hpp"
+#include "groups/automatic_radius.hpp"
 #include "meshes.hpp"
 #include "photile/neighbour_groups.hpp"
 

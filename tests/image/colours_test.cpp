@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "image/display.hpp"
 #include "image/glare.hpp"
-#include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "picture_support.hpp"

@@ -495,7 +495,7 @@ TEST_CASE("few rows are read, however many their compression takes at a time") {
 
 TEST_CASE("an EXR whose writer ended before it wrote the table of its blocks is read") {
   const TemporaryFolder folder;
-  // Of such a size that bytes and pixels are compared.
+  // The picture is so large that bytes and pixels are compared.
   constexpr int width = 4'200, height = 4'100;
   static_assert(std::uint64_t{width} * height * sizeof(float) > limits::unchecked_image_bytes);
   OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::HALF);

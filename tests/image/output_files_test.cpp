@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "file_limits.hpp"
 #include "held_to_permissions.hpp"
 #include "picture_support.hpp"

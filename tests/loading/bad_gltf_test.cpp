@@ -7,7 +7,7 @@
 
 #include "damaged_files.hpp"
 #include "gltf/document.hpp"
-#include "gltf/steps.hpp"
+#include "gltf/gltf_import.hpp"
 #include "photile/limits.hpp"
 #include "scene_files.hpp"
 
@@ -131,7 +131,7 @@ TEST_CASE("a graph of nodes of 2^22 paths is refused before it is walked") {
   document["nodes"] = json::array();
   for (int i = 0; i < levels; ++i) document["nodes"].push_back({{"children", {i + 1, i + 1}}});
   document["nodes"].push_back({{"mesh", 0}});
-  CHECK_THAT(refusal_of_text(document.dump()), Contains("23 nodes") && Contains("places"));
+  CHECK_THAT(refusal_of_text(document.dump()), Contains("23 nodes") && Contains("instances"));
 }
 
 // Small glTF files that ask for more than any memory holds are refused before anything is read.
@@ -187,7 +187,7 @@ TEST_CASE("a file of a kilobyte that asks for a hundred gigabytes is refused") {
   const std::string error = input_error_of([&] { load_gltf(document); });
   CHECK_THAT(error, Catch::Contains("scene.gltf") &&
                         Catch::Contains(std::to_string((many / 3) << 15)) &&
-                        Catch::Contains("32768 places of mesh 'square'") &&
+                        Catch::Contains("32768 instances of mesh 'square'") &&
                         Catch::Contains(std::to_string(limits::max_triangles)));
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("meshes are not repeated beyond the limit from files that hold few byt
   CHECK_THAT(size_refusal(document),
              Catch::Contains(std::to_string(16 * (many / 3))) &&
                  Catch::Contains("no more than 51") &&  // 140 bytes, 5 nodes
-                 Catch::Contains("mesh 'square'") && Catch::Contains("in 16 places"));
+                 Catch::Contains("mesh 'square'") && Catch::Contains("in 16 instances"));
   document = placed_often(1);
   make_large(document);
   CHECK(2 * (many / 3) < limits::unchecked_triangles);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 
-#include "pictures/cube_map.hpp"
+#include "pictures/textures.hpp"
 
 namespace photile::test {
 

@@ -61,7 +61,7 @@ nlohmann::json instances_document() {
   return document;
 }
 
-/// The same, each in a group alone.
+/// The document with each light in a group alone.
 nlohmann::json shared_document() {
   nlohmann::json document = instances_document();
   for (nlohmann::json& node : document["nodes"]) node["extras"]["photile_group"] = node["name"];

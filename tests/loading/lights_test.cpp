@@ -15,7 +15,7 @@
 #include "scene/light_emission.hpp"
 #include "scene_files.hpp"
 #include "statistical_tests.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {
@@ -332,7 +332,7 @@ TEST_CASE("a group does not take the name of a light outside it") {
   CHECK_NOTHROW(grouped({"*=desk"}, three_lamps()));
   CHECK_NOTHROW(
       grouped({"hall_1=desk", "desk=hall_1"}, three_lamps()));  // no light has a layer of its own
-  // Of a file, it is the light that gives way.
+  // In a file, the light gives way.
   nlohmann::json document = three_lamps();
   document["nodes"][1]["extras"]["photile_group"] = "desk";
   const Scene scene = load_gltf(document);

@@ -11,12 +11,12 @@
 #include <iterator>
 #include <numbers>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "message_of.hpp"
 #include "photile/image.hpp"
 #include "photile/sensors.hpp"
-#include "pictures/texture_decoder.hpp"
-#include "scene/material_reflectance.hpp"
+#include "pictures/textures.hpp"
+#include "scene/surface_models.hpp"
 #include "scene_files.hpp"
 #include "scene_invariants.hpp"
 #include "srgb_oracle.hpp"

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "damaged_files.hpp"
-#include "reading/polygon_triangulator.hpp"
+#include "reading/triangles.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

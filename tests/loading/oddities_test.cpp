@@ -274,7 +274,7 @@ TEST_CASE("indices may be sparse, too") {
                                         {"values", {{"bufferView", 5}}}};
   const SceneFolderOnDisk folder;
   folder.write("square.bin", square_buffer());
-  // Of 0 1 2 0 2 3 the corner 4 becomes 1: the square of area 1 becomes two halves that overlap.
+  // Corner 4 of 0 1 2 0 2 3 becomes 1: the square of area 1 becomes two halves that overlap.
   folder.write("sparse.bin", bytes_of<std::uint16_t>({4, 0, 1}));
   const Scene scene = load_scene(folder.write("scene.gltf", document.dump()));
   REQUIRE(scene.triangle_count() == 2);

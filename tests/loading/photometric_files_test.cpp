@@ -4,11 +4,10 @@
 #include <numbers>
 #include <random>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "message_of.hpp"
 #include "photometric_texts.hpp"
-#include "photometry/eulumdat_reader.hpp"
-#include "photometry/ies_reader.hpp"
+#include "photometry/photometric_file.hpp"
 
 namespace photile::test {
 namespace {

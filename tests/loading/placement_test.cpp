@@ -10,7 +10,7 @@
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
 #include "photometric_texts.hpp"
-#include "scene/default_camera.hpp"
+#include "scene/camera.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {
@@ -188,8 +188,8 @@ TEST_CASE("a scene of any up axis becomes the same y-up scene, not mirrored") {
     CHECK(scene.front_side == plain.front_side);
     CHECK(glm::determinant(scene.turn) == Approx(1));
     const glm::dvec3 place(0.3, 1.1, 2.5);
-    CHECK(glm::distance(place_in_scene(scene, world.file(place)), place) < 1e-12);
-    CHECK(glm::distance(place_in_world(scene, place), world.file(place)) < 1e-12);
+    CHECK(glm::distance(position_in_scene(scene, world.file(place)), place) < 1e-12);
+    CHECK(glm::distance(position_in_world(scene, place), world.file(place)) < 1e-12);
     CHECK(glm::distance(direction_in_world(scene, {0, 1, 0}), world.file({0, 1, 0})) < 1e-12);
     const Camera there = in_world(scene, scene.cameras.front());
     CHECK(glm::distance(in_scene(scene, there).forward, scene.cameras.front().forward) < 1e-12);
@@ -230,7 +230,7 @@ TEST_CASE("placed lamps have their place and aim in the file's world") {
   REQUIRE(light.triangles.size() == 2);
   for (const std::uint32_t triangle : light.triangles) {
     for (const glm::vec3& corner : scene.corners(triangle)) {
-      const glm::dvec3 place = place_in_world(scene, glm::dvec3(corner));
+      const glm::dvec3 place = position_in_world(scene, glm::dvec3(corner));
       CHECK(place.z == Approx(2.5));
       CHECK(std::abs(place.x - 2) == Approx(0.6));
       CHECK(std::abs(place.y - 3) == Approx(0.15));

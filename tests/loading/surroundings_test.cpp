@@ -1,4 +1,6 @@
 // What surrounds a scene.
+#include "loading/surroundings.hpp"
+
 #include <OpenImageIO/imageio.h>
 
 #include <catch2/catch.hpp>
@@ -8,8 +10,7 @@
 #include <random>
 
 #include "cube_faces.hpp"
-#include "loading/sky_situation.hpp"
-#include "pictures/cube_map.hpp"
+#include "pictures/textures.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

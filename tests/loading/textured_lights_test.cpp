@@ -7,7 +7,7 @@
 
 #include "path_irradiance.hpp"
 #include "photile/ray_scene.hpp"
-#include "scene/emission_cells.hpp"
+#include "scene/light_emission.hpp"
 #include "scene_files.hpp"
 #include "statistical_tests.hpp"
 #include "trace/light_emitter.hpp"

@@ -78,7 +78,7 @@ TEST_CASE("no index into a page passes 32 bits, however large the device's buffe
     paged += page.entries;
   }
   CHECK(paged == 24ull << 28);
-  // As many as fit, not fewer: five times 2^28 photons are 3.75 x 2^30 floats.
+  // There are as many pages as fit, not fewer: five times 2^28 photons are 3.75 x 2^30 floats.
   CHECK(pages.size() == 5);
   CHECK_FALSE(maps::PageLimits{.largest_buffer = huge}.fit(0xFFFF'FFFEu, 1));
 }

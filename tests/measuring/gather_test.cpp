@@ -8,7 +8,7 @@
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {
@@ -174,8 +174,8 @@ TEST_CASE("a sensor that sees no lamps reads what is reflected, and the sky") {
     }
     values.push_back(sum);
   }
-  // Of a furnace's light the share of reflectance is reflected. Of the sky, all but the panel's
-  // part.
+  // The fraction of reflectance of a furnace's light is reflected; all but the panel's part of the
+  // sky is visible.
   const double hidden =
       validation::rectangle_factor(sensor.position, up, {-1, -1, 2}, {2, 0, 0}, {0, 2, 0});
   const double truth =

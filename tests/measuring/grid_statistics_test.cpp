@@ -1,5 +1,4 @@
 // Figures of a grid.
-#include "measuring/grid_statistics.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,7 +6,6 @@
 #include <random>
 #include <set>
 
-#include "measuring/measure_grids.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "photile/errors.hpp"
@@ -91,7 +89,7 @@ TEST_CASE("standard errors are the spread that repeated measurements have") {
 }
 
 TEST_CASE("the error of a minimum that noise chooses is that of the sensor it chooses") {
-  // Of 100 sensors that all have 100 lux, or of the first half with an eighth of the noise.
+  // 100 sensors all have 100 lux, or the first half has an eighth of the noise.
   const bool alike = GENERATE(true, false);
   const std::size_t repeats = GENERATE(8, 32);
   CAPTURE(alike, repeats);

@@ -7,18 +7,16 @@
 #include <regex>
 #include <set>
 
-#include "image/srgb.hpp"
-#include "measuring/furniture.hpp"
+#include "image/display.hpp"
+#include "measuring/floor.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "report/false_colour.hpp"
-#include "report/false_colour_picture.hpp"
-#include "report/isolines.hpp"
-#include "report/number_text.hpp"
 #include "report/palette.hpp"
 #include "report/plan_drawing.hpp"
-#include "report/plan_surroundings.hpp"
+#include "report/plan_lines.hpp"
 #include "report/sheet.hpp"
+#include "report/tables.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

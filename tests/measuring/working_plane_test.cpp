@@ -6,8 +6,7 @@
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 
-#include "measuring/furniture.hpp"
-#include "measuring/room_surfaces.hpp"
+#include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "statistical_tests.hpp"
@@ -191,7 +190,7 @@ TEST_CASE("points beyond the floor's border, or in the band along it, are left o
   REQUIRE(grid.layout);
   CHECK(grid.layout->columns == 14);
   CHECK(grid.layout->rows == 14);
-  // Of 14 x 14 cells of 0.25 m from 0.25 to 3.75 m, those at 1.875 or more in both are gone.
+  // 14 x 14 cells of 0.25 m reach from 0.25 to 3.75 m; those at 1.875 or more in both are gone.
   for (const Sensor& sensor : grid.sensors) {
     CHECK_FALSE((sensor.position.x > 1.75 && sensor.position.z > 1.75));
   }

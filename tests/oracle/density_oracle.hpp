@@ -27,8 +27,8 @@ class DensityOracle {
   /// References are kept. `angle_degrees`: largest angle between normals.
   DensityOracle(const Scene& scene, const Photons& photons, PhotonFilter filter,
                 double angle_degrees);
-  /// Of photons of one light on surfaces of these unit normals, by sided triangle; no disc is
-  /// smaller than a hundred-thousandth of `size`, metres.
+  /// An oracle for photons of one light on surfaces of these unit normals, by sided triangle; no
+  /// disc is smaller than a hundred-thousandth of `size`, metres.
   DensityOracle(std::vector<glm::dvec3> normals, double size, const Photons& photons,
                 double angle_degrees);
 
@@ -43,8 +43,8 @@ class DensityOracle {
                                      double radius,
                                      DensityKernel kernel = DensityKernel::constant) const;
 
-  /// The same where the disc is clipped to the surface: of these photons those in the slab around
-  /// the hit's plane, over the clipped area.
+  /// The irradiance where the disc is clipped to the surface: of these photons those in the slab
+  /// around the hit's plane, over the clipped area.
   std::vector<glm::dvec3> irradiance(const ClippedArea& surface, const glm::dvec3& hit,
                                      std::uint32_t sided_triangle, int k, double radius,
                                      DensityKernel kernel = DensityKernel::constant) const;

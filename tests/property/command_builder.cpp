@@ -22,14 +22,14 @@ const std::map<std::string_view, std::uint64_t>& cheap_counts() {
   return most;
 }
 
-constexpr std::array<std::string_view, 6> compiled{
-    "neighbours", "least_neighbours", "area", "kernel", "maps", "structure"};
+constexpr std::array<std::string_view, 5> compiled{"neighbours", "least_neighbours", "area",
+                                                   "kernel", "maps"};
 
 bool changes_kernels(std::string_view setting) {
   return std::find(compiled.begin(), compiled.end(), setting) != compiled.end();
 }
 
-/// Of one option. Some are outside its range, or no value at all.
+/// A value of one option. Some are outside its range, or no value at all.
 std::string value_of(const Setting& setting, double scene_size, Dice& dice) {
   if (dice.chance(0.04)) {
     return dice.one_of({"", "nan", "inf", "-1", "0", "1e400", "-0", "0x10", "many", "1e-320",

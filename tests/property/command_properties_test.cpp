@@ -29,9 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int quick_commands = 500;
-/// Of the quick commands, one of so many runs twice.
+/// One of so many quick commands runs twice.
 constexpr std::uint64_t quick_repeats = 5;
-/// Of the others, one of so many asks for kernels that take seconds to compile.
+/// One of so many other commands asks for kernels that take seconds to compile.
 constexpr std::uint64_t any_kernels = 200;
 /// By as many each kind of command has surely succeeded, by the quick ones from the first seed on.
 constexpr std::uint64_t many_commands = 5'000;
@@ -158,7 +158,7 @@ std::string result_in(const fs::path& file) {
   return file.filename() == "stats.json" ? std::string() : bytes_of(file);
 }
 
-/// Of one command. Errors are told by Catch.
+/// A trial of one command. Catch reports errors.
 class Trial {
  public:
   explicit Trial(const RandomCommand& command)
@@ -231,7 +231,7 @@ void load_maps_of(const RandomCommand& first, RandomCommand& second) {
   std::erase_if(second.outputs, [](const fs::path& file) { return file.extension() == ".maps"; });
 }
 
-/// Of each light, the mean illuminance of a picture's pixels, by the names of its channels.
+/// For each light the mean illuminance of a picture's pixels, by the names of its channels.
 std::map<std::string, double> mean_illuminances(const fs::path& file) {
   const Image image = read_image(file);
   std::map<std::string, double> means;

@@ -22,7 +22,7 @@ class Dice {
     return least + static_cast<int>(unit() * (static_cast<double>(most) - least + 1));
   }
   double between(double least, double most) { return least + unit() * (most - least); }
-  /// Of any size: its logarithm is even.
+  /// A number of any size: its logarithm is uniform.
   double size_between(double least, double most) { return least * std::pow(most / least, unit()); }
   template <class T>
   const T& one_of(const std::vector<T>& values) {

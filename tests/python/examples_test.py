@@ -46,11 +46,3 @@ def test_lux_table(tmp_path):
     assert len(table) == 24
     lamps = table.drop(columns=["x", "y", "z", "lux", "error"])
     assert lamps.sum(axis=1).to_numpy() == pytest.approx(table["lux"].to_numpy(), rel=1e-4)
-
-
-def test_compare_structures(tmp_path):
-    pytest.importorskip("matplotlib")
-    told = run("compare_structures.py", SCENES / "cornell-box" / "cornell-box.obj", tmp_path,
-               "uniform-grid,hashed-grid")
-    assert len(re.findall("us a query", told)) == 4
-    assert "hashed-grid" in (tmp_path / "structures.svg").read_text()

@@ -40,11 +40,12 @@ def squared_distances(points, positions, allowed):
     return np.where(allowed & (squares <= RADIUS**2), squares, np.inf)
 
 
-@pytest.mark.parametrize("structure", photile.STRUCTURES)
-def test_nearest_is_that_of_all_pairs(structure):
+@pytest.mark.parametrize("photons_per_cell", [4, 1e6])
+def test_nearest_is_that_of_all_pairs(photons_per_cell):
     positions, normals, _, _ = cloud()
     points, facing = queries()
-    maps = photile.PhotonMaps(positions, normals=normals, radius=RADIUS, structure=structure)
+    maps = photile.PhotonMaps(positions, normals=normals, radius=RADIUS,
+                              photons_per_cell=photons_per_cell)
     found = maps.nearest(points, facing, K)
     truth = squared_distances(points, positions, facing @ normals.T > 0.5)
     expected = np.sort(truth, axis=1)[:, :K]
@@ -144,7 +145,7 @@ def test_what_is_wrong_with_a_query(call, message):
     [
         {"radius": 0},
         {"radius": -1.0},
-        {"structure": "octree"},
+        {"photons_per_cell": 0},
         {"flux": np.ones((5, 3))},
         {"lights": [0.5] * 1_000},
         {"lights": [-1] * 1_000},

@@ -136,7 +136,7 @@ def test_cameras_are_chosen(lamps):
     [
         ({"neighbours": 0}, "neighbours: '0' is not a whole number from 1"),
         ({"seed": -1}, "seed: '-1' is not"),
-        ({"structure": "octree"}, "structure: 'octree' is not one of"),
+        ({"maps": "octree"}, "maps: 'octree' is not one of"),
         ({"photons": 5}, "photons: there is no such setting"),
         ({"quality": "best"}, "quality: 'best'"),
         ({"integrator": "bdpt"}, "integrator: 'bdpt'"),

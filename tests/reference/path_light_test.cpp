@@ -12,7 +12,7 @@
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {
@@ -389,7 +389,7 @@ void cover(Scene& scene, std::array<std::uint8_t, 4> texel) {
 /// A room with a lamp at z = 0.7, its walls of the first material.
 Scene room(const Material& walls) { return test::closed_box(walls, 2); }
 
-/// The same with a plate of the material between lamp and floor.
+/// The room with a plate of the material between lamp and floor.
 Scene room_with_plate(const Material& plate) {
   test::SceneBuilder builder("room with a plate");
   builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.6f))), true,
@@ -462,7 +462,7 @@ Scene sphere_in_sun(const SmoothMesh& sphere, bool with_normals = true) {
   return builder.build();
 }
 
-/// Of the light of one place, from so many paths: at the light's power.
+/// The light that arrives at one sensor by so many paths, at the light's power.
 PathMeans seen(const Scene& scene, const Sensor& sensor, std::size_t paths) {
   PathMeans means = path_means(scene, {sensor}, 1, paths);
   means.irradiance[0] *= scene.lights[0].power;

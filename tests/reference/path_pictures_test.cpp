@@ -74,7 +74,8 @@ TEST_CASE("lights beyond the dense ones give the same path-traced layers, in the
 }
 
 TEST_CASE("a path-traced floor under a point light: mean illuminance and radiance over a square") {
-  // As in tests/render: the solid angle of the square, 4 asin(1 / 2), times 1 cd, over 4 m2.
+  // The closed form of tests/render: the solid angle of the square, 4 asin(1 / 2), times 1 cd, over
+  // 4 m2.
   constexpr float albedo = 0.6f;
   Scene scene = test::plate(test::diffuse(glm::vec3(albedo)), 4.0f, 3);
   scene.lights.push_back(test::point_light("lamp", {0, 0, 1}, 4.0 * glm::pi<double>()));

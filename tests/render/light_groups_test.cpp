@@ -127,7 +127,7 @@ PrimaryHitBatch random_batch(int first, int last, std::mt19937& random) {
   return batch;
 }
 
-/// The same estimates in both forms: a few lights per hit, in no order.
+/// Estimates in both forms: a few lights per hit, in no order.
 struct BothForms {
   Estimates dense, sparse;
 };

@@ -81,7 +81,7 @@ TEST_CASE("hits take all lights' estimates from one level") {
       estimate::estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
   CHECK(chosen.irradiance == std::vector{grey(1.01f), grey(2.02f), grey(4), grey(8)});
 
-  // The same with lists of the lights that reach a hit, of different lengths.
+  // The levels with lists of the lights that reach a hit, of different lengths.
   by_level[0].first = {0, 2, 4};
   by_level[0].light = {0, 1, 0, 1};
   by_level[1].irradiance = {grey(3.03f), grey(1), grey(2)};

@@ -1,17 +1,19 @@
 // Pictures of several photon passes.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include "photon_passes.hpp"
+
+#include <tbb/global_control.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
-#include <tbb/global_control.h>
 #include <vector>
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "photon_passes.hpp"
 #include "pictures.hpp"
 #include "render/pass_count.hpp"
 #include "render/pass_schedule.hpp"
@@ -117,7 +119,7 @@ TEST_CASE("passes share the photons and the samples of a pixel") {
   CHECK(seven.used.passes == 7);
   CHECK(one.used.film.samples_per_pixel == 2);
   CHECK(seven.used.film.samples_per_pixel == 7);
-  // The same paths, but that rounding may give a light one more or less.
+  // The paths are the same, but that rounding may give a light one more or less.
   CHECK(static_cast<double>(seven.stored_photons) ==
         Approx(static_cast<double>(one.stored_photons)).epsilon(0.001));
 }
@@ -223,7 +225,7 @@ LightPooling random_pooling(std::size_t lights, std::size_t layers, std::mt19937
   return pooling;
 }
 
-/// Of all lights where they are few; else of some at each hit, of none at every seventh.
+/// Estimates of all lights where they are few; else of some at each hit, of none at every seventh.
 Estimates random_estimates(std::size_t lights, bool glossy, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
   Estimates estimates;

@@ -35,7 +35,7 @@ namespace {
 using test::room_camera;
 using test::same_bits;
 
-// The same seed gives the same picture, bit for bit.
+// A seed gives the same picture each time, bit for bit.
 
 RenderParameters small_parameters() { return small_picture(30'000, 64, 48); }
 
@@ -125,11 +125,7 @@ TEST_CASE("a cancelled rendering stops with Interrupted") {
 
 // Pictures within a small part of the device's memory: the same bits.
 
-RenderParameters small_parameters(MapStructure structure) {
-  RenderParameters parameters = small_picture(20'000, 48, 36);
-  parameters.structure = structure;
-  return parameters;
-}
+RenderParameters small_parameters() { return small_picture(20'000, 48, 36); }
 
 Device limited_device(std::uint64_t bytes) {
   DeviceOptions options;
@@ -160,10 +156,8 @@ RenderResult render_by_all_maps(const Scene& scene, Device& device,
 
 TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has the same bits",
           "[slow]") {
-  const MapStructure structure =
-      GENERATE(MapStructure::uniform_grid, MapStructure::kdtree_2d, MapStructure::brute_force);
   const MapMode maps = GENERATE(MapMode::triangle, MapMode::automatic);
-  RenderParameters parameters = small_parameters(structure);
+  RenderParameters parameters = small_parameters();
   parameters.maps = maps;
   Device device;
   const RenderResult expected = render_by_all_maps(room(), device, parameters);
@@ -172,17 +166,15 @@ TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has
   const double entries = 30 * figure(expected.statistics, "references");
   CHECK(entries > 0.2 * static_cast<double>(taken));
   for (const std::uint64_t divisor : {10, 50}) {
-    // Only grids are cut into tiles.
-    if (divisor > 10 && structure != MapStructure::uniform_grid) continue;
     Device small = limited_device(taken / divisor);
     const RenderResult result = render(room(), test::room_camera(), small, parameters);
-    CAPTURE(name_of(structure), maps == MapMode::automatic, taken, divisor);
+    CAPTURE(maps == MapMode::automatic, taken, divisor);
     CHECK(test::same_bits(result.layers, expected.layers));
     CHECK(small.peak_allocated_bytes() <= taken / divisor);
   }
 }
 
-// Of so small a room the shapes of the maps (100 bytes each, always whole) are most of a tenth.
+// The shapes of the maps of so small a room (100 bytes each, always whole) are most of a tenth.
 TEST_CASE("maps that keep normals give the same bits within an eighth of the memory") {
   Scene scene = room();
   const std::size_t first = scene.vertices.size();
@@ -190,7 +182,7 @@ TEST_CASE("maps that keep normals give the same bits within an eighth of the mem
   for (std::size_t i = first; i < scene.vertices.size(); ++i) {
     scene.vertices[i] += glm::vec3(1.9f, 1.5f, 1.6f);
   }
-  RenderParameters parameters = small_parameters(MapStructure::uniform_grid);
+  RenderParameters parameters = small_parameters();
   parameters.maps = MapMode::patch;
   Device device;
   const RenderResult expected = render_by_all_maps(scene, device, parameters);
@@ -205,7 +197,7 @@ TEST_CASE("a picture of one light within a tenth of the memory that it takes has
   // Coloured walls, since sums of equal numbers hardly depend on their order.
   const Scene box = test::closed_box(test::diffuse({0.7f, 0.5f, 0.3f}), 5);
   const Camera camera = Camera::look_at({0.1, 0.1, 0.2}, {1, 0.9, 0.6}, {0, 0, 1}, 1.2);
-  const RenderParameters parameters = small_parameters(MapStructure::uniform_grid);
+  const RenderParameters parameters = small_parameters();
   Device device;
   const LightLayers expected = render(box, camera, device, parameters).layers;
   Device small = limited_device(device.peak_allocated_bytes() / 10);
@@ -215,21 +207,12 @@ TEST_CASE("a picture of one light within a tenth of the memory that it takes has
 TEST_CASE("a memory too small for the triangles alone is refused with the remedy") {
   Device small = limited_device(2'000);
   CHECK_THROWS_MATCHES(
-      render(room(), test::room_camera(), small, small_parameters(MapStructure::uniform_grid)),
-      DeviceMemoryError,
+      render(room(), test::room_camera(), small, small_parameters()), DeviceMemoryError,
       Catch::Predicate<DeviceMemoryError>(
           [](const DeviceMemoryError& error) {
             return std::string(error.what()).find("memory limit") != std::string::npos;
           },
           "names the memory limit"));
-}
-
-TEST_CASE("a global tree that does not fit is refused: it cannot be split") {
-  const RenderParameters parameters = small_parameters(MapStructure::kdtree_global);
-  Device device;
-  render(room(), test::room_camera(), device, parameters);
-  Device small = limited_device(device.peak_allocated_bytes() / 10);
-  CHECK_THROWS_AS(render(room(), test::room_camera(), small, parameters), DeviceError);
 }
 
 // A scene with instances renders as the same scene without.
@@ -321,16 +304,6 @@ TEST_CASE("two sub-devices gather the bits of one device") {
   std::vector<Device> devices = halves();
   CHECK(test::same_bits(render(scene, test::room_camera(), devices, gathering).layers,
                         expected.layers));
-}
-
-TEST_CASE("the kd-trees estimate the bits of one device on two") {
-  const Scene scene = room(false);
-  RenderParameters chosen = parameters();
-  chosen.structure = MapStructure::kdtree_global;
-  const auto expected = render(scene, test::room_camera(), test::device(), chosen);
-  std::vector<Device> devices = halves();
-  CHECK(
-      test::same_bits(render(scene, test::room_camera(), devices, chosen).layers, expected.layers));
 }
 
 TEST_CASE("the statistics name each device with its share") {
@@ -493,7 +466,7 @@ Scene glossy_room() {
   return scene;
 }
 
-/// That of rank 0.
+/// The picture of rank 0.
 LightLayers shared_picture(const Scene& scene, std::uint32_t processes,
                            RenderParameters parameters) {
   LightLayers picture;
@@ -546,7 +519,8 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
     PhotonsMoved moved;
     photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), moved);
     held[communicator.rank()] = photons.size();
-    // Of the triangles that it answers for, every photon; of others, those within the radius.
+    // It holds every photon of the triangles that it answers for, and those of others within the
+    // radius.
     bool same = known;
     std::size_t lacking = 0;
     for (std::uint32_t s = 0; s + 1 < all.first_of.size(); ++s) {
@@ -584,13 +558,6 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
   CHECK(std::accumulate(owned.begin(), owned.end(), std::uint64_t{0}) == all.size());
   for (const std::uint64_t count : owned) CHECK(count < all.size() / 2);
   for (const std::uint64_t count : held) CHECK(count < all.size());
-}
-
-TEST_CASE("what several processes cannot share is refused") {
-  const Scene scene = glossy_room();
-  RenderParameters tree = small_picture(1000, 8, 6);
-  tree.structure = MapStructure::kdtree_global;
-  CHECK_THROWS_AS(shared_picture(scene, 2, tree), UsageError);
 }
 
 }  // namespace

@@ -93,11 +93,6 @@ TEST_CASE("counts below zero, and settings that go with no other, are refused as
     parameters.least_neighbours = 60;
     CHECK_THROWS_WITH(check(parameters), Contains("least_neighbours: 60") && Contains("50"));
   }
-  SECTION("one tree of naive maps") {
-    parameters.structure = MapStructure::kdtree_global;
-    parameters.maps = MapMode::naive;
-    CHECK_THROWS_WITH(check(parameters), Contains("structure: ") && Contains("naive"));
-  }
 }
 
 TEST_CASE("saved photons tell all that they depend on, and nothing else") {
@@ -106,7 +101,6 @@ TEST_CASE("saved photons tell all that they depend on, and nothing else") {
     CAPTURE(setting.name);
     RenderParameters other = usual;
     setting.set(other, another_value(setting));
-    if (setting.name == "structure") other.structure = MapStructure::kdtree_global;
     CHECK((photon_settings(other) == photon_settings(usual)) ==
           (setting.kept == nullptr || setting.kept_for_groups));
     CHECK((group_settings(other) == group_settings(usual)) == !setting.kept_for_groups);

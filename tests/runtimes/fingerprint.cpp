@@ -21,6 +21,7 @@
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
+#include "structures/structure.hpp"
 
 namespace photile::test {
 namespace {
@@ -30,7 +31,7 @@ constexpr double radius = 0.25;  // metres
 struct Case {
   std::string name;
   Scene scene;
-  MapStructure structure = MapStructure::uniform_grid;
+  std::string structure = "uniform-grid";
   int neighbours = 50;
   std::optional<EstimateTuning> tuning = std::nullopt;
   /// Bytes that device memory is bounded by, so that maps are cut into tiles; 0 = no bound.
@@ -121,9 +122,17 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
   // Small tiles need small cells: pages reach beyond a tile by two of them and the radius.
   const float photons_per_cell = tiled ? 0.25f : 4.0f;
   const PrimaryHits hits = hits_of(test.scene, sizes.hits);
-  std::vector<PhotonMaps> all_maps = estimate::build_maps_on_each(
-      devices, test.scene, photons, find_neighbour_groups(test.scene, {radius, 60}),
-      {radius, photons_per_cell, test.structure}, Progress::none());
+  const NeighbourGroups groups = find_neighbour_groups(test.scene, {radius, 60});
+  std::vector<PhotonMaps> all_maps;
+  if (test.structure == "uniform-grid") {
+    all_maps = estimate::build_maps_on_each(devices, test.scene, photons, groups,
+                                            {radius, photons_per_cell}, Progress::none());
+  } else {
+    for (Device& device : devices) {
+      all_maps.push_back(structures::build(structures::named(test.structure), device, test.scene,
+                                           photons, groups, {radius, photons_per_cell}));
+    }
+  }
   const PhotonMaps& maps = all_maps.back();
   if (tiled && maps::store_of(maps).tilings.empty()) {
     throw DeviceError(test.name + ": no map was cut into tiles; take more photons");
@@ -156,11 +165,10 @@ std::vector<Case> cases(bool every_kernel) {
   std::vector<Case> list{{"one-light", torus_and_plate(1, false)},
                          {"three-lights", torus_and_plate(3, false)},
                          {"many-lights", torus_and_plate(300, false)},
-                         {"tiles", plate(), MapStructure::uniform_grid, 10, std::nullopt, 50}};
+                         {"tiles", plate(), "uniform-grid", 10, std::nullopt, 50}};
   const auto add_weighted = [&](DensityKernel kernel, std::size_t lights, bool glossy) {
     list.push_back({fmt::format("{}-{}-lights", name_of(kernel), lights),
-                    torus_and_plate(lights, glossy), MapStructure::uniform_grid, 50, std::nullopt,
-                    0, kernel});
+                    torus_and_plate(lights, glossy), "uniform-grid", 50, std::nullopt, 0, kernel});
   };
   add_weighted(DensityKernel::cone, 1, false);
   add_weighted(DensityKernel::epanechnikov, 3, false);
@@ -169,13 +177,13 @@ std::vector<Case> cases(bool every_kernel) {
   list.push_back({"glossy", torus_and_plate(1, true)});
   list.push_back({"glossy-three-lights", torus_and_plate(3, true)});
   list.push_back({"glossy-many-lights", torus_and_plate(20, true)});
-  list.push_back({"kdtree-3d-many-lights", torus_and_plate(20, false), MapStructure::kdtree_3d});
-  for (const MapStructure structure : all_map_structures) {
-    if (structure == MapStructure::uniform_grid) continue;
-    list.push_back({std::string(name_of(structure)), torus_and_plate(1, false), structure});
+  list.push_back({"kdtree-3d-many-lights", torus_and_plate(20, false), "kdtree-3d"});
+  for (const structures::Structure& structure : structures::all()) {
+    if (structure.name == "uniform-grid") continue;
+    list.push_back({structure.name, torus_and_plate(1, false), structure.name});
   }
   // Lists too long for private memory.
-  list.push_back({"kdtree-3d-k-300", torus_and_plate(1, false), MapStructure::kdtree_3d, 300});
+  list.push_back({"kdtree-3d-k-300", torus_and_plate(1, false), "kdtree-3d", 300});
   return list;
 }
 
@@ -186,7 +194,7 @@ std::vector<Case> cases_of_lanes() {
     const auto add = [&](std::string_view name, std::size_t lights, bool glossy, int neighbours,
                          DensityKernel kernel = DensityKernel::constant) {
       list.push_back({fmt::format("{}-lanes-{}", width, name), torus_and_plate(lights, glossy),
-                      MapStructure::uniform_grid, neighbours, tuning, 0, kernel});
+                      "uniform-grid", neighbours, tuning, 0, kernel});
     };
     add("one-light", 1, false, 50);
     add("three-lights", 3, false, 50);

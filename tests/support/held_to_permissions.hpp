@@ -24,7 +24,7 @@ class HeldToPermissions {
   HeldToPermissions(const HeldToPermissions&) = delete;
   HeldToPermissions& operator=(const HeldToPermissions&) = delete;
 
-  /// The same for good, of a process that then executes another program; users have nothing to
+  /// Drops them for good in a process that then executes another program; users have nothing to
   /// lose.
   static void for_good() {
     ::prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);

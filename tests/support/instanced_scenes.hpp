@@ -79,7 +79,7 @@ inline void add_instances(Scene& scene, const SharedMesh& mesh,
   }
 }
 
-/// The same scene without a word of what repeats.
+/// The scene without a word of what repeats.
 inline Scene flattened(Scene scene) {
   scene.shared_meshes.clear();
   scene.instances.clear();

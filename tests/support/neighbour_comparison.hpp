@@ -39,7 +39,7 @@ inline std::size_t count_differences(const PrimaryHits& hits, const NeighbourLis
                                   std::back_inserter(only_one));
     const bool only_ties = std::all_of(only_one.begin(), only_one.end(), is_tied);
     const bool radius_agrees = std::abs(double{found.squared_radius[hit]} - border) <= tie * border;
-    // As many neighbours, unless photons tie with the search radius itself.
+    // Both find as many neighbours, unless photons tie with the search radius itself.
     const bool same_number = wanted.size() == got.size() || border == radius * radius;
     if (!only_ties || !radius_agrees || !same_number) ++differences;
   }

@@ -7,6 +7,7 @@
 
 #include "estimates_comparison.hpp"
 #include "neighbour_comparison.hpp"
+#include "structures/structure.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -34,17 +35,19 @@ struct MapsUnderTest {
                                       : reference::PhotonFilter::grouped,
                60) {}
 
-  bool has(MapStructure structure) const {
-    return mode == MapMode::triangle || !is_global(structure);
+  bool has(const structures::Structure& structure) const {
+    return mode == MapMode::triangle || !structure.global;
   }
 
   /// Checks the neighbours (ties excepted, see count_differences) and, with `irradiance`, the
   /// estimate to within estimate_tolerance, where it is not tied. Leave it out where many photons
   /// are equally far.
-  void check(MapStructure structure, std::span<const int> neighbour_counts, bool irradiance) const {
-    const PhotonMaps maps(device(), scene, photons, groups, {radius, 4, structure});
+  void check(const structures::Structure& structure, std::span<const int> neighbour_counts,
+             bool irradiance) const {
+    const PhotonMaps maps =
+        structures::build(structure, device(), scene, photons, groups, {radius, 4});
     for (const int k : neighbour_counts) {
-      CAPTURE(name_of(structure), static_cast<int>(mode), k, radius, photons.size());
+      CAPTURE(structure.name, static_cast<int>(mode), k, radius, photons.size());
       Estimator estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc});
       CHECK(count_differences(hits, estimator.nearest(hits), oracle, photons,
                               static_cast<float>(radius)) == 0);
@@ -70,13 +73,13 @@ struct MapsUnderTest {
   }
 };
 
-/// Of every map structure and mode.
+/// Checks every mode of the maps.
 inline void check_against_oracle(const Scene& scene, const Photons& photons,
                                  const PrimaryHits& hits, double radius,
                                  std::initializer_list<int> neighbour_counts, bool irradiance) {
   for (const MapMode mode : {MapMode::naive, MapMode::triangle, MapMode::patch}) {
     const MapsUnderTest maps(scene, photons, hits, radius, mode);
-    for (const MapStructure structure : all_map_structures) {
+    for (const structures::Structure& structure : structures::all()) {
       if (maps.has(structure)) {
         maps.check(structure, {neighbour_counts.begin(), neighbour_counts.size()}, irradiance);
       }

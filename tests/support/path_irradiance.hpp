@@ -5,7 +5,7 @@
 
 #include "photile/ray_scene.hpp"
 #include "render/path_estimate.hpp"
-#include "trace/sensor_hits.hpp"
+#include "trace/sensors.hpp"
 
 namespace photile::test {
 

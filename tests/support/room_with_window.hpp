@@ -55,7 +55,7 @@ struct RoomWithWindow {
   }
 };
 
-/// The same luminance from everywhere.
+/// Surroundings of one luminance.
 inline EnvironmentMap even_surroundings(float luminance = 1) {
   return {"even", 64, 16, std::vector<glm::vec3>(64 * 16, glm::vec3(luminance))};
 }

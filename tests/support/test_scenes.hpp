@@ -122,8 +122,8 @@ inline void add_environment(Scene& scene, const EnvironmentMap& map) {
   scene.lights.push_back(light);
 }
 
-/// The same scene as another exporter might have wound it: the fronts of all triangles for which
-/// `flip` holds are on the other side.
+/// The scene as another exporter might have wound it: the fronts of all triangles for which `flip`
+/// holds are on the other side.
 template <class Predicate>
 Scene rewound(Scene scene, Predicate&& flip) {
   for (std::size_t t = 0; t < scene.triangle_count(); ++t)

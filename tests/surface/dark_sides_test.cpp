@@ -8,7 +8,7 @@
 namespace photile::test {
 namespace {
 
-/// Of a plate of 200 equal triangles: the dark sides, where so many photons landed on the front of
+/// The dark sides of a plate of 200 equal triangles, where so many photons landed on the front of
 /// each triangle, and none on the first ones.
 std::vector<std::uint32_t> dark_sides(std::uint32_t on_each, std::uint32_t empty) {
   Scene scene = test::empty_scene();

@@ -1,10 +1,9 @@
 // The search for triangles of other planes, beside all pairs.
-#include "surface/plane_tree.hpp"
-
 #include <catch2/catch.hpp>
 #include <set>
 
 #include "photon_sets.hpp"
+#include "surface/facets.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {

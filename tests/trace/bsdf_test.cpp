@@ -6,7 +6,6 @@
 
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/diffuse_part.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 
@@ -235,7 +234,7 @@ TEST_CASE("Directions are drawn with the density that the opaque BSDF claims") {
         }
       CAPTURE(tilt, material.roughness, total);
       CHECK(total < 1.001);
-      // Those that would enter the surface, and bins that hardly ever fill, are one bin.
+      // Directions that would enter the surface, and bins that hardly ever fill, are one bin.
       std::vector<double> kept_counts{static_cast<double>(lost)};
       std::vector<double> kept_expected{samples * (1 - total)};
       for (int k = 0; k < rings * sectors; ++k) {

@@ -208,7 +208,7 @@ TEST_CASE("photons of a half bright environment reach the side that faces it", "
   const Scene scene = with_environment(plate(diffuse({}), 2), half_bright_map());
   const double above = flux_from_above(scene, 1, 100'000);
   const Scene even = with_environment(plate(diffuse({}), 2), even_map(glm::vec3(3.0f)));
-  // The same pi L on top, of half the power.
+  // The top receives the same pi L, of half the power.
   CHECK(above == Approx(2 * flux_from_above(even, 1, 100'000)).epsilon(0.02));
   CHECK_VERDICT(mean_is(fluxes_from_above(scene, 20'000), 4 / (2 * disc_of(scene)), 0.02));
 }

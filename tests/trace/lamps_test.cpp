@@ -12,11 +12,11 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/light_sampler.hpp"
 #include "uniform.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 namespace {
@@ -242,7 +242,7 @@ TEST_CASE("photons of a measured lamp go where its intensity says, in every cell
   light.x_axis = glm::normalize(glm::cross(light.direction, glm::vec3(0.3f, 1, 0)));
   light.distribution = 0;
   scene.distributions.push_back(lamp);
-  const LampAxes axes(light);
+  const LightAxes axes(light);
   const IntensitySampler sampler(scene, light);
 
   // Bins four times as fine as the grid, their flux by the midpoint rule.
@@ -348,14 +348,14 @@ struct Looked {
   double variance = 0;           ///< of all layers together
 };
 
-Looked look(const LightSampler& lamps, const glm::vec3& point, const LampChances& chances,
-            int count) {
+Looked look(const LightSampler& lamps, const glm::vec3& point,
+            const SelectionProbabilities& probabilities, int count) {
   Looked looked;
   double sum = 0, squares = 0;
   for (int i = 0; i < count; ++i) {
     const RandomStream random(5, static_cast<std::uint64_t>(i), 0);
     const auto lamp = lamps.sample(point, random.block(Purpose::direct_light, 0),
-                                   random.block(Purpose::direct_light, 1), chances);
+                                   random.block(Purpose::direct_light, 1), probabilities);
     if (!lamp || !(lamp->direction.z > 0)) continue;
     const double found = double{lamp->direction.z} * luminance(glm::dvec3(lamp->received));
     looked.mean[lamp->layer] += found / count;
@@ -367,7 +367,7 @@ Looked look(const LightSampler& lamps, const glm::vec3& point, const LampChances
 }
 
 TEST_CASE(
-    "lamp pieces: looks from a point are unbiased, and have less noise near one lamp of many") {
+    "lamp clusters: looks from a point are unbiased, and have less noise near one lamp of many") {
   SceneBuilder builder = floor_under_row();
   constexpr double power = 0.3;
   const glm::vec3 bulb(3, 0.5f, 1);
@@ -377,7 +377,7 @@ TEST_CASE(
   constexpr int count = 100'000;
   for (const float x : {0.0f, 2.75f, 6.5f}) {
     const glm::vec3 point(x, 0.03f, 0);
-    LampChances near;
+    SelectionProbabilities near;
     lamps.weigh(point, {0, 0, 1}, near);
     const Looked looked = look(lamps, point, near, count);
     const double error = std::sqrt(looked.variance / count);
@@ -390,13 +390,13 @@ TEST_CASE(
     CHECK(std::abs(looked.mean[1] - by_bulb) < 4 * error);
     CHECK(error < 0.01 * (by_row(glm::dvec3(point)) + by_bulb));
     if (x < 3) {
-      CHECK(looked.variance < 0.3 * look(lamps, point, by_shares_alone, count).variance);
+      CHECK(looked.variance < 0.3 * look(lamps, point, by_power_alone, count).variance);
     }
   }
 }
 
 TEST_CASE(
-    "lamp pieces: a disc of many triangles gives its form factor, and each its share of looks") {
+    "lamp clusters: a disc of many triangles gives its form factor, and each its share of looks") {
   // Slices of unequal angles, so that their areas differ.
   constexpr int slices = 64;
   constexpr double radius = 0.06, height = 0.7;
@@ -415,7 +415,7 @@ TEST_CASE(
   const Scene scene = builder.build();
   const LightSampler lamps(scene);
   const glm::vec3 point(0.0f);
-  LampChances near;
+  SelectionProbabilities near;
   lamps.weigh(point, {0, 0, 1}, near);
   constexpr int count = 100'000;
   const Looked looked = look(lamps, point, near, count);
@@ -429,11 +429,11 @@ TEST_CASE(
   CHECK(looked.variance < 0.02 * expected * expected);
 }
 
-TEST_CASE("lamp pieces: densities of directions towards lamps integrate to one") {
+TEST_CASE("lamp clusters: densities of directions towards lamps integrate to one") {
   const Scene scene = floor_under_row().build();
   const LightSampler lamps(scene);
   const glm::vec3 point(1.1f, 0.2f, 0);
-  LampChances near;
+  SelectionProbabilities near;
   lamps.weigh(point, {0, 0, 1}, near);
   Uniform uniform(7);
   constexpr int points_of_triangle = 2000;
@@ -454,27 +454,27 @@ TEST_CASE("lamp pieces: densities of directions towards lamps integrate to one")
   CHECK(sum == Approx(1).epsilon(1e-3));
 }
 
-TEST_CASE("lamp pieces: looks from one point choose other triangles of a piece each") {
+TEST_CASE("lamp clusters: looks from one point choose other triangles of a cluster each") {
   SceneBuilder builder;
   const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 32, black, builder.add(area_light("panel")));
   const Scene scene = builder.build();
-  const LampPieces pieces(scene, std::vector<double>{1.0}, bounding_sphere(scene));
-  LampChances chances;
-  pieces.weigh({0.5f, 0.5f, 3}, {0, 0, -1}, chances);
-  REQUIRE(chances.up_to.size() <= 64);
-  const LookSamples looks(RandomStream(1, 2, 0), 0);
+  const LightClusters clusters(scene, std::vector<double>{1.0}, bounding_sphere(scene));
+  SelectionProbabilities probabilities;
+  clusters.weigh({0.5f, 0.5f, 3}, {0, 0, -1}, probabilities);
+  REQUIRE(probabilities.up_to.size() <= 64);
+  const LightSampleNumbers looks(RandomStream(1, 2, 0), 0);
   constexpr std::uint32_t count = 256;
   std::set<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const LampNumbers numbers = looks.lamp(i);
-    triangles.insert(pieces.choose(chances, numbers.lamp, numbers.place).triangle);
+    const LightNumbers numbers = looks.lamp(i);
+    triangles.insert(clusters.choose(probabilities, numbers.lamp, numbers.place).triangle);
   }
-  // Of 2048; were they drawn at random, 15 would be drawn again.
+  // There are 2048; were they drawn at random, 15 would be drawn again.
   CHECK(triangles.size() > count - 40);
 }
 
-TEST_CASE("lamp pieces: the largest number below one chooses the last of all lamps") {
+TEST_CASE("lamp clusters: the largest number below one chooses the last of all lamps") {
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   constexpr std::size_t count = 29;  // so many equal shares sum to less than one
@@ -484,29 +484,31 @@ TEST_CASE("lamp pieces: the largest number below one chooses the last of all lam
   const auto by_shares = LightSampler(scene).sample(glm::vec3(0.0f), largest, largest);
   REQUIRE(by_shares);
   CHECK(by_shares->layer == count - 1);
-  const LampPieces pieces(scene, std::vector<double>(count, 1.0 / count), bounding_sphere(scene));
-  LampChances chances;
-  pieces.weigh(glm::vec3(0.0f), {0, 0, -1}, chances);  // away from the lamps: by their shares
-  REQUIRE(chances.up_to.back() < 1);
-  CHECK(pieces.choose(chances, largest, largest).piece == count - 1);
+  const LightClusters clusters(scene, std::vector<double>(count, 1.0 / count),
+                               bounding_sphere(scene));
+  SelectionProbabilities probabilities;
+  clusters.weigh(glm::vec3(0.0f), {0, 0, -1},
+                 probabilities);  // away from the lamps: by their shares
+  REQUIRE(probabilities.up_to.back() < 1);
+  CHECK(clusters.choose(probabilities, largest, largest).cluster == count - 1);
 }
 
-TEST_CASE("lamp pieces: triangles with the same middle are not parted") {
+TEST_CASE("lamp clusters: triangles with the same middle are not parted") {
   SceneBuilder builder;
   const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
   const std::uint32_t lamp = builder.add(area_light("lamp"));
   builder.triangle({3, 0, 0}, {0, 3, 0}, {0, 0, 0}, black, lamp);
   builder.triangle({2, 1, 0}, {1, 2, 0}, {0, 0, 0}, black, lamp);
   const Scene scene = builder.build();
-  const LampPieces pieces(scene, std::vector<double>{1.0}, bounding_sphere(scene));
-  LampChances chances;
-  pieces.weigh({1, 1, 2}, {0, 0, -1}, chances);
-  CHECK(chances.up_to.size() == 1);
-  CHECK(pieces.area(0) == Approx(4.5 + 1.5));
+  const LightClusters clusters(scene, std::vector<double>{1.0}, bounding_sphere(scene));
+  SelectionProbabilities probabilities;
+  clusters.weigh({1, 1, 2}, {0, 0, -1}, probabilities);
+  CHECK(probabilities.up_to.size() == 1);
+  CHECK(clusters.area(0) == Approx(4.5 + 1.5));
   // Each as often as its area says.
   const auto chosen = [&](double place) {
     const RandomBlock first = RandomBlock::of(0);
-    return pieces.choose(chances, first, RandomBlock::of(place)).triangle;
+    return clusters.choose(probabilities, first, RandomBlock::of(place)).triangle;
   };
   CHECK(chosen(0.74) == chosen(0));
   CHECK(chosen(0.76) != chosen(0));

@@ -1,4 +1,6 @@
 // Photon tracing: energy, weights, what is stored, and what is refused.
+#include "trace/photon_tracer.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -11,7 +13,6 @@
 #include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/sorted_photons.hpp"
 
 namespace photile::test {
 namespace {

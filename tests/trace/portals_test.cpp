@@ -14,7 +14,7 @@
 #include "statistical_tests.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/portal_search.hpp"
-#include "validation/form_factors.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::test {
 
@@ -69,7 +69,7 @@ std::vector<double> irradiances(const Scene& scene, const Sensor& sensor, int ra
 
 TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it is a portal") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
-  // Of the light's 1 lm: pi L A over 4 pi L times the disc.
+  // The fraction of the light's 1 lm: pi L A over 4 pi L times the disc.
   const double disc = pi * std::pow(bounding_sphere(scene).radius, 2);
   const double truth = Room::window_area / (4 * disc);
   SECTION("none") { CHECK_VERDICT(mean_is(fluxes_inside(scene, 100'000), truth, 0.2 * truth)); }

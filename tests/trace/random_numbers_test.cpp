@@ -14,7 +14,6 @@
 #include "trace/direct_light.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/sampling.hpp"
-#include "trace/sobol.hpp"
 
 namespace photile::test {
 namespace {
@@ -164,7 +163,7 @@ TEST_CASE("The looks of a pixel's samples share their sequences and take every l
   for (int lamps : {2, 4, 16}) {
     std::vector<int> count(static_cast<std::size_t>(lamps), 0);
     for (std::uint32_t sample = 0; sample < 8; ++sample) {
-      const LookSamples samples(of_pixel, 4 * sample);
+      const LightSampleNumbers samples(of_pixel, 4 * sample);
       for (std::uint32_t i = 0; i < 4; ++i) {
         const double choice = samples.look(i).lamp.uniform_double(0);
         ++count[static_cast<std::size_t>(choice * lamps)];

@@ -1,4 +1,5 @@
-// The same seed gives the same bits, whatever the number of threads, the winding and the batches.
+// A seed gives the same bits each time, whatever the number of threads, the winding and the
+// batches.
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 

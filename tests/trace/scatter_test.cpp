@@ -9,7 +9,6 @@
 #include "photile/device/bsdf.h"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/diffuse_part.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/opaque_bsdf.hpp"

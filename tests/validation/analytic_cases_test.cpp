@@ -1,11 +1,12 @@
 // The cases of `photile validate` and their verdicts.
+#include "validation/analytic_cases.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "estimates_comparison.hpp"
 #include "test_device.hpp"
-#include "validation/form_factors.hpp"
 #include "validation/validate.hpp"
 
 namespace photile::test {

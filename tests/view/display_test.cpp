@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "image/display.hpp"
 #include "image/glare.hpp"
-#include "image/srgb.hpp"
 #include "photile/errors.hpp"
-#include "report/number_text.hpp"
 #include "report/palette.hpp"
+#include "report/tables.hpp"
 #include "test_scenes.hpp"
 #include "two_lights.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "loading/relit_sky.hpp"
+#include "loading/surroundings.hpp"
 #include "two_lights.hpp"
 
 namespace photile::test {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <thread>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
@@ -58,7 +58,7 @@ struct Room : TemporaryFolder {
   }
 };
 
-/// Of the openings of placed lamps, in the scene.
+/// The middle of the openings of placed luminaires, in the scene.
 glm::dvec3 middle_of(const Scene& scene, const Light& light) {
   glm::dvec3 sum(0.0);
   for (const std::uint32_t triangle : light.triangles) {

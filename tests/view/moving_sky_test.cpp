@@ -6,8 +6,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "common/output_file.hpp"
-#include "loading/relit_sky.hpp"
+#include "common/files.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 #include "weather/perez_sky.hpp"

@@ -151,7 +151,7 @@ TEST_CASE(
   wait_for([&] { return frames.latest() && frames.latest()->lacking == 0; });
   const auto smooth = frames.latest();
   REQUIRE(smooth->mixed.size() == 40 * 30);
-  // Of 100 lm over the floor: 8 cd/sr, at a metre below it, half of which is reflected evenly.
+  // 100 lm over the floor are 8 cd, at a metre below it, half of which is reflected evenly.
   CHECK(smooth->mixed[15 * 40 + 20].y ==
         Approx(100 / (4 * glm::pi<double>()) * 0.5 / glm::pi<double>()).epsilon(0.03));
   CHECK_FALSE(frames.finished());

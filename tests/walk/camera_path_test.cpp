@@ -9,9 +9,8 @@
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
-#include "gltf/animation.hpp"
+#include "gltf/cameras.hpp"
 #include "photile/errors.hpp"
-#include "scene/interpolation.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {
@@ -61,12 +60,13 @@ TEST_CASE("smooth paths have the velocity of Catmull and Rom at keyframes, and r
   const std::vector<glm::dvec3> values{{0, 0, 0}, {1, 2, 0}, {6, 2, 3}};
   constexpr double h = 1e-6;
   const auto velocity = [&](double t) {
-    return (scene::smooth(times, values, t + h) - scene::smooth(times, values, t - h)) / (2 * h);
+    return (reading::smooth(times, values, t + h) - reading::smooth(times, values, t - h)) /
+           (2 * h);
   };
   CHECK(glm::length(velocity(1) - glm::dvec3(2, 2.0 / 3, 1)) < 1e-4);
   CHECK(glm::length(velocity(2 * h)) < 1e-4);
   CHECK(glm::length(velocity(3 - 2 * h)) < 1e-4);
-  check_near(scene::linear(times, values, 2), {3.5, 2, 1.5});
+  check_near(reading::linear(times, values, 2), {3.5, 2, 1.5});
 }
 
 TEST_CASE("a target that stays is looked at all the way") {

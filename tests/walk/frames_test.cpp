@@ -1,4 +1,6 @@
 // Frames of a walk.
+#include "walk/frames.hpp"
+
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -9,8 +11,6 @@
 #include "render/pictures.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
-#include "walk/contact_sheet.hpp"
-#include "walk/frame_names.hpp"
 
 namespace photile::test {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "cache/charts.hpp"
 #include "photile/errors.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::bake {
 

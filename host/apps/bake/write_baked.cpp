@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "common/output_file.hpp"
-#include "image/png_output.hpp"
+#include "common/files.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 

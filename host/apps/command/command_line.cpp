@@ -17,7 +17,7 @@
 #include "command/processes.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::app {

@@ -11,14 +11,12 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
-#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
+#include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "report/picture_comparison.hpp"

@@ -17,9 +17,8 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "measuring/measure_grids.hpp"
+#include "common/files.hpp"
+#include "measuring/measurement.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
@@ -94,7 +93,7 @@ void check_lights(const DaylightOptions& options) {
   }
   if (load.situation.weather.empty()) throw UsageError("daylight needs --weather FILE.epw");
   if (!options.blinds.empty() && options.suns != "rays") {
-    throw UsageError("--blinds close where the sun shines straight; leave out --suns patches");
+    throw UsageError("--blinds close where the sun shines in; leave out --suns patches");
   }
   if (options.blinds.size() > most_blind_groups) {
     throw UsageError(

@@ -15,15 +15,14 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "glare/measure_glare.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
-#include "report/glare_tables.hpp"
+#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {
@@ -79,7 +78,8 @@ double coverage_of(const GlareOptions& options, const Scene& scene,
   const RayScene rays(scene);
   const double area = glare::Luminaires(rays, options.parameters.looks).large_area(axes.up);
   if (!(area > 0)) return 1;
-  const auto room = measuring::Room::around(rays, axes, place_in_scene(scene, observer.position));
+  const auto room =
+      measuring::Room::around(rays, axes, position_in_scene(scene, observer.position));
   if (!room) return 1;
   return area / (static_cast<double>(room->places().size()) * room->cell_area());
 }
@@ -165,7 +165,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   if (!options.target.empty()) measuring::parse_requirement(options.target);
   if (options.observers.empty() && options.cameras.empty() && options.plane.height.empty()) {
-    throw UsageError("nobody looks; give --observers FILE, --grid or --camera NAME");
+    throw UsageError("no observer; give --observers FILE, --grid or --camera NAME");
   }
   note_inputs_of(render);
   for (const auto& file : options.observers) note_input(file);

@@ -10,13 +10,12 @@
 #include "command/output_files.hpp"
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
-#include "files/warnings.hpp"
+#include "common/files.hpp"
+#include "files/scene_files.hpp"
 #include "glare/ugr_table.hpp"
 #include "loading/light_changes.hpp"
 #include "photile/errors.hpp"
-#include "report/glare_tables.hpp"
+#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {

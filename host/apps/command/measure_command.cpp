@@ -18,15 +18,15 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
-#include "measuring/measure_grids.hpp"
+#include "common/files.hpp"
+#include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
-#include "measuring/room_surfaces.hpp"
 #include "measuring/sensor_grid.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "report/daylight_tables.hpp"
-#include "report/sensor_tables.hpp"
+#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {

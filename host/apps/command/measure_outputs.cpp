@@ -9,20 +9,18 @@
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
+#include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/ray_scene.hpp"
 #include "report/honeybee_files.hpp"
 #include "report/plan_drawing.hpp"
-#include "report/plan_surroundings.hpp"
-#include "report/print_page.hpp"
+#include "report/plan_lines.hpp"
 #include "report/report.hpp"
-#include "report/sensor_tables.hpp"
+#include "report/tables.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
@@ -109,7 +107,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
   return facts;
 }
 
-/// Of each grid.
+/// The surroundings of each grid.
 std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
                                                       const MeasureRun& run) {
   const RayScene rays(run.scene);

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "command/picture_outputs.hpp"
-#include "measuring/measure_grids.hpp"
+#include "command/output_files.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "photile/layered_picture.hpp"

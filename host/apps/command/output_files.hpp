@@ -1,8 +1,16 @@
-// Files of a run, checked before the long work: outputs that can be written and are no input.
+// Files that a command writes, checked early and written late: outputs that can be written and are
+// no input, and how pictures are shown.
 #pragma once
 
 #include <filesystem>
 #include <span>
+#include <string>
+#include <vector>
+
+#include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/progress.hpp"
+#include "report/false_colour.hpp"
 
 namespace photile::app {
 
@@ -19,5 +27,72 @@ void check_outputs(std::span<const std::filesystem::path> outputs);
 
 /// Makes a folder for outputs, and those above it. Errors: OutputError.
 void make_folder(const std::filesystem::path& folder);
+
+}  // namespace photile::app
+
+namespace CLI {
+class App;
+}
+
+namespace photile::app {
+
+/// Adds --view.
+void add_view_option(CLI::App& command, DisplayView& view, const std::string& group);
+
+/// Adds --exposure and --view.
+void add_tone_mapping_options(CLI::App& command, ToneMapping& parameters, const std::string& group);
+
+/// The options of false colour as typed, checked against the limits.
+struct FalseColourOptions {
+  report::FalseColour colours;  ///< but for the top of the scale; no label: the unit
+  std::string scale;            ///< top, or "auto"
+
+  FalseColourOptions();
+
+  /// What they ask for where values are in `unit`.
+  report::FalseColour of(const std::string& unit) const;
+};
+
+/// Adds --scale.
+void add_scale_option(CLI::App& command, FalseColourOptions& options, const std::string& group);
+
+/// Adds all of them to a subcommand.
+void add_false_colour_options(CLI::App& command, FalseColourOptions& options);
+
+struct PictureOptions {
+  std::vector<std::string> outputs;  ///< -o: .exr, .png or .hdr
+  std::string illuminance;           ///< .png in false colour, "" = none
+  std::string luminance;             ///< the same
+  FalseColourOptions false_colour;   ///< of both
+  ToneMapping tone_mapping;
+};
+
+/// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
+void add_picture_options(CLI::App& command, PictureOptions& options);
+
+/// Files to be written, each with its format.
+class PictureOutputs {
+ public:
+  /// Errors: UsageError for a picture whose name ends in none of .exr, .png and .hdr.
+  explicit PictureOutputs(const PictureOptions& options);
+
+  bool empty() const { return files().empty(); }
+  std::vector<std::filesystem::path> files() const;
+
+  /// Writes every file: `picture` as EXR, its tone-mapped root as PNG, its root in
+  /// Radiance's format, its illuminance and its
+  /// luminance in false colour. `notes` are told what a drawing lacks.
+  /// Errors: OutputError; the file that it names is then as it was before. Those of `picture`, of
+  /// measuring::illuminance_of and luminance_of; then nothing is written.
+  ///   source   the file that the picture is from, named where it lacks something
+  void write(const LayeredPicture& picture, Progress& notes = Progress::none(),
+             const std::filesystem::path& source = {}) const;
+
+ private:
+  std::vector<std::filesystem::path> exr_, png_, hdr_;
+  std::filesystem::path illuminance_, luminance_;  ///< empty: none
+  ToneMapping tone_mapping_;
+  FalseColourOptions false_colour_;
+};
 
 }  // namespace photile::app

@@ -7,8 +7,8 @@
 #include <array>
 #include <string>
 
-#include "command/number_format.hpp"
 #include "command/setting_options.hpp"
+#include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "photile/errors.hpp"
 #include "render/render_plan.hpp"

@@ -6,15 +6,13 @@
 #include <optional>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
-#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "common/run_files.hpp"
-#include "loading/relit_sky.hpp"
+#include "common/files.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 

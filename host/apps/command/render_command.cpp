@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/quality_options.hpp"
@@ -20,10 +19,10 @@
 #include "command/saved_maps_option.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "device/context.hpp"
+#include "image/display.hpp"
 #include "image/glare.hpp"
-#include "image/srgb.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"

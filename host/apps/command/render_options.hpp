@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "command/picture_outputs.hpp"
+#include "command/output_files.hpp"
 #include "command/quality_options.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
@@ -27,7 +27,7 @@ namespace photile::app {
 /// What estimates the light that reaches a surface.
 enum class Integrator { photon_map, path };
 
-/// As typed; each value is within its range.
+/// The options as typed; each value is within its range.
 struct RenderOptions {
   QualityOptions quality_options() { return {quality, parameters}; }
 

@@ -7,15 +7,15 @@
 #include <memory>
 #include <utility>
 
-#include "command/number_format.hpp"
 #include "command/scene_report.hpp"
+#include "command/terminal_progress.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
-#include "report/false_colour_picture.hpp"
-#include "report/plan_surroundings.hpp"
-#include "report/print_page.hpp"
-#include "scene/material_reflectance.hpp"
+#include "report/false_colour.hpp"
+#include "report/plan_lines.hpp"
+#include "report/report.hpp"
+#include "scene/surface_models.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
@@ -24,7 +24,7 @@ namespace {
 std::string place_text(const Scene& scene, const Light& light) {
   const auto place = report::place_of(scene, light);
   if (!place) return "";
-  const glm::dvec3 world = place_in_world(scene, *place);
+  const glm::dvec3 world = position_in_world(scene, *place);
   return fmt::format("{:.2f}, {:.2f}, {:.2f}", world.x, world.y, world.z);
 }
 
@@ -53,7 +53,9 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
 
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
   report::ReportTable table{
-      "Lamps", {"number", "name", "kind", "photometric file", "place (x, y, z), m", "power"}, {}};
+      "Luminaires",
+      {"number", "name", "kind", "photometric file", "position (x, y, z), m", "power"},
+      {}};
   const std::vector<double> powers = powers_of(scene, mix);
   const LightGroups groups = light_groups_of(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -12,11 +12,11 @@
 
 namespace photile::app {
 
-/// Lamps with their numbers on the plans, kinds, photometric files, places in the scene file's
-/// world and powers. Lights of the sky have no place.
+/// Lamps with their numbers on the plans, kinds, photometric files, positions in the scene file's
+/// world and powers. Lights of the sky have no position.
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 
-/// Of each opaque material that a triangle has: the luminous reflectance in percent.
+/// A row for each opaque material that a triangle has, with its luminous reflectance in percent.
 report::ReportTable reflectances(const Scene& scene);
 
 /// The file of moods for a report: the one that is given, else the scene's, "" where there is none.

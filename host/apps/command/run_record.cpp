@@ -7,13 +7,13 @@
 #include <span>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/quality_options.hpp"
 #include "command/setting_options.hpp"
+#include "command/terminal_progress.hpp"
 #include "common/content_hash.hpp"
 #include "photile/errors.hpp"
 #include "render/render_costs.hpp"
-#include "scene/scene_hash.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::app {
 

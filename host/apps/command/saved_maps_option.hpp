@@ -26,7 +26,7 @@ KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress
 void keep_light_maps(const std::optional<LightMapContents>& light_maps,
                      const RenderOptions& options, Progress& progress);
 
-/// As `render`, from photons that a file holds, or that are kept in one.
+/// Renders, as `render` does, from photons that a file holds, or that are kept in one.
 ///   hits          what the camera sees
 ///   reflections   gets the part of the picture that came by reflection, or null
 /// Errors: those of `render` and of saved_maps; UsageError where the photons do not fit in memory

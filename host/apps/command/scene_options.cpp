@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "view/moods.hpp"
@@ -26,7 +26,7 @@ void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::
               options.reflectances.push_back(ReflectanceChange::parse(text));
             }
           },
-          "share of light that materials whose names match reflect; their colours are made "
+          "fraction of the light that materials whose names match reflect; their colours are made "
           "brighter or darker; repeatable")
       ->type_name("MATERIAL=SHARE")
       ->allow_extra_args(false)
@@ -63,7 +63,8 @@ void add_situation_options(CLI::App& command, SkySituation& situation, const std
       .add_option_function<std::string>(
           "--time",
           [&situation](const std::string& text) { situation.time = LocalTime::parse(text); },
-          "the sun's place by the site's standard time, such as 2026-06-21T14:00; with --weather "
+          "the sun's position by the site's standard time, such as 2026-06-21T14:00; with "
+          "--weather "
           "the sky of that hour, too")
       ->type_name("YYYY-MM-DDTHH:MM")
       ->group(group);
@@ -86,7 +87,7 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
       ->group(group);
   command
       .add_option("--luminaires", options.luminaires,
-                  "lamps to place, by their photometric files, alone or in arrays")
+                  "luminaires to place, by their photometric files, alone or in arrays")
       ->type_name("FILE.json")
       ->group(group);
   command

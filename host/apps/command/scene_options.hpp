@@ -47,8 +47,9 @@ std::vector<LightChange> changes_of(const MoodOptions& options, const LightMix& 
                                     const std::filesystem::path& scene,
                                     const std::filesystem::path& picture = {});
 
-/// The same for the lights of a picture: without --moods the file beside the picture's scene, if it
-/// lies in the same folder, or beside the picture. Errors: as above; those of read_header.
+/// The changes that a mood makes to the lights of a picture. Without --moods the file beside the
+/// picture's scene, if it lies in the same folder, or beside the picture. Errors: as above; those
+/// of read_header.
 std::vector<LightChange> mood_of_picture(const MoodOptions& options,
                                          const std::filesystem::path& picture);
 

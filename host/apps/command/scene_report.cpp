@@ -7,9 +7,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "command/number_format.hpp"
-#include "scene/material_reflectance.hpp"
-#include "scene/open_glass.hpp"
+#include "command/terminal_progress.hpp"
+#include "scene/scene_queries.hpp"
+#include "scene/surface_models.hpp"
 
 namespace photile::app {
 namespace {
@@ -163,7 +163,7 @@ Extents extents_of(const Scene& scene) {
   Extents extents{glm::dvec3(std::numeric_limits<double>::infinity()),
                   glm::dvec3(-std::numeric_limits<double>::infinity())};
   for (const glm::vec3& vertex : scene.vertices) {
-    const glm::dvec3 place = place_in_world(scene, glm::dvec3(vertex));
+    const glm::dvec3 place = position_in_world(scene, glm::dvec3(vertex));
     extents.lowest = glm::min(extents.lowest, place);
     extents.highest = glm::max(extents.highest, place);
   }

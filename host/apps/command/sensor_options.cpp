@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
-#include "measuring/furniture.hpp"
+#include "common/files.hpp"
+#include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "measuring/measure_grids.hpp"
+#include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
@@ -25,7 +25,7 @@ struct PlaneOptions {
   double clearance = 0;        ///< metres; 0 = furniture is not looked for
 };
 
-/// Places of sensors.
+/// Positions of sensors.
 struct PlaceOptions {
   std::vector<std::string> planes, points;  ///< files
   PlaneOptions plane;

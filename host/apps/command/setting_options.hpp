@@ -33,7 +33,8 @@ struct NamedSetting {
 };
 using NamedSettings = std::vector<NamedSetting>;
 
-/// Those of the table, but for those with an option of their own and those named in `without`.
+/// The settings of the table but for those with an option of their own and those named in
+/// `without`.
 NamedSettings rendering_settings(RenderParameters& parameters,
                                  std::initializer_list<std::string_view> without = {});
 NamedSettings scene_settings(SceneLoadOptions& options);
@@ -82,7 +83,7 @@ std::string options_text(const RenderParameters& parameters);
 /// What `photile settings` prints: all that --set reaches.
 std::string settings_text();
 
-/// The same as docs/settings.md holds it, Markdown, and what qualities set.
+/// The list as docs/settings.md holds it, in Markdown, and what qualities set.
 std::string settings_markdown();
 
 }  // namespace photile::app

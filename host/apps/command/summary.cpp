@@ -10,8 +10,8 @@
 #include <sstream>
 #include <string>
 
-#include "command/number_format.hpp"
 #include "command/scene_report.hpp"
+#include "command/terminal_progress.hpp"
 
 namespace photile::app {
 

@@ -1,4 +1,5 @@
-// Standard error: single lines, and progress as a bar on a terminal, as plain lines otherwise.
+// Standard error: single lines, progress as a bar on a terminal (as plain lines otherwise), and
+// numbers as people read them.
 #pragma once
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include <thread>
 
 #include "photile/progress.hpp"
+#include "photile/scene.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile::app {
@@ -78,5 +80,26 @@ class TerminalProgress : public Progress {
   Stopwatch stopwatch_;
   std::jthread drawer_;  // last: it uses all of the above
 };
+
+/// 950, "1.9k", "4.0M", "1.2G": three digits at most before the point.
+std::string format_count(double count);
+
+/// "512 B", "1.5 KiB", "340.0 MiB"
+std::string format_bytes(std::uint64_t bytes);
+
+/// "0.12 s", "12.3 s", "2 min 05 s", "1 h 02 min"
+std::string format_seconds(double seconds);
+
+/// So many digits, with groups of three from 10,000 on: "0.5857", "6000", "11,990".
+std::string format_number(double value, int digits);
+
+/// "800 lm" or "5 W"
+std::string format_power(double power, PowerUnit unit);
+
+/// A power in both units: "800 lm (1.171 W)".
+std::string format_power_in_both(double power, PowerUnit unit, double lumen_per_watt);
+
+/// "lm" or "W"
+std::string unit_symbol(PowerUnit unit);
 
 }  // namespace photile::app

@@ -18,7 +18,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/limits.hpp"
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
@@ -80,7 +80,7 @@ void add_trace_command(CLI::App& photile) {
   auto options = std::make_shared<TraceOptions>();
   RenderOptions& render = options->render;
   CLI::App* command = photile.add_subcommand(
-      "trace", "Trace photons, or a share of them, to a file for --load-maps");
+      "trace", "Trace photons, or a part of them, to a file for --load-maps");
   command->add_option("-o,--output", options->output, "file of photons")
       ->required()
       ->type_name("FILE")

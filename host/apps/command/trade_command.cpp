@@ -11,15 +11,13 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/number_format.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"

@@ -18,7 +18,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/progress.hpp"

@@ -11,7 +11,7 @@
 
 #include "common/ascii_text.hpp"
 #include "photile/limits.hpp"
-#include "walk/frame_names.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::app {
 namespace {
@@ -93,7 +93,7 @@ CLI::Validator share_up_to(double highest) {
   const auto check = [=](std::string& text) -> std::string {
     const auto share = parse_share(text);
     if (!share || *share > highest) {
-      return fmt::format("'{}' is not a share above 0, up to {:.0f}%, such as 2% or 0.02", text,
+      return fmt::format("'{}' is not a fraction above 0, up to {:.0f}%, such as 2% or 0.02", text,
                          100 * highest);
     }
     text = fmt::format("{}", *share);

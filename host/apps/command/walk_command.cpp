@@ -14,7 +14,6 @@
 
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
-#include "command/picture_outputs.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/run_record.hpp"
@@ -22,8 +21,8 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "common/run_files.hpp"
-#include "gltf/animation.hpp"
+#include "common/files.hpp"
+#include "gltf/cameras.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -31,8 +30,7 @@
 #include "photile/renderer.hpp"
 #include "reading/camera_path.hpp"
 #include "view/display.hpp"
-#include "walk/contact_sheet.hpp"
-#include "walk/frame_names.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::app {
 namespace {
@@ -70,7 +68,8 @@ int count_of(const reading::CameraMotion& motion, double frames_per_second) {
   return static_cast<int>(count);
 }
 
-/// Places in the walk, from 0, of the frames to be made. Errors: UsageError where there are none.
+/// Positions in the walk, from 0, of the frames to be made. Errors: UsageError where there are
+/// none.
 std::vector<int> frames_to_make(const WalkOptions& options, int count) {
   std::vector<int> frames;
   for (int frame = 0; frame < count; ++frame) {
@@ -180,7 +179,7 @@ class Walk {
            (options_.quick ? " quick" : "");
   }
 
-  /// Of each frame that is to be made.
+  /// Whether each frame that is to be made exists already.
   std::vector<bool> find_finished() const {
     std::vector<bool> finished(frames_.size(), false);
     if (!to_exr_) return finished;
@@ -285,7 +284,8 @@ class Walk {
     if (on_sheet) sheet_->add(place_on_sheet(frame), displayed);
   }
 
-  /// Of a long walk the sheet shows frames at even distances. -1: not this one.
+  /// The number of a frame on the sheet, or -1: of a long walk the sheet shows frames at even
+  /// distances.
   int place_on_sheet(int frame) const {
     if (count_ <= most_on_sheet) return frame;
     const auto place = static_cast<int>(std::int64_t{frame} * most_on_sheet / count_);

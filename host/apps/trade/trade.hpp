@@ -33,7 +33,7 @@ struct TradePoint {
   PictureError error = {};
   /// From the loaded scene to the picture, without the compilation of kernels.
   double first_picture_seconds = 0;
-  /// Of a further picture from another place: primary hits, estimate, film.
+  /// Seconds of a further picture from another viewpoint: primary hits, estimate, film.
   double frame_seconds = 0;
   std::uint64_t host_bytes = 0, device_bytes = 0;  ///< most that the stages' results took
 };

@@ -1,9 +1,7 @@
-// Light straight from lamps.
+// Direct light.
 #include <cmath>
 
-#include "validation/analytic_case.hpp"
-#include "validation/form_factors.hpp"
-#include "validation/room.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::validation {
 namespace {
@@ -13,7 +11,7 @@ const glm::dvec3 up(0, 0, 1);
 /// A black floor of 4 x 4 m around the origin, in z = 0.
 const Rectangle floor_plan{{-2, -2, 0}, {4, 0, 0}, {0, 4, 0}};
 
-/// Places in a square about a point of the floor, or on a circle about the origin: far enough from
+/// Points in a square about a point of the floor, or on a circle about the origin: far enough from
 /// one another that most of their photons are their own.
 std::vector<Sensor> places_at(double distance) {
   constexpr int side = 5, count = side * side;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "photile/renderer.hpp"
-#include "validation/analytic_case.hpp"
+#include "validation/analytic_cases.hpp"
 
 namespace photile::validation {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "image/display.hpp"
 #include "image/glare.hpp"
-#include "image/pixel_lights.hpp"
-#include "image/srgb.hpp"
+#include "image/light_layers.hpp"
 #include "photile/image.hpp"
-#include "report/false_colour_picture.hpp"
+#include "report/false_colour.hpp"
 
 namespace photile::view {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "measuring/grid_statistics.hpp"
+#include "measuring/measurement.hpp"
 #include "photile/defaults.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "image/glare.hpp"
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 #include "view/panel_parts.hpp"
 
 namespace photile::view {

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "common/json_object.hpp"
-#include "common/output_file.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_names.hpp"

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
-#include "loading/relit_sky.hpp"
+#include "loading/surroundings.hpp"
 #include "weather/perez_sky.hpp"
-#include "weather/sky_lights.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::view {
 namespace {

@@ -9,8 +9,8 @@
 #include "photile/defaults.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
+#include "weather/perez_sky.hpp"
 #include "weather/sky_patches.hpp"
-#include "weather/sun_position.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::view {

@@ -8,7 +8,7 @@
 #include <cfloat>
 
 #include "photile/limits.hpp"
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 #include "view/panel_parts.hpp"
 
 namespace photile::view {
@@ -35,7 +35,6 @@ bool draw_choice(const char* label, Value& value, const std::array<Value, count>
 bool draw_maps(RenderParameters& parameters) {
   if (!ImGui::CollapsingHeader("Photon maps")) return false;
   bool changed = draw_choice("maps", parameters.maps, all_map_modes);
-  changed |= draw_choice("structure", parameters.structure, all_map_structures);
   changed |= draw_choice("area", parameters.area, all_area_modes);
   int neighbours = parameters.neighbours;
   if (ImGui::InputInt("k", &neighbours, 10, 50, ImGuiInputTextFlags_EnterReturnsTrue)) {

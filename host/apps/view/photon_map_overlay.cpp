@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::view {

@@ -6,7 +6,7 @@
 
 #include "measuring/requirements.hpp"
 #include "photile/errors.hpp"
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 #include "view/panel_parts.hpp"
 #include "view/photon_map_overlay.hpp"
 
@@ -54,7 +54,7 @@ void draw_point_markers(const PanelState& state, const Frame* frame) {
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   for (const ClickedPoint& point : state.points) {
-    const auto place = project(frame->camera, place_in_scene(state.scene, point.position),
+    const auto place = project(frame->camera, position_in_scene(state.scene, point.position),
                                static_cast<int>(size.x), static_cast<int>(size.y));
     if (!place) continue;
     const ImVec2 middle(static_cast<float>(place->x), static_cast<float>(place->y));

@@ -10,7 +10,7 @@
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/sensors.hpp"
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile::view {

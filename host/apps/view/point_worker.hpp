@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "measuring/grid_statistics.hpp"
+#include "measuring/measurement.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "loading/sourced_scene.hpp"
+#include "loading/load_scene.hpp"
 
 namespace photile::view {
 

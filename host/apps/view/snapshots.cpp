@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "common/output_file.hpp"
-#include "image/srgb.hpp"
+#include "common/files.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "writing/edited_scene.hpp"

@@ -261,7 +261,7 @@ class Viewer {
     if (luminaires_ && luminaires_->click(frame_->camera, direction, place, message_)) {
       probe_.reset();
     } else if (place) {
-      points_.add(place_in_world(*scene_, place->position),
+      points_.add(position_in_world(*scene_, place->position),
                   direction_in_world(*scene_, place->normal));
     }
   }

@@ -17,7 +17,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile {
 namespace {
@@ -102,7 +102,6 @@ Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
 struct PhotonCloud::Impl {
   std::vector<glm::vec3> positions;
   bool has_normals;
-  bool one_map;  ///< one structure over all photons
   cloud::Voxels voxels;
   maps::MapStore* store = nullptr;  ///< of `photon_maps`
   PhotonMaps photon_maps;
@@ -111,10 +110,7 @@ struct PhotonCloud::Impl {
        Progress& progress)
       : positions(photons.position.begin(), photons.position.end()),
         has_normals(!photons.normal.empty()),
-        one_map(is_global(parameters.structure)),
-        voxels(one_map ? std::span<const glm::vec3>() : photons.position,
-               one_map ? std::span<const glm::vec3>() : photons.normal, parameters.radius,
-               parameters.angle_degrees),
+        voxels(photons.position, photons.normal, parameters.radius, parameters.angle_degrees),
         photon_maps(build(device, photons, parameters, progress)) {}
 
   PhotonMaps build(Device& device, const CloudPhotons& cloud, const CloudParameters& parameters,
@@ -132,21 +128,14 @@ PhotonMaps PhotonCloud::Impl::build(Device& device, const CloudPhotons& cloud,
   progress.begin("build photon maps", 0, "references");
   const Stopwatch stopwatch;
   auto owned = std::make_unique<maps::MapStore>(
-      device, needs,
-      PhotonMapParameters{parameters.radius, parameters.photons_per_cell, parameters.structure});
+      device, needs, PhotonMapParameters{parameters.radius, parameters.photons_per_cell});
   store = owned.get();
   // Without normals all agree.
   store->angle_degrees = has_normals ? parameters.angle_degrees : 180.0;
   store->cos_angle = has_normals ? std::cos(glm::radians(parameters.angle_degrees)) : -1.0;
   store->statistics.photons = photons.size();
-  if (one_map || has_normals) {
-    store->normals.assign(cloud.normal.begin(), cloud.normal.end());
-    store->normals.resize(photons.size(), glm::vec3(0, 0, 1));
-  }
-  if (one_map) {
-    store->map_of.assign(photons.size(), 0);
-    maps::build_global_map(*store, photons, 1);
-  } else if (photons.size() > 0) {
+  store->normals.assign(cloud.normal.begin(), cloud.normal.end());
+  if (photons.size() > 0) {
     store->map_of = voxels.take_own_maps();
     maps::build_maps(*store, photons, nullptr, voxels.take_plan(), progress);
   }
@@ -180,7 +169,7 @@ PrimaryHits PhotonCloud::Impl::place(std::span<const glm::vec3> points,
             static_cast<std::uint32_t>(photons));
   store->map_of.resize(photons + points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    store->map_of[photons + i] = one_map ? 0 : voxels.map_at(points[i], normal_of(i));
+    store->map_of[photons + i] = voxels.map_at(points[i], normal_of(i));
   }
   if (!store->normals.empty()) {
     store->normals.resize(photons + points.size());

@@ -1,12 +1,25 @@
+#include "gltf/cameras.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <memory>
 #include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
-#include "gltf/steps.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "gltf/accessor.hpp"
+#include "gltf/document.hpp"
+#include "photile/scene.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::gltf {
+
 namespace {
 
 bool has_orientation(const glm::dmat4& world) {
@@ -48,6 +61,231 @@ void add_gltf_cameras(const tinygltf::Model& model, const std::vector<NodeVisit>
     const tinygltf::Camera& camera = model.cameras[static_cast<std::size_t>(node.camera)];
     const bool unnamed = node.name.empty() && !camera.name.empty();
     add_camera(camera, unnamed ? camera.name : node_name(model, visit.node), visit.world, context);
+  }
+}
+
+namespace {
+
+/// One animated property of a node.
+struct Channel {
+  int node = 0;
+  std::string path;           ///< "translation", "rotation" or "scale"
+  std::string interpolation;  ///< "STEP", "LINEAR" or "CUBICSPLINE"
+  int components = 3;
+  std::vector<double> times;  ///< seconds, ascending
+  std::vector<float> values;  ///< per key; with CUBICSPLINE in-tangent, value, out-tangent
+
+  glm::dvec4 element(std::size_t index) const {
+    glm::dvec4 result(0);
+    for (int i = 0; i < components; ++i) {
+      result[i] = static_cast<double>(
+          values[index * static_cast<std::size_t>(components) + static_cast<std::size_t>(i)]);
+    }
+    return result;
+  }
+
+  /// Value of a key.
+  glm::dvec4 key(std::size_t index) const {
+    return element(interpolation == "CUBICSPLINE" ? 3 * index + 1 : index);
+  }
+
+  glm::dvec4 at(double time) const {
+    if (times.size() < 2) return key(0);
+    const auto [i, share] = reading::between(times, time);
+    if (interpolation == "STEP") return key(share < 1 ? i : i + 1);
+    if (interpolation == "CUBICSPLINE") {
+      const double length = times[i + 1] - times[i];
+      return reading::hermite(element(3 * i + 1), length * element(3 * i + 2), element(3 * i + 4),
+                              length * element(3 * i + 3), share);
+    }
+    if (path != "rotation") return glm::mix(key(i), key(i + 1), share);
+    const glm::dvec4 a = key(i), b = key(i + 1);
+    const glm::dquat turned =
+        glm::slerp(glm::dquat(a.w, a.x, a.y, a.z), glm::dquat(b.w, b.x, b.y, b.z), share);
+    return {turned.x, turned.y, turned.z, turned.w};
+  }
+};
+
+int components_of(const std::string& path) { return path == "rotation" ? 4 : 3; }
+
+/// The nodes from a root down to one.
+std::vector<int> chain_to(const tinygltf::Model& model, int node) {
+  std::map<int, int> parent;
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    for (const int child : model.nodes[i].children) parent.emplace(child, static_cast<int>(i));
+  }
+  std::vector<int> chain{node};
+  // visit_nodes has refused cycles.
+  for (auto above = parent.find(node); above != parent.end(); above = parent.find(above->second)) {
+    chain.push_back(above->second);
+  }
+  std::reverse(chain.begin(), chain.end());
+  return chain;
+}
+
+/// The node of a camera, by the names that add_gltf_cameras gives.
+std::optional<int> camera_node(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
+                               const std::string& name) {
+  for (const NodeVisit& visit : visits) {
+    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(visit.node)];
+    if (node.camera < 0 || static_cast<std::size_t>(node.camera) >= model.cameras.size()) continue;
+    const std::string& camera = model.cameras[static_cast<std::size_t>(node.camera)].name;
+    const bool unnamed = node.name.empty() && !camera.empty();
+    if ((unnamed ? camera : node_name(model, visit.node)) == name) return visit.node;
+  }
+  return std::nullopt;
+}
+
+class AnimationReader {
+ public:
+  AnimationReader(const tinygltf::Model& model, const reading::ImportContext& context)
+      : model_(model), context_(context), accessors_(model, context) {}
+
+  /// The channels of an animation that move nodes of the chain.
+  std::vector<Channel> channels(const tinygltf::Animation& animation,
+                                const std::vector<int>& chain) const {
+    std::vector<Channel> result;
+    for (const tinygltf::AnimationChannel& channel : animation.channels) {
+      if (std::find(chain.begin(), chain.end(), channel.target_node) == chain.end()) continue;
+      const std::string& path = channel.target_path;
+      if (path != "translation" && path != "rotation" && path != "scale") continue;
+      result.push_back(read(animation, channel));
+    }
+    return result;
+  }
+
+ private:
+  Channel read(const tinygltf::Animation& animation,
+               const tinygltf::AnimationChannel& source) const {
+    const std::string use = fmt::format("{} of animation '{}'", source.target_path, animation.name);
+    if (source.sampler < 0 ||
+        static_cast<std::size_t>(source.sampler) >= animation.samplers.size()) {
+      throw context_.error(
+          fmt::format("{}: there is no sampler {}; export it again", use, source.sampler));
+    }
+    const tinygltf::AnimationSampler& sampler =
+        animation.samplers[static_cast<std::size_t>(source.sampler)];
+    Channel channel{source.target_node,
+                    source.target_path,
+                    sampler.interpolation,
+                    components_of(source.target_path),
+                    {},
+                    {}};
+    if (channel.interpolation.empty()) channel.interpolation = "LINEAR";
+    const std::vector<float> times = accessors_.floats(sampler.input, 1, "times of " + use);
+    channel.times.assign(times.begin(), times.end());
+    channel.values = accessors_.floats(sampler.output, channel.components, use);
+    const std::size_t per_key = channel.interpolation == "CUBICSPLINE" ? 3 : 1;
+    const bool ascending = std::adjacent_find(channel.times.begin(), channel.times.end(),
+                                              std::greater_equal<>()) == channel.times.end();
+    if (channel.times.empty() || !ascending ||
+        channel.values.size() !=
+            per_key * channel.times.size() * static_cast<std::size_t>(channel.components)) {
+      throw context_.error(fmt::format(
+          "{}: times do not ascend, or are not as many as values; export it again", use));
+    }
+    const auto finite = [](auto value) { return std::isfinite(value); };
+    if (!std::all_of(channel.times.begin(), channel.times.end(), finite) ||
+        !std::all_of(channel.values.begin(), channel.values.end(), finite)) {
+      throw context_.error(fmt::format("{}: has NaN or infinite values; export it again", use));
+    }
+    return channel;
+  }
+
+  const tinygltf::Model& model_;
+  const reading::ImportContext& context_;
+  AccessorReader accessors_;
+};
+
+/// The nodes of the chain, with what moves them.
+struct AnimatedChain {
+  std::vector<tinygltf::Node> nodes;
+  std::vector<int> numbers;  ///< in the file
+  std::vector<Channel> channels;
+
+  glm::dmat4 world(double time) const {
+    glm::dmat4 result(1.0);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      tinygltf::Node moved = nodes[i];
+      for (const Channel& channel : channels) {
+        if (channel.node != numbers[i]) continue;
+        const glm::dvec4 v = channel.at(time);
+        std::vector<double>& property = channel.path == "translation" ? moved.translation
+                                        : channel.path == "rotation"  ? moved.rotation
+                                                                      : moved.scale;
+        property.assign(&v[0], &v[0] + channel.components);
+        moved.matrix.clear();  // the specification forbids it on animated nodes
+      }
+      result *= local_transform(moved);
+    }
+    return result;
+  }
+};
+
+reading::CameraMotion motion_of(AnimatedChain chain, const Camera& base) {
+  double begin = HUGE_VAL, end = -HUGE_VAL;
+  for (const Channel& channel : chain.channels) {
+    begin = std::min(begin, channel.times.front());
+    end = std::max(end, channel.times.back());
+  }
+  auto shared = std::make_shared<const AnimatedChain>(std::move(chain));
+  return {begin, end, [shared, base](double time) {
+            const glm::dmat4 world = shared->world(time);
+            const glm::dvec3 position(world[3]);
+            Camera camera =
+                Camera::look_at(position, position - glm::normalize(glm::dvec3(world[2])),
+                                glm::normalize(glm::dvec3(world[1])), base.vertical_field_of_view);
+            camera.name = base.name;
+            camera.aspect_ratio = base.aspect_ratio;
+            return camera;
+          }};
+}
+
+bool is_chosen(const tinygltf::Animation& animation, std::size_t index,
+               const std::string& selector) {
+  return selector.empty() || animation.name == selector || std::to_string(index) == selector;
+}
+
+}  // namespace
+
+reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
+                                            const SceneLoadOptions& options, const Camera& camera,
+                                            const std::string& animation) {
+  Scene scene;
+  scene.source = file;
+  files::SceneFolder folder(file, options.allow_outside);
+  files::Warnings warnings;
+  reading::AreaLights area_lights(scene);
+  reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  if (file.extension() != ".gltf" && file.extension() != ".glb") {
+    throw context.error("only glTF files have animations; describe the path in a file of its own");
+  }
+  try {
+    const tinygltf::Model model = read_gltf(context);
+    const auto node = camera_node(model, visit_nodes(model, context), camera.name);
+    if (!node) {
+      throw context.error(fmt::format("camera '{}' is no node of the file", camera.name));
+    }
+    AnimatedChain chain;
+    chain.numbers = chain_to(model, *node);
+    for (const int number : chain.numbers) {
+      chain.nodes.push_back(model.nodes[static_cast<std::size_t>(number)]);
+    }
+    const AnimationReader reader(model, context);
+    for (std::size_t i = 0; i < model.animations.size() && chain.channels.empty(); ++i) {
+      if (!is_chosen(model.animations[i], i, animation)) continue;
+      chain.channels = reader.channels(model.animations[i], chain.numbers);
+    }
+    if (chain.channels.empty()) {
+      throw context.error(
+          fmt::format("no animation {}moves camera '{}'; describe the path in a file of its own",
+                      animation.empty() ? "" : "'" + animation + "' ", camera.name));
+    }
+    return motion_of(std::move(chain), camera);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
   }
 }
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {
@@ -304,7 +304,7 @@ class JsonCheck {
     return true;
   }
 
-  /// Of the elements of an array of the outermost object.
+  /// Checks the number of elements of an array of the outermost object.
   bool check_count() {
     const std::string& array = levels_.front().key;
     const std::uint64_t most = array == "nodes"       ? limits::max_nodes

@@ -18,8 +18,9 @@ tinygltf::Model read_gltf(reading::ImportContext& context);
 /// InputError naming one that the file requires, with the remedy.
 void check_extensions(const tinygltf::Model& model, reading::ImportContext& context);
 
-/// The same for a file that could not be parsed, often because of what an extension left out of it
-/// (buffers without data, ...). Does nothing where its JSON names no such extension.
+/// Errors as of check_extensions for a file that could not be parsed, often because of what an
+/// extension left out of it (buffers without data, ...). Does nothing where its JSON names no such
+/// extension.
 void check_required_extensions(std::string_view json, const reading::ImportContext& context);
 
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.

@@ -4,18 +4,195 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <unordered_set>
+#include <vector>
 
+#include "files/scene_files.hpp"
 #include "gltf/document.hpp"
-#include "gltf/light_traits.hpp"
-#include "gltf/profiles.hpp"
 #include "photile/limits.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "photometry/photometric_file.hpp"
 #include "scene/light_emission.hpp"
+#include "scene/light_names.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::gltf {
+
 namespace {
+
+/// The number `key`, or 0 where it is absent; outside [lowest, highest] 0 with a warning.
+double number_within(const tinygltf::Value& extras, const char* key, double lowest, double highest,
+                     const std::string& name, files::Warnings& warnings) {
+  if (!extras.Has(key)) return 0;
+  const double value = number_member(extras, key, -1.0);
+  if (value >= lowest && value <= highest) return value;
+  warnings.add("node", name,
+               fmt::format("{} is no number from {} to {}; ignored", key, lowest, highest));
+  return 0;
+}
+
+}  // namespace
+
+reading::LightTraits light_traits(const tinygltf::Value& extras, const std::string& name,
+                                  files::Warnings& warnings) {
+  constexpr double least_lumens = 1e-12, most_lumens = 1e18;
+  return {string_member(extras, "photile_group"),
+          number_within(extras, "photile_lumens", least_lumens, most_lumens, name, warnings),
+          number_within(extras, "photile_kelvin", limits::min_color_temperature,
+                        limits::max_color_temperature, name, warnings)};
+}
+
+namespace {
+
+/// The name, or one with a number after it, that no group has.
+std::string unused(const std::string& name, std::unordered_set<std::string>& groups) {
+  std::string result = scene::clean_light_name(name, limits::max_light_name_bytes);
+  for (int number = 2; !groups.insert(result).second; ++number) {
+    const std::string suffix = fmt::format("_{}", number);
+    result = scene::clean_light_name(name, limits::max_light_name_bytes - suffix.size()) + suffix;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string lamp_of(const tinygltf::Node& node, const std::string& extension) {
+  const tinygltf::Value* found = find_extension(node.extensions, extension.c_str());
+  if (found == nullptr) return "";
+  return fmt::format("{} {:g}", extension, number_member(*found, "light", -1.0));
+}
+
+void group_instances(std::vector<Light>& lights, std::span<const reading::LightSource> sources) {
+  std::unordered_set<std::string> groups;
+  std::map<reading::LightSource::LampKey, std::vector<std::size_t>> instances;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (!lights[i].group.empty()) {
+      groups.insert(scene::clean_light_name(lights[i].group, limits::max_light_name_bytes));
+    } else if (!sources[i].lamp.empty()) {
+      instances[sources[i].lamp_key()].push_back(i);
+    }
+  }
+  for (const auto& [lamp, members] : instances) {
+    if (members.size() < 2) continue;
+    const std::string group = unused(lights[members.front()].name, groups);
+    for (const std::size_t i : members) lights[i].group = group;
+  }
+}
+
+namespace {
+
+constexpr const char* ies_extension = "EXT_lights_ies";
+constexpr const char* ies_extra = "photile_ies";
+
+/// The content of a data: URI in base64, whatever its media type. tinygltf knows a few types only.
+std::vector<unsigned char> data_uri_content(const std::string& uri) {
+  const std::size_t comma = uri.find(',');
+  std::vector<unsigned char> bytes;
+  std::string type;
+  if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos ||
+      !tinygltf::DecodeDataURI(
+          &bytes, type, "data:application/octet-stream;base64" + uri.substr(comma), 0, false)) {
+    throw files::ResourceError("a data: URI that is not in base64");
+  }
+  return bytes;
+}
+
+}  // namespace
+
+bool has_profile(const tinygltf::Node& node) {
+  return !string_member(node.extras, ies_extra).empty();
+}
+
+namespace {
+
+/// What a node says about the intensities of its light.
+struct NodeProfile {
+  std::uint32_t distribution;    ///< into Scene::distributions
+  double multiplier = 1;         ///< of the intensities
+  glm::dvec3 color{1.0};         ///< linear RGB; multiplies the intensities, too
+  bool colored_by_node = false;  ///< `color` is the node's own, not that of another light there
+};
+
+/// Reads each photometric file once.
+class GltfProfiles {
+ public:
+  /// References are kept.
+  GltfProfiles(const tinygltf::Model& model, const AccessorReader& accessors,
+               reading::ImportContext& context)
+      : model_(model), accessors_(accessors), context_(context) {}
+
+  /// The profile of a node's light, or nothing. Errors: InputError for a file that is missing or
+  /// malformed, or a light that does not exist.
+  std::optional<NodeProfile> of(int node);
+
+ private:
+  std::uint32_t from_extension(double light, const std::string& node);
+  template <class Read>
+  std::uint32_t find_or_read(const std::string& key, const Read& read);
+
+  const tinygltf::Model& model_;
+  const AccessorReader& accessors_;
+  reading::ImportContext& context_;
+  std::map<std::string, std::uint32_t> index_;
+};
+
+template <class Read>
+std::uint32_t GltfProfiles::find_or_read(const std::string& key, const Read& read) {
+  if (const auto found = index_.find(key); found != index_.end()) return found->second;
+  const auto index = static_cast<std::uint32_t>(context_.scene.distributions.size());
+  context_.scene.distributions.push_back(
+      photometry::read_photometry(key, read(), context_.warnings));
+  return index_.emplace(key, index).first->second;
+}
+
+std::uint32_t GltfProfiles::from_extension(double light, const std::string& node) {
+  const tinygltf::Value* extension = find_extension(model_.extensions, ies_extension);
+  const tinygltf::Value lights = extension != nullptr && extension->Has("lights")
+                                     ? extension->Get("lights")
+                                     : tinygltf::Value();
+  const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
+  if (!(light >= 0.0 && light < static_cast<double>(count))) {
+    throw files::ResourceError(
+        fmt::format("node '{}': there is no light {} of {}", node, light, ies_extension));
+  }
+  const tinygltf::Value& profile = lights.Get(static_cast<int>(light));
+  const std::string uri = string_member(profile, "uri");
+  if (uri.empty()) {
+    const std::string key = fmt::format("light {} of {}", light, ies_extension);
+    const auto view = integer_member(profile, "bufferView", -1);
+    return find_or_read(key, [&] { return accessors_.view(view, key); });
+  }
+  if (uri.starts_with("data:")) {
+    return find_or_read(fmt::format("light {} of {}", light, ies_extension),
+                        [&] { return data_uri_content(uri); });
+  }
+  const std::string file = decoded_uri(uri);
+  return find_or_read(file, [&] { return context_.folder.read(file); });
+}
+
+std::optional<NodeProfile> GltfProfiles::of(int number) {
+  const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(number)];
+  try {
+    if (const auto* extension = find_extension(node.extensions, ies_extension)) {
+      NodeProfile profile;
+      profile.distribution =
+          from_extension(number_member(*extension, "light", -1.0), node_name(model_, number));
+      profile.multiplier = number_member(*extension, "multiplier", 1.0);
+      profile.color = glm::clamp(vector_member(*extension, "color", glm::dvec3(1.0)), 0.0, 1.0);
+      profile.colored_by_node = true;
+      return profile;
+    }
+    const std::string file = string_member(node.extras, ies_extra);
+    if (file.empty()) return std::nullopt;
+    NodeProfile profile;
+    profile.distribution = find_or_read(file, [&] { return context_.folder.read(file); });
+    return profile;
+  } catch (const files::ResourceError& error) {
+    throw context_.error(error.what());
+  }
+}
 
 void set_cone(const tinygltf::SpotLight& spot, Light& light, files::Warnings& warnings) {
   constexpr double largest = std::numbers::pi / 2.0;
@@ -142,7 +319,7 @@ class LightImporter {
     if (!std::isfinite(light.power) || light.power <= 0.0 || !scene::within_limit(position) ||
         !set_orientation(visit.world, light)) {
       context_.warnings.add("light", light.name,
-                            "emits nothing or has no place within reach; dropped");
+                            "emits nothing or has no position within reach; dropped");
       return;
     }
     light.position = glm::vec3(position);

@@ -5,20 +5,174 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "gltf/document.hpp"
-#include "gltf/light_traits.hpp"
+#include "gltf/lights.hpp"
 #include "gltf/panels.hpp"
-#include "gltf/primitives.hpp"
-#include "gltf/vertices.hpp"
-#include "reading/instance_recorder.hpp"
-#include "reading/plain_material.hpp"
+#include "reading/import_context.hpp"
+#include "reading/triangles.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile::gltf {
+
 namespace {
+
+/// Whether a primitive's mode makes triangles.
+bool has_triangles(int mode) {
+  return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+         mode == TINYGLTF_MODE_TRIANGLE_FAN;
+}
+
+/// Corner numbers of the triangles that a primitive's mode makes of its index list.
+std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32_t>& indices,
+                                                   int mode) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  if (indices.size() < 3) return triangles;
+  const std::size_t count = indices.size() - 2;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    for (std::size_t i = 0; i < count; i += 3) {
+      triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    }
+  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t odd = i % 2;  // every second triangle of a strip is wound the other way
+      triangles.push_back({indices[i], indices[i + 1 + odd], indices[i + 2 - odd]});
+    }
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
+    }
+  }
+  return triangles;
+}
+
+/// The index list of a primitive of so many corners; 0, 1, 2 ... where it has none. `use` names the
+/// mesh in errors. Errors: InputError for an index beyond the corners.
+std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
+                                        std::size_t corner_count, const std::string& use,
+                                        const AccessorReader& accessors,
+                                        const reading::ImportContext& context) {
+  if (primitive.indices < 0) {
+    std::vector<std::uint32_t> indices(corner_count);
+    std::iota(indices.begin(), indices.end(), 0u);
+    return indices;
+  }
+  std::vector<std::uint32_t> indices = accessors.indices(primitive.indices, "indices of " + use);
+  for (const std::uint32_t index : indices) {
+    if (index >= corner_count) {
+      throw context.error(
+          fmt::format("{}: index {} of {} vertices; export it again", use, index, corner_count));
+    }
+  }
+  return indices;
+}
+
+}  // namespace
+
+int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+bool is_usable(const tinygltf::Primitive& primitive, const std::string& use,
+               const AccessorReader& accessors) {
+  const int position = attribute(primitive, "POSITION");
+  return has_triangles(primitive.mode) && position >= 0 &&
+         accessors.has_data(position, "POSITION of " + use);
+}
+
+std::string name_of_mesh(const tinygltf::Model& model, int mesh) {
+  const std::string& name = model.meshes[static_cast<std::size_t>(mesh)].name;
+  return name.empty() ? fmt::format("mesh {}", mesh) : name;
+}
+
+reading::LocalMesh read_local_mesh(const tinygltf::Model& model, int mesh,
+                                   const AccessorReader& accessors,
+                                   const reading::ImportContext& context) {
+  const std::string use = "mesh '" + name_of_mesh(model, mesh) + "'";
+  reading::LocalMesh local;
+  for (const tinygltf::Primitive& primitive :
+       model.meshes[static_cast<std::size_t>(mesh)].primitives) {
+    if (!is_usable(primitive, use, accessors)) continue;
+    const auto first = static_cast<std::uint32_t>(local.positions.size());
+    const std::vector<float> positions =
+        accessors.floats(attribute(primitive, "POSITION"), 3, "POSITION of " + use);
+    for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
+      local.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
+    }
+    const std::vector<std::uint32_t> indices =
+        read_indices(primitive, positions.size() / 3, use, accessors, context);
+    for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
+      local.triangles.push_back(first + glm::uvec3(a, b, c));
+    }
+  }
+  return local;
+}
+
+namespace {
+
+glm::dvec3 vector_at(const std::vector<float>& values, std::size_t first) {
+  return {values[first], values[first + 1], values[first + 2]};
+}
+
+glm::dvec2 mapped(const std::vector<float>& uv, std::size_t vertex, const TextureCoordinates& map) {
+  return uv.empty() ? glm::dvec2(0.0) : map(glm::dvec2(uv[2 * vertex], uv[2 * vertex + 1]));
+}
+
+/// The cofactor matrix is the inverse transpose times the determinant: it needs no division, and
+/// only the direction of a normal counts. MeshBuilder mends the sign of mirrored ones.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+/// The attributes as the file has them, one after another: 3 floats a vertex, 4 of tangents, 2 of
+/// coordinates. All but the positions are empty where they are absent or not wanted.
+struct VertexAttributes {
+  std::vector<float> positions, normals, tangents, uv, emission_uv;
+};
+
+/// Each vertex is placed when a triangle asks for it: all of them at once would take several times
+/// the memory of the file, which takes longer to get than to fill.
+class PlacedVertices {
+ public:
+  /// `coordinates` is kept.
+  PlacedVertices(VertexAttributes attributes, const MaterialCoordinates& coordinates,
+                 const glm::dmat4& world);
+
+  std::size_t size() const { return attributes_.positions.size() / 3; }
+  scene::Corner operator[](std::uint32_t vertex) const;
+
+ private:
+  VertexAttributes attributes_;
+  const MaterialCoordinates& coordinates_;
+  glm::dmat4 world_;
+  glm::dmat3 normal_matrix_;
+};
+
+PlacedVertices::PlacedVertices(VertexAttributes attributes, const MaterialCoordinates& coordinates,
+                               const glm::dmat4& world)
+    : attributes_(std::move(attributes)),
+      coordinates_(coordinates),
+      world_(world),
+      normal_matrix_(cofactors(glm::dmat3(world))) {}
+
+scene::Corner PlacedVertices::operator[](std::uint32_t vertex) const {
+  const std::size_t i = vertex;
+  const auto& [positions, normals, tangents, uv, emission_uv] = attributes_;
+  scene::Corner corner;
+  corner.position = glm::dvec3(world_ * glm::dvec4(vector_at(positions, 3 * i), 1.0));
+  corner.uv = mapped(uv, i, coordinates_.surface);
+  corner.emission_uv = mapped(emission_uv, i, coordinates_.emission);
+  if (!normals.empty()) corner.normal = normal_matrix_ * vector_at(normals, 3 * i);
+  if (tangents.empty()) return corner;
+  corner.tangent = glm::dmat3(world_) * vector_at(tangents, 4 * i);
+  // The cofactors of a mirrored node turn the normal round, and with it the bitangent.
+  corner.handedness = double{tangents[4 * i + 3]};
+  return corner;
+}
 
 bool has_normal_map(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "gltf/document.hpp"
+#include "gltf/lights.hpp"
 #include "gltf/panels.hpp"
-#include "gltf/profiles.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {
@@ -66,7 +66,7 @@ class VisitCounter {
  public:
   explicit VisitCounter(const tinygltf::Model& model) : model_(model), below_(model.nodes.size()) {}
 
-  /// Of the node and all below it, at most one more than the limit. What counts as nothing here
+  /// Counts the node and all below it, at most one more than the limit. What counts as nothing here
   /// (cycles, deep trees, missing nodes) ends the walk, which comes by in the same order.
   std::uint64_t count(int node, int depth = 0) {
     if (node < 0 || static_cast<std::size_t>(node) >= below_.size()) return 0;
@@ -94,7 +94,7 @@ void check_visit_count(const tinygltf::Model& model, const std::vector<int>& roo
   for (const int root : roots) visits += counter.count(root);
   if (visits > model.nodes.size() + limits::max_repeated_visits) {
     throw context.error(fmt::format(
-        "{} nodes with several parents are at more than {} places; give each place a node",
+        "{} nodes with several parents have more than {} instances; give each instance a node",
         model.nodes.size(), model.nodes.size() + limits::max_repeated_visits));
   }
 }

@@ -11,7 +11,7 @@
 #include "gltf/document.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photometry/photometric_text.hpp"
+#include "photometry/photometric_file.hpp"
 #include "scene/light_names.hpp"
 
 namespace photile::gltf {

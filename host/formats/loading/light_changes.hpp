@@ -1,12 +1,17 @@
-// What the user changes in the lights of a scene while it is loaded.
+// What the options change in the lights and materials of a scene while it is loaded.
 #pragma once
 
 #include <span>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {
+
+/// Sets Light::group of the lights that each grouping matches, one grouping after the other. Names
+/// of lights must be final. Errors: UsageError when one matches no light (the message lists those
+/// there are), or when a group bears the name of a light outside it.
+void group_lights(Scene& scene, std::span<const LightGrouping> groupings);
 
 /// Reads a photometric file that the user names. Errors: InputError for one that is missing or
 /// malformed.
@@ -14,7 +19,7 @@ IntensityDistribution read_user_photometry(const std::filesystem::path& file,
                                            files::Warnings& warnings);
 
 /// Gives lights photometric files: each becomes a point light with the file's flux, and keeps its
-/// place, direction and colour. Names of lights must be final.
+/// position, direction and colour. Names of lights must be final.
 /// Errors: UsageError for a light that is not there, or neither point nor spot; InputError for a
 /// file that is missing or malformed.
 void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,

@@ -12,7 +12,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photometry/photometric_text.hpp"
+#include "photometry/photometric_file.hpp"
 #include "weather/sky_patches.hpp"
 
 namespace photile {

@@ -12,19 +12,17 @@
 #include <string>
 #include <utility>
 
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "common/json_object.hpp"
-#include "common/output_file.hpp"
-#include "files/scene_folder.hpp"
+#include "files/scene_files.hpp"
 #include "gltf/panels.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
-#include "scene/default_camera.hpp"
+#include "scene/camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
 
@@ -35,7 +33,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double below_ceiling = 0.005;  // metres
-/// Of a lamp's flux: what shines to the other side of its opening.
+/// The least fraction of a lamp's flux that counts as light to the other side of its opening.
 constexpr double least_uplight = 1e-3;
 constexpr int most_in_a_row = 1'000;
 
@@ -126,7 +124,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
 glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene,
                        Shared& shared) {
   if (!entry.contains("position") || entry["position"] != "ceiling") {
-    return place_in_scene(scene, object.vector("position"));
+    return position_in_scene(scene, object.vector("position"));
   }
   if (!shared.ceiling) shared.ceiling = middle_of_ceiling(scene);
   const auto& middle = *shared.ceiling;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {
@@ -32,7 +32,7 @@ struct LuminaireList {
 
 /// Errors: those of parse and read_input_text.
 LuminaireList read_luminaires(const std::filesystem::path& file);
-/// The same of a file that the run may write; one that does not exist holds no entry yet.
+/// Reads a list from a file that the run may write; one that does not exist holds no entry yet.
 LuminaireList read_own_luminaires(const std::filesystem::path& file);
 
 /// Through a temporary name and a rename. Errors: OutputError; the file is then as it was.

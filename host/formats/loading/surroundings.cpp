@@ -1,19 +1,187 @@
+#include "loading/surroundings.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 #include <vector>
 
-#include "loading/finishing.hpp"
-#include "loading/sky_situation.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "pictures/texture_decoder.hpp"
+#include "pictures/textures.hpp"
 #include "scene/light_emission.hpp"
-#include "weather/sky_lights.hpp"
+#include "weather/perez_sky.hpp"
+#include "weather/sky_patches.hpp"
+#include "weather/weather_file.hpp"
 
 namespace photile::loading {
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+constexpr int even_day =
+    80;  ///< of a sky without a date: the Earth at its mean distance, or nearly
+
+/// The options with the weather of their hour: its site, and its sky where none is given.
+SceneLoadOptions with_weather(SceneLoadOptions options) {
+  SkySituation& situation = options.situation;
+  if (situation.weather.empty()) return options;
+  if (!situation.time) {
+    throw UsageError("--weather says nothing without an hour; give --time, too");
+  }
+  const weather::WeatherYear year = weather::read_weather(situation.weather);
+  if (!situation.site) situation.site = year.site;
+  if (!options.sky) {
+    const weather::SkyIrradiance& irradiance = weather::hour_at(year, *situation.time).irradiance;
+    options.sky = Sky{SkyKind::perez, 0, irradiance.direct_normal, irradiance.diffuse_horizontal};
+  }
+  return options;
+}
+
+/// The sun as the time places it, without light. Nothing where no time is given.
+std::optional<Sun> sun_by_time(const SkySituation& situation) {
+  if (!situation.time && !situation.site) return std::nullopt;
+  if (!situation.time) throw UsageError("--site says nothing without a time; give --time, too");
+  if (!situation.site) {
+    throw UsageError("--time says nothing without a place; give --site or --weather, too");
+  }
+  const weather::SunPosition position = weather::sun_position(*situation.site, *situation.time);
+  return Sun{position.azimuth * degrees, position.elevation * degrees, 0};
+}
+
+/// Adds the sky and the sun of its irradiances.
+void add_perez(const Sky& asked, const SkySituation& situation, const std::optional<Sun>& place,
+               SkySituationLights& lights) {
+  if (!place) {
+    throw UsageError("a Perez sky needs the sun's position; give --sun, or --site and --time");
+  }
+  const int day = situation.time ? weather::day_of_year(*situation.time) : even_day;
+  SkyLight sky{SkyKind::perez};
+  sky.perez.emplace(place->elevation_degrees / degrees,
+                    weather::SkyIrradiance{asked.direct_normal, asked.diffuse_horizontal}, day);
+  sky.illuminance = sky.perez->diffuse_illuminance();
+  Sun shown = *place;
+  shown.elevation_degrees =
+      90 - weather::zenith_of_sun(place->elevation_degrees / degrees) * degrees;
+  sky.to_sun = direction_to(shown);
+  if (sky.illuminance > 0) lights.sky = sky;
+  const double direct = sky.perez->direct_illuminance();
+  if (!lights.sun && direct > 0 && place->elevation_degrees > 0) {
+    lights.sun = *place;
+    lights.sun->illuminance = direct;
+  }
+}
+
+}  // namespace
+
+SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
+  const SceneLoadOptions options = with_weather(given);
+  const double north = options.situation.north_degrees;
+  std::optional<Sun> place = sun_by_time(options.situation);
+  SkySituationLights lights;
+  if (options.sun) {
+    if (options.sun->placed_by_time && !place)
+      throw UsageError("--sun with its lux alone needs --site and --time");
+    if (!options.sun->placed_by_time && place)
+      throw UsageError(
+          "--sun AZIMUTH,ELEVATION,LUX and --time both place the sun; give its lux "
+          "alone, or leave out --time");
+    lights.sun = options.sun;
+    if (place) {
+      lights.sun->azimuth_degrees = place->azimuth_degrees;
+      lights.sun->elevation_degrees = place->elevation_degrees;
+    }
+    lights.sun->azimuth_degrees += north;
+    place = lights.sun;
+    if (options.sun->placed_by_time && !(place->elevation_degrees > 0)) lights.sun.reset();
+  } else if (place) {
+    place->azimuth_degrees += north;
+  }
+  if (!options.sky) return lights;
+  if (options.sky->kind == SkyKind::perez) {
+    add_perez(*options.sky, options.situation, place, lights);
+    return lights;
+  }
+  SkyLight sky{options.sky->kind, options.sky->illuminance};
+  sky.patches = options.sky->patches;
+  sky.north = north / degrees;
+  if (sky.kind == SkyKind::clear) {
+    if (!place || !(place->elevation_degrees > 0.0)) {
+      throw UsageError("a clear sky needs a sun above the horizon; give one, too");
+    }
+    sky.to_sun = direction_to(*place);
+  }
+  lights.sky = sky;
+  return lights;
+}
+
+namespace {
+
+using std::numbers::pi;
+constexpr int rows = 512;  // a third of a degree each
+constexpr int columns = 1024;
+/// Columns of a map that does not depend on the azimuth: portals show some of them more than
+/// others.
+constexpr int even_columns = 64;
+
+/// Luminance of a clear sky over a factor that is the same everywhere: ISO 15469, type 12.
+double clear_luminance(const glm::dvec3& direction, const glm::dvec3& to_sun) {
+  constexpr double a = -1, b = -0.32, c = 10, d = -3, e = 0.45;
+  const double cosine = std::clamp(glm::dot(direction, to_sun), -1.0, 1.0);
+  const double from_sun = std::acos(cosine);
+  const double gradation = 1 + a * std::exp(b / std::max(direction.y, 1e-9));
+  const double indicatrix =
+      1 + c * (std::exp(d * from_sun) - std::exp(d * pi / 2)) + e * cosine * cosine;
+  return gradation * indicatrix;
+}
+
+/// Sine of the elevation of the upper border of a row.
+double sine_above(int row) { return std::cos(pi * row / rows); }
+
+}  // namespace
+
+glm::dvec3 direction_to(const Sun& sun) {
+  const double azimuth = sun.azimuth_degrees * pi / 180,
+               elevation = sun.elevation_degrees * pi / 180;
+  return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+          -std::cos(elevation) * std::cos(azimuth)};
+}
+
+EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_sun,
+                       const weather::PerezSky* perez) {
+  const bool by_azimuth = kind == SkyKind::clear || kind == SkyKind::perez;
+  const int width = by_azimuth ? columns : even_columns;
+  const EnvironmentMap places("sky", width, rows,
+                              std::vector<glm::vec3>(static_cast<std::size_t>(width * rows)));
+  std::vector<double> texels;
+  double horizontal = 0;  // illuminance
+  for (int row = 0; row < rows / 2; ++row) {
+    const double above = sine_above(row), below = sine_above(row + 1);
+    for (int column = 0; column < width; ++column) {
+      double value = 1;
+      // The mean over the row, exactly, so that the closed form of the illuminance holds.
+      if (kind == SkyKind::overcast) value = 1 + above + below;
+      if (kind == SkyKind::perez) {
+        const glm::dvec3 direction = places.direction_at(column + 0.5, row, 0.5);
+        value = double{perez->relative_luminance(static_cast<float>(direction.y),
+                                                 static_cast<float>(glm::dot(direction, to_sun)))};
+      }
+      if (kind == SkyKind::clear)
+        value = clear_luminance(places.direction_at(column + 0.5, row, 0.5), to_sun);
+      texels.push_back(value);
+      horizontal += value * pi / width * (above * above - below * below);
+    }
+  }
+  if (!(horizontal > 0)) return sky_map(SkyKind::uniform, illuminance, to_sun);
+  std::vector<glm::vec3> scaled(static_cast<std::size_t>(width * rows), glm::vec3(0.0f));
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    scaled[i] = glm::vec3(static_cast<float>(texels[i] * illuminance / horizontal));
+  }
+  return {"sky", width, rows, std::move(scaled)};
+}
+
 namespace {
 
 constexpr const char* fewer_lux = "give fewer lux";
@@ -24,7 +192,8 @@ void check_lux(const char* light, double lux) {
                                limits::min_illuminance, limits::max_illuminance));
 }
 
-/// Of the light that was added last; `what` has said too much of it.
+/// Refuses the light that was added last where its power is beyond the limit; `what` names its
+/// origin.
 template <class Refusal>
 void check_flux(const Scene& scene, const std::string& what, const char* remedy) {
   const Light& light = scene.lights.back();
@@ -102,6 +271,69 @@ void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   const SkySituationLights found = sun_and_sky(options);
   if (found.sun) add_sun(*found.sun, options, scene);
   if (found.sky) add_sky(*found.sky, options, scene);
+}
+
+namespace {
+
+weather::SkyIrradiance irradiance_of(SkySituation& situation, const std::optional<Sky>& sky) {
+  if (!situation.weather.empty()) {
+    const weather::WeatherYear year = weather::read_weather(situation.weather);
+    if (!situation.site) situation.site = year.site;
+    if (!sky) return weather::hour_at(year, *situation.time).irradiance;
+  }
+  if (!situation.site) throw UsageError("--time needs a place; give --site or --weather");
+  if (!sky) {
+    const weather::SunPosition sun = weather::sun_position(*situation.site, *situation.time);
+    return weather::clear_sky(sun.elevation, weather::day_of_year(*situation.time));
+  }
+  if (sky->kind != SkyKind::perez)
+    throw UsageError("--sky: patches take perez=DIRECT,DIFFUSE, such as perez=600,120");
+  return {sky->direct_normal, sky->diffuse_horizontal};
+}
+
+}  // namespace
+
+std::vector<weather::SkyPatch> patches_of(const LightMix& mix) {
+  std::size_t count = 0;
+  const auto has = [&](const std::string& name) {
+    return std::any_of(mix.lights.begin(), mix.lights.end(),
+                       [&](const MixedLight& light) { return light.name == name; });
+  };
+  while (has(weather::patch_name(count))) ++count;
+  for (const int known : weather::patch_counts) {
+    if (count == static_cast<std::size_t>(known)) return weather::sky_patches(known);
+  }
+  return {};
+}
+
+std::string sky_light_name(std::size_t light, std::size_t patches) {
+  return light < patches ? weather::patch_name(light) : "ground";
+}
+
+std::vector<LightChange> sky_changes(const LightMix& mix, const SkySituation& asked,
+                                     const std::optional<Sky>& given) {
+  if (!asked.time) throw UsageError("--site, --weather and --sky need an hour; give --time");
+  const std::vector<weather::SkyPatch> patches = patches_of(mix);
+  if (patches.empty()) {
+    throw UsageError(
+        "--time: the picture has no patches of a sky; render it with --sky patches=145");
+  }
+  SkySituation situation = asked;
+  const weather::SkyIrradiance irradiance = irradiance_of(situation, given);
+  const std::vector<double> luminance =
+      weather::sky_luminances(patches, weather::sun_position(*situation.site, *situation.time),
+                              irradiance, weather::day_of_year(*situation.time));
+  std::vector<LightChange> changes;
+  for (std::size_t i = 0; i < luminance.size(); ++i) {
+    const std::string name = sky_light_name(i, patches.size());
+    for (const MixedLight& light : mix.lights) {
+      if (light.name != name) continue;
+      const double scale = light.unit == PowerUnit::lumen ? 1.0 : 1.0 / mix.lumen_per_watt;
+      const double factor = luminance[i] * scale;
+      changes.push_back({name, factor > 0 ? fmt::format("x{:.9g}", factor) : "off"});
+    }
+  }
+  return changes;
 }
 
 }  // namespace photile::loading

@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "reading/import_context.hpp"
@@ -29,8 +31,35 @@ struct ObjFile {
   std::vector<std::string> material_names;  ///< as usemtl names them
 };
 
-/// Reads `text`, without the material libraries that it names (obj_text.hpp). Errors:
+/// Reads `text`, without the material libraries that it names (obj_reader.hpp). Errors:
 /// InputError naming the face with an impossible vertex index.
 ObjFile read_obj(std::string& text, reading::ImportContext& context);
+
+// What tinyobjloader passes over in silence: lines by their first words, and material libraries.
+
+struct ObjTextFindings {
+  /// Vertices (counted from 0) with a coordinate that is no finite number: "nan", "inf", a word.
+  /// tinyobjloader reads those as 0.
+  std::unordered_set<std::uint64_t> unreadable_vertices;
+  std::map<std::string, std::uint64_t> ignored_statements;  ///< keyword -> lines
+  bool vertex_colors = false;
+  std::vector<std::string> libraries;  ///< what follows each mtllib
+};
+
+/// Looks through OBJ text. Lines that end in a backslash are joined with the next in place, which
+/// the OBJ format asks for and tinyobjloader does not do. Errors: ResourceError when the bytes are
+/// no text.
+ObjTextFindings examine_obj_text(std::string& text);
+
+/// The materials of the libraries that mtllib statements name, from the scene's folder, in their
+/// order. A statement may name several files. Names with blanks are written with backslashes before
+/// them or, by most exporters, without: the file that the whole statement names comes first.
+///   statements   what follows each `mtllib`
+/// Libraries that cannot be read are named in a warning.
+std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
+                                                    reading::ImportContext& context);
+
+/// Fills the context's scene from its OBJ file. Errors: InputError.
+void import_obj(reading::ImportContext& context);
 
 }  // namespace photile::obj

@@ -1,14 +1,12 @@
-#include "photometry/eulumdat_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
-#include "photometry/photometric_text.hpp"
+#include "photometry/photometric_file.hpp"
 
 namespace photile::photometry {
 namespace {

@@ -1,5 +1,3 @@
-#include "photometry/ies_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
-#include "photometry/photometric_text.hpp"
+#include "photometry/photometric_file.hpp"
 
 namespace photile::photometry {
 namespace {

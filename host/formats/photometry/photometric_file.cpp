@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "common/ascii_text.hpp"
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
-#include "photometry/eulumdat_reader.hpp"
-#include "photometry/ies_reader.hpp"
 
 namespace photile::photometry {
 
@@ -28,6 +28,105 @@ IntensityDistribution read_photometry(const std::string& name, std::span<const u
     throw files::ResourceError(fmt::format(
         "photometric file '{}': {}; get it again from the maker of the lamp", name, error.what()));
   }
+}
+
+namespace {
+
+constexpr std::string_view separators = " \t\f\v,\x1A";  // old files end with Ctrl-Z
+constexpr std::size_t longest_shown = 20;
+
+/// A token as a message can show it.
+std::string shown(std::string_view token) {
+  std::string text(token.substr(0, longest_shown));
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E;
+      },
+      '?');
+  return text;
+}
+
+}  // namespace
+
+std::string_view NumberReader::token() {
+  for (; line_ < lines_.size(); ++line_, column_ = 0) {
+    const std::string_view line = lines_[line_];
+    const std::size_t first = line.find_first_not_of(separators, column_);
+    if (first == std::string_view::npos) continue;
+    column_ = std::min(line.find_first_of(separators, first), line.size());
+    return line.substr(first, column_ - first);
+  }
+  return {};
+}
+
+std::string NumberReader::place() const { return fmt::format("line {}", line_ + 1); }
+
+double NumberReader::number(const std::string& what) {
+  const std::string_view text = token();
+  if (text.empty()) throw files::ResourceError(fmt::format("the file ends before the {}", what));
+  const auto value = parse_signed(text);
+  if (!value) {
+    throw files::ResourceError(
+        fmt::format("{}: '{}' is no number, for the {}", place(), shown(text), what));
+  }
+  return *value;
+}
+
+std::size_t NumberReader::count(const std::string& what, std::uint64_t lowest,
+                                std::uint64_t highest) {
+  const double value = number(what);
+  if (value != std::floor(value) || value < static_cast<double>(lowest) ||
+      value > static_cast<double>(highest)) {
+    throw files::ResourceError(fmt::format("{}: the {} is {}, not a whole number from {} to {}",
+                                           place(), what, value, lowest, highest));
+  }
+  return static_cast<std::size_t>(value);
+}
+
+std::vector<double> NumberReader::numbers(const std::string& what, std::size_t count) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    values.push_back(number(fmt::format("{} {} of {}", what, i + 1, count)));
+  }
+  return values;
+}
+
+namespace {
+
+/// Adds the images of the planes in a mirror at the last one.
+void mirror_at_end(std::vector<MeasuredPlane>& planes) {
+  const double mirror = planes.back().azimuth;
+  for (std::size_t i = planes.size() - 1; i-- > 0;) {
+    planes.push_back({2.0 * mirror - planes[i].azimuth, planes[i].measured});
+  }
+}
+
+}  // namespace
+
+std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths) {
+  const double first = azimuths.front(), last = azimuths.back(), range = last - first;
+  if (azimuths.size() == 1) return {{0.0, 0}, {360.0, 0}};
+  std::vector<MeasuredPlane> planes;
+  double largest_step = 0;
+  for (std::size_t i = 0; i < azimuths.size(); ++i) {
+    planes.push_back({azimuths[i], i});
+    if (i > 0) largest_step = std::max(largest_step, azimuths[i] - azimuths[i - 1]);
+  }
+  if (range == 90.0 && first == 0.0) {
+    mirror_at_end(planes);
+    mirror_at_end(planes);
+  } else if (range == 180.0 && (first == 0.0 || first == 90.0)) {
+    mirror_at_end(planes);
+  } else if (range < 360.0 && range + 1.5 * largest_step >= 360.0) {
+    planes.push_back({first + 360.0, 0});
+  } else if (range != 360.0) {
+    throw files::ResourceError(
+        fmt::format("the horizontal angles run from {} to {} degrees; 0, 0 to 90, 0 to 180, 90 to "
+                    "270 and 0 to 360 are understood",
+                    first, last));
+  }
+  return planes;
 }
 
 }  // namespace photile::photometry

@@ -1,4 +1,4 @@
-// Emissive triangles, gathered to area lights.
+// Emissive triangles become area lights, and each light keeps where in its file it comes from.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,38 @@
 #include <tuple>
 #include <vector>
 
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
-#include "reading/light_source.hpp"
 
 namespace photile::reading {
+
+/// Where in its file a light comes from.
+struct LightSource {
+  enum class Kind : std::uint8_t {
+    node,         ///< KHR_lights_punctual or photometric data at a glTF node
+    surface,      ///< an emissive material
+    panel,        ///< a luminous rectangle or disc at a glTF node
+    picture,      ///< EXT_lights_image_based of the glTF scene
+    surroundings  ///< an option, not the file
+  };
+  Kind kind = Kind::surroundings;
+  std::uint32_t node = none;      ///< of the glTF file
+  std::uint32_t material = none;  ///< of a surface: into Scene::materials, and the glTF file's
+  std::string lamp = {};          ///< what the file has once for all instances; "" = just this one
+
+  /// What instances of one lamp have in common, and no other lights.
+  using LampKey = std::tuple<Kind, std::uint32_t, std::string>;
+  LampKey lamp_key() const { return {kind, material, lamp}; }
+};
+
+/// What a file says of the lights of an object beside their emission.
+struct LightTraits {
+  std::string group;      ///< "" = none
+  double lumens = 0;      ///< of the object's lights together; 0 = not given
+  double kelvin = 0;      ///< 0 = not given
+  std::string lamp = {};  ///< as LightSource::lamp
+};
 
 /// Panels count as objects of their own, after all visits of nodes.
 inline constexpr std::uint64_t first_panel_object = limits::max_node_visits;

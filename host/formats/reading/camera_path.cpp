@@ -9,9 +9,42 @@
 
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
-#include "scene/interpolation.hpp"
 
 namespace photile::reading {
+
+namespace {
+
+/// Velocity at a keyframe: that of the parabola's chord between its neighbours.
+glm::dvec3 velocity(std::span<const double> times, std::span<const glm::dvec3> values,
+                    std::size_t i) {
+  if (i == 0 || i + 1 == times.size()) return glm::dvec3(0);
+  return (values[i + 1] - values[i - 1]) / (times[i + 1] - times[i - 1]);
+}
+
+}  // namespace
+
+Between between(std::span<const double> times, double time) {
+  if (times.size() < 2 || !(time > times.front())) return {0, 0};
+  if (time >= times.back()) return {times.size() - 2, 1};
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  const auto index = static_cast<std::size_t>(after - times.begin()) - 1;
+  return {index, (time - times[index]) / (times[index + 1] - times[index])};
+}
+
+glm::dvec3 smooth(std::span<const double> times, std::span<const glm::dvec3> values, double time) {
+  if (times.size() < 2) return values.front();
+  const auto [i, share] = between(times, time);
+  const double length = times[i + 1] - times[i];
+  return hermite(values[i], length * velocity(times, values, i), values[i + 1],
+                 length * velocity(times, values, i + 1), share);
+}
+
+glm::dvec3 linear(std::span<const double> times, std::span<const glm::dvec3> values, double time) {
+  if (times.size() < 2) return values.front();
+  const auto [i, share] = between(times, time);
+  return glm::mix(values[i], values[i + 1], share);
+}
+
 namespace {
 
 using nlohmann::json;
@@ -58,21 +91,19 @@ void add(const JsonObject& keyframe, const Camera& base, Keyframes& all) {
 
 glm::dquat turned(const Keyframes& all, double time) {
   if (all.times.size() < 2) return all.orientations.front();
-  const auto [i, share] = scene::between(all.times, time);
+  const auto [i, share] = between(all.times, time);
   return glm::slerp(all.orientations[i], all.orientations[i + 1], share);
 }
 
 Camera camera_at(const Keyframes& all, const Camera& base, double time) {
   const auto value = [&](const std::vector<glm::dvec3>& values) {
-    return all.smooth ? scene::smooth(all.times, values, time)
-                      : scene::linear(all.times, values, time);
+    return all.smooth ? smooth(all.times, values, time) : linear(all.times, values, time);
   };
   const glm::dvec3 position = value(all.positions);
-  const double fov = scene::linear(all.times, all.fields_of_view, time).x;
+  const double fov = linear(all.times, all.fields_of_view, time).x;
   Camera camera;
   if (!all.targets.empty()) {
-    camera =
-        Camera::look_at(position, value(all.targets), scene::linear(all.times, all.ups, time), fov);
+    camera = Camera::look_at(position, value(all.targets), linear(all.times, all.ups, time), fov);
   } else {
     const glm::dmat3 axes = glm::mat3_cast(turned(all, time));
     camera = Camera::look_at(position, position - axes[2], axes[1], fov);

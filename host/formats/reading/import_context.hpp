@@ -2,15 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "files/scene_folder.hpp"
-#include "files/warnings.hpp"
+#include "files/scene_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
-#include "reading/light_source.hpp"
 
 namespace photile::reading {
 
@@ -35,5 +35,21 @@ inline bool has_emission_texture(const ImportContext& context) {
   return std::any_of(context.emission.begin(), context.emission.end(),
                      [](const Emission& emission) { return emission.texture != none; });
 }
+
+/// Materials as surfaces without texture coordinates have them: mid grey in place of a base-colour
+/// texture, as where its file is missing, the factors alone in place of all others, and no normal
+/// map.
+class PlainMaterials {
+ public:
+  explicit PlainMaterials(Scene& scene) : scene_(scene) {}
+
+  /// The one that stands in for `material` of the scene; it is added when it is first asked for,
+  /// and named after it.
+  std::uint32_t of(std::uint32_t material);
+
+ private:
+  Scene& scene_;
+  std::map<std::uint32_t, std::uint32_t> index_;
+};
 
 }  // namespace photile::reading

@@ -16,14 +16,12 @@
 #include <vector>
 
 #include "common/content_hash.hpp"
-#include "common/input_file.hpp"
-#include "common/output_file.hpp"
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
-#include "scene/scene_hash.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::saved_maps {
 

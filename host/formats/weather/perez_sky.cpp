@@ -2,11 +2,57 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 
 namespace photile::weather {
+
+namespace {
+
+using std::numbers::pi;
+constexpr double radians = pi / 180;
+
+std::chrono::sys_days date_of(const LocalTime& time) {
+  using namespace std::chrono;
+  return year(time.year) / month(static_cast<unsigned>(time.month)) /
+         day(static_cast<unsigned>(time.day));
+}
+
+}  // namespace
+
+SunPosition sun_position(const Site& site, const LocalTime& time) {
+  using namespace std::chrono;
+  // Days since the noon of the first of January 2000 in Greenwich.
+  const sys_days epoch = year(2000) / 1 / 1;
+  const double days = static_cast<double>((date_of(time) - epoch).count()) - 0.5 +
+                      (time.hour - site.time_zone) / 24;
+  const double mean_longitude = (280.460 + 0.9856474 * days) * radians;
+  const double anomaly = (357.528 + 0.9856003 * days) * radians;
+  const double longitude =
+      mean_longitude + (1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * radians;
+  const double obliquity = (23.439 - 4e-7 * days) * radians;
+  const double right_ascension =
+      std::atan2(std::cos(obliquity) * std::sin(longitude), std::cos(longitude));
+  const double declination = std::asin(std::sin(obliquity) * std::sin(longitude));
+  const double sidereal_hours = 18.697374558 + 24.06570982441908 * days;
+  const double hour_angle =
+      (15 * sidereal_hours + site.longitude_degrees) * radians - right_ascension;
+  const double latitude = site.latitude_degrees * radians;
+  const double sine = std::sin(declination) * std::sin(latitude) +
+                      std::cos(declination) * std::cos(latitude) * std::cos(hour_angle);
+  const double azimuth =
+      std::atan2(-std::cos(declination) * std::sin(hour_angle),
+                 std::sin(declination) * std::cos(latitude) -
+                     std::cos(declination) * std::sin(latitude) * std::cos(hour_angle));
+  return {azimuth < 0 ? azimuth + 2 * pi : azimuth, std::asin(std::clamp(sine, -1.0, 1.0))};
+}
+
+int day_of_year(const LocalTime& time) {
+  using namespace std::chrono;
+  return static_cast<int>((date_of(time) - sys_days(year(time.year) / 1 / 1)).count()) + 1;
+}
 
 namespace {
 
@@ -57,7 +103,7 @@ constexpr std::array<Efficacy, bins> direct_efficacies{{{57.20, -4.55, -2.98, 11
                                                         {105.75, 0.77, -1.26, -34.44},
                                                         {101.18, 1.58, -1.10, -8.29}}};
 
-/// Of the extraterrestrial irradiance over its mean, for the Earth's way round the sun.
+/// The extraterrestrial irradiance over its mean, for the Earth's way round the sun.
 double eccentricity(int day) {
   const double angle = 2 * pi * (day - 1) / 365;
   return 1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) +

@@ -1,10 +1,27 @@
-// The all-weather sky of Perez, Seals and Michalsky.
+// Where the sun stands in the sky of a site, and the all-weather sky of Perez, Seals and
+// Michalsky.
 #pragma once
 
 #include <algorithm>
 #include <array>
 
+#include "photile/light_options.hpp"
+
 namespace photile::weather {
+
+/// True angles, without refraction.
+struct SunPosition {
+  double azimuth = 0;    ///< radians clockwise from north
+  double elevation = 0;  ///< radians above the horizon
+};
+
+/// By the low-precision formulae of the Astronomical Almanac, within 0.01 degrees from 1950 to
+/// 2050 (Michalsky, "The Astronomical Almanac's algorithm for approximate solar position", Solar
+/// Energy 40(3), 1988). Time is the standard time of the site's zone.
+SunPosition sun_position(const Site& site, const LocalTime& time);
+
+/// Days from the start of the year, 1 for the first of January.
+int day_of_year(const LocalTime& time);
 
 /// What a weather station measures.
 struct SkyIrradiance {
@@ -30,7 +47,7 @@ class PerezSky {
   double brightness() const { return brightness_; }        ///< delta
 
   /// Luminance over a factor that is the same everywhere, not negative.
-  ///   sine     of the elevation of the place in the sky, taken to be at least that of gendaylit
+  ///   sine     of the elevation of the point in the sky, taken to be at least that of gendaylit
   ///   cosine   of the angle between it and the sun
   float relative_luminance(float sine, float cosine) const {
     return std::max(0.0f, gradation(sine) * indicatrix(cosine));

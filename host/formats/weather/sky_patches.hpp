@@ -1,12 +1,13 @@
-// The sky in patches: Tregenza's 145, or Reinhart's finer ones.
+// The sky in patches, Tregenza's 145 or Reinhart's finer ones, and as lights of a scene.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string>
 #include <vector>
 
+#include "photile/scene.hpp"
 #include "weather/perez_sky.hpp"
-#include "weather/sun_position.hpp"
 
 namespace photile::weather {
 
@@ -74,5 +75,20 @@ class SkyInPatches {
   std::vector<float> horizontal_;   ///< lux on the ground for each cd/m2
   std::vector<float> sines_;        ///< of the middles' elevations
 };
+
+/// "sky_0001" and so on; "ground" is what lies below the horizon.
+std::string patch_name(std::size_t patch);
+
+/// Adds a light and a layer for each patch, even and white, and one for the ground below the
+/// horizon. Each has the power that it has at 1 cd/m2 (or W/(m2 sr)). Returns the number of the
+/// first.
+///   north   radians clockwise from -z
+std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, Scene& scene);
+
+/// Luminances of these lights, cd/m2, the ground last: those of a Perez sky, the sun in the four
+/// patches nearest to it, and a ground of defaults::ground_reflectance that both light.
+///   day   of the year, from 1
+std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,
+                                   const SkyIrradiance& irradiance, int day);
 
 }  // namespace photile::weather

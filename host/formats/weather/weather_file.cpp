@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "common/ascii_text.hpp"
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

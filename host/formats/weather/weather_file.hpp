@@ -19,16 +19,16 @@ struct WeatherHour {
 struct WeatherYear {
   Site site;
   std::vector<WeatherHour> hours;  ///< 8,760, or 8,784 of a leap year
-  /// That the file says its first day is, 0 = Monday; Sunday where it says none.
+  /// The first day of the file, 0 = Monday; Sunday where the file names none.
   int first_weekday = 6;
 };
 
-/// Reads the place, and of each hour the direct normal and diffuse horizontal irradiance and the
+/// Reads the site, and of each hour the direct normal and diffuse horizontal irradiance and the
 /// dew point. The middle of an hour is half an hour before the time that the file gives it.
 /// Errors: InputError naming the file, the line, what was found and the remedy.
 WeatherYear read_weather(const std::filesystem::path& file);
 
-/// The same of a file with fewer hours, or none.
+/// Reads a file that may have fewer hours than a year, or none.
 WeatherYear read_weather_hours(const std::filesystem::path& file);
 
 /// The hour of the file in which a moment falls, whatever its year.

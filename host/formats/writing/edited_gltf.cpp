@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "common/output_file.hpp"
-#include "files/scene_folder.hpp"
+#include "common/files.hpp"
+#include "files/scene_files.hpp"
 #include "photile/errors.hpp"
-#include "writing/light_setting.hpp"
+#include "writing/edited_scene.hpp"
 
 namespace photile::writing {
 namespace {

@@ -1,14 +1,50 @@
-// A copy of a scene's file with other lights.
+// A copy of a scene's file with other lights: the call, and a light as the writers of copies set
+// it.
 #pragma once
 
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
+#include "reading/area_lights.hpp"
 
 namespace photile::writing {
+
+struct LightSetting {
+  reading::LightSource source;
+  std::string name;
+  std::string material;    ///< of a surface
+  bool textured = false;   ///< its emission has a texture
+  double old_power = 0;    ///< what the file gives, > 0
+  double power = 0;        ///< wanted
+  glm::dvec3 color{1.0};   ///< wanted, of luminance 1
+  glm::dvec3 tint{1.0};    ///< what its old colour is multiplied by
+  double factor = 1;       ///< of its layer's power; power = old_power x factor x luminance of the
+                           ///< tinted old colour
+  bool recolored = false;  ///< `color` replaces what the file says
+  bool shared = false;     ///< all instances of its lamp are in its layer, and set as it is
+
+  bool changed() const { return recolored || factor != 1; }
+  double ratio() const { return power / old_power; }
+  /// What an emission `rgb` of the file becomes.
+  glm::dvec3 emission(const glm::dvec3& rgb) const {
+    if (textured) return factor * tint * rgb;
+    return recolored ? luminance(rgb) * ratio() * color : ratio() * rgb;
+  }
+};
+
+/// Writes `copy`. `left_out` gets a line for each light
+/// that cannot be set. Errors: InputError, OutputError.
+void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::path& copy,
+                    std::span<const LightSetting> settings, const SceneLoadOptions& options,
+                    std::vector<std::string>& left_out);
+
+/// Errors: OutputError where there is such a file: no copy is written over another file.
+void refuse_taken(const std::filesystem::path& file);
 
 struct EditedScene {
   std::filesystem::path file;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::daylight {
 namespace {
@@ -106,7 +106,7 @@ std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
   return mean;
 }
 
-std::vector<float> sun_profile(const StraightLight& straight, const std::vector<SkyHour>& hours,
+std::vector<float> sun_profile(const DirectLight& straight, const std::vector<SkyHour>& hours,
                                double north, double maintenance) {
   std::vector<float> lux(straight.sensors() * hours.size(), 0.0f);
   tbb::parallel_for(std::size_t{0}, hours.size(), [&](std::size_t h) {

@@ -39,7 +39,7 @@ std::vector<double> mean_luminances(const std::vector<SkyHour>& hours,
 
 /// Lux straight from the sun, by sensor, then hour.
 ///   north   radians clockwise from -z
-std::vector<float> sun_profile(const StraightLight& straight, const std::vector<SkyHour>& hours,
+std::vector<float> sun_profile(const DirectLight& straight, const std::vector<SkyHour>& hours,
                                double north, double maintenance);
 
 /// Lux of every hour at every sensor, by sensor, then hour.

@@ -36,7 +36,7 @@ std::vector<float> relative_errors(const std::vector<std::vector<double>>& batch
 
 }  // namespace
 
-StraightLight::StraightLight(const Scene& scene, std::span<const Sensor> sensors)
+DirectLight::DirectLight(const Scene& scene, std::span<const Sensor> sensors)
     : rays_(scene), sensors_(all_in_scene(scene, sensors)) {
   const BoundingSphere bounds = bounding_sphere(scene);
   beyond_ = 2.5 * bounds.radius;
@@ -47,7 +47,7 @@ StraightLight::StraightLight(const Scene& scene, std::span<const Sensor> sensors
   }
 }
 
-double StraightLight::from(const glm::dvec3& direction, std::size_t sensor) const {
+double DirectLight::from(const glm::dvec3& direction, std::size_t sensor) const {
   const Sensor& at = sensors_[sensor];
   const double cosine = glm::dot(direction, at.normal);
   if (!(cosine > 0)) return 0;

@@ -45,9 +45,9 @@ DaylightMatrix daylight_matrix(const Scene& scene, std::span<const Sensor> senso
 /// Share of the light from a direction that reaches a sensor straight, times the cosine, by sensor.
 ///   direction   unit, in the scene
 ///   sensors     in the scene file's world
-class StraightLight {
+class DirectLight {
  public:
-  StraightLight(const Scene& scene, std::span<const Sensor> sensors);
+  DirectLight(const Scene& scene, std::span<const Sensor> sensors);
   double from(const glm::dvec3& direction, std::size_t sensor) const;
   std::size_t sensors() const { return sensors_.size(); }
 

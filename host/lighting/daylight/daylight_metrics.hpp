@@ -1,8 +1,9 @@
-// What standards ask of a year of daylight.
+// What standards ask of a year of daylight, over the hours in which a room is used.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,10 +12,27 @@
 
 namespace photile::daylight {
 
+/// Hours of some days of each week, in standard time, or those of a file.
+struct Occupancy {
+  double from = 8, to = 18;
+  std::array<bool, 7> days{true, true, true, true, true, true, true};  ///< from Monday on
+  std::filesystem::path schedule;                                      ///< "" = none
+
+  /// Reads "8-18". Errors: UsageError.
+  void set_hours(const std::string& text);
+  /// Reads "mon-fri", "mon,wed,fri", "fri-mon". Errors: UsageError.
+  void set_days(const std::string& text);
+};
+
+/// The hours of a schedule's file are occupied where their value is more than 0: a line for each
+/// hour of the year, whose last field is the value, and perhaps a line of names first.
+/// Errors: those of read_input_text; InputError naming the file, its line and the remedy.
+std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupancy& occupancy);
+
 /// The half of all hours with the most diffuse light, the daylight hours of EN 17037: 4,380.
 std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);
 
-/// Of one sensor. Shares are of the occupied hours.
+/// The daylight of one sensor. Fractions are of the occupied hours.
 struct PointDaylight {
   double mean_lux = 0;             ///< over the whole year
   double autonomy = 0;             ///< DA: share with the wanted lux or more
@@ -28,7 +46,7 @@ PointDaylight point_daylight(std::span<const float> lux, std::span<const float> 
                              const std::vector<bool>& occupied, const std::vector<bool>& daylight,
                              double wanted_lux);
 
-/// Of all sensors of a room.
+/// The daylight of all sensors of a room.
 struct RoomDaylight {
   double mean_lux = 0;
   double autonomy = 0;             ///< mean of the points'

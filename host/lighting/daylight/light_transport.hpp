@@ -1,4 +1,5 @@
-// How light of the sky's patches reaches sensors: straight, and over surface in cells.
+// How light of the sky's patches reaches sensors, directly and over surface in cells: rays, and the
+// coefficients that are summed from them.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +8,70 @@
 #include <span>
 #include <vector>
 
-#include "daylight/sky_rays.hpp"
 #include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/sensors.hpp"
+#include "trace/portals.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/sensors.hpp"
+#include "weather/sky_patches.hpp"
 
 namespace photile::daylight {
 
-/// A place, as a row of the system E = D L + F E of radiosity (Goral et al. 1984), whose
+/// Lux at the point for each cd/m2 of a patch, by linear RGB.
+struct SeenPatch {
+  std::uint32_t patch;  ///< the ground is the one after the sky's
+  std::uint32_t batch;
+  bool straight;  ///< through panes and holes at most
+  glm::vec3 weight;
+};
+
+/// Lux at the point for each lux on a surface that reflects light to it.
+struct SeenSurface {
+  trace::SurfacePoint point;
+  std::uint32_t batch;
+  float distance;  ///< metres along the ray
+  glm::vec3 weight;
+};
+
+struct SeenByRays {
+  std::vector<SeenPatch> patches;
+  std::vector<SeenSurface> surfaces;
+};
+
+struct SkyRayParameters {
+  int batches = 4;         ///< independent of each other
+  std::uint64_t seed = 1;  ///< of the first batch
+  int max_specular_depth;  ///< mirrors, glass and lobes that a ray follows
+};
+
+/// Half of a point's rays follow its cosine (the response of a sensor), half go through portals;
+/// each counts by the density of both together (the balance heuristic of Veach and Guibas, 1995).
+/// They go on by mirrors, glass and glossy lobes, and end on a surface's base or in the sky.
+class SkyRays {
+ public:
+  /// References are kept.
+  SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
+          const SkyRayParameters& parameters);
+
+  /// What a point sees, in the order of its rays. Depends on the point, its number and the
+  /// parameters only.
+  ///   points   one, or several points of a surface, which take turns
+  ///   number   of the point, below 2^31; that of no other
+  ///   rays     of each batch
+  SeenByRays from(std::span<const trace::Photometer> places, std::uint64_t number, int rays) const;
+
+ private:
+  void follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t batch,
+              const trace::RandomStream& random, SeenByRays& seen) const;
+
+  const RayScene& rays_;
+  const weather::PatchFinder& patches_;
+  SkyRayParameters parameters_;
+  trace::Portals portals_;
+};
+
+/// A point, as a row of the system E = D L + F E of radiosity (Goral et al. 1984), whose
 /// coefficients rays find.
 struct TransportRow {
   struct OfPatch {

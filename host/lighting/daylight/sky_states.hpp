@@ -1,15 +1,44 @@
-// A year in each state of the blinds.
+// A year in each state of the blinds, which close where the sun comes in (IES LM-83).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "daylight/annual_daylight.hpp"
-#include "daylight/blinds.hpp"
 #include "daylight/daylight_matrix.hpp"
 #include "photile/progress.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::daylight {
+
+/// Panes whose blinds close together: all of the materials that a glob names.
+struct BlindGroup {
+  std::string glob;
+  double transmittance = 0;  ///< of a pane with its blind, straight through it
+
+  /// Splits GLOB=TRANSMITTANCE at the last '='. Errors: UsageError.
+  static BlindGroup parse(const std::string& text);
+};
+
+/// States of all groups, as bits: 1 = closed.
+using BlindState = std::uint32_t;
+inline constexpr std::size_t most_blind_groups = 4;
+
+/// Materials with the blinds of a state. Errors: UsageError that names a group whose glob matches
+/// no material, or one that is no thin pane, or lets less through without its blind.
+std::vector<Material> materials_with(const Scene& scene, std::span<const BlindGroup> groups,
+                                     BlindState state);
+
+/// By the hour the state with the fewest closed groups in which the sun gives 1,000 lux or more to
+/// no more than 2% of the points; all closed where there is none.
+///   sun       lux straight from the sun, of each state, by sensor, then hour
+///   closed    of each state: how many groups are closed
+std::vector<std::size_t> blind_schedule(std::span<const std::vector<float>> sun,
+                                        std::span<const int> closed, std::size_t sensors,
+                                        std::size_t hours);
 
 /// What is the same in all states.
 struct Year {

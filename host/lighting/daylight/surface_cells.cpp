@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::daylight {

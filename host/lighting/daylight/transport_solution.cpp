@@ -7,7 +7,7 @@
 
 #include "daylight/light_transport.hpp"
 #include "photile/scene.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::daylight {
 namespace {

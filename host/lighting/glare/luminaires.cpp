@@ -11,15 +11,14 @@
 
 #include "photile/defaults.hpp"
 #include "photile/ray_scene.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::glare {
 namespace {
 
-/// Triangles that share corners, as lists; corners at the same place are one.
+/// Triangles that share corners, as lists; corners at the same position are one.
 std::vector<std::vector<std::uint32_t>> connected_parts(const Scene& scene,
                                                         std::span<const std::uint32_t> triangles) {
   std::vector<std::size_t> part(triangles.size());
@@ -44,7 +43,7 @@ std::vector<std::vector<std::uint32_t>> connected_parts(const Scene& scene,
   return lists;
 }
 
-/// Place i of any number of them evenly spread over a triangle (Roberts, "The unreasonable
+/// Position i of any number of them evenly spread over a triangle (Roberts, "The unreasonable
 /// effectiveness of quasirandom sequences", 2018), as weights of its second and third corner.
 glm::vec2 place_in_triangle(int i) {
   constexpr double plastic = 1.32471795724474602596;  // the root of x^3 = x + 1
@@ -156,7 +155,7 @@ SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& 
   if (lamp.distribution != none) {
     const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
     area = distribution.opening().projected_area(distribution.axes(),
-                                                 trace::LampAxes(lamp).to_lamp(-direction));
+                                                 trace::LightAxes(lamp).to_lamp(-direction));
   }
   seen.projected_area = std::max(area, defaults::small_source_area);
   seen.luminance = candela / seen.projected_area;

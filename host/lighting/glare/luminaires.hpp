@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
@@ -25,7 +24,7 @@ struct SeenLuminaire {
   double illuminance = 0;     ///< lux at the eye, on a plane that faces forward
   glm::dvec3 direction{0.0};  ///< unit, to the middle of what is seen
 
-  /// As the UGR counts it, with the correction for small sources.
+  /// The source as the UGR counts it, with the correction for small sources.
   Source source() const {
     return as_small_source({luminance, solid_angle, position_index}, projected_area);
   }
@@ -39,7 +38,7 @@ class Luminaires {
   ///   looks   at a luminaire, spread over its area
   Luminaires(const RayScene& rays, int looks);
 
-  /// Those in front of an observer, with light, in the order of the scene.
+  /// The luminaires in front of an observer that emit light, in the order of the scene.
   ///   mix   of the scene
   std::vector<SeenLuminaire> seen_by(const Observer& observer, const LightMix& mix) const;
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "measuring/grid_statistics.hpp"
-#include "measuring/measure_grids.hpp"
+#include "measuring/measurement.hpp"
 #include "photile/renderer.hpp"
 
 namespace photile::glare {

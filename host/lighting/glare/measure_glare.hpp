@@ -9,7 +9,7 @@
 
 #include "glare/luminaires.hpp"
 #include "glare/picture_sources.hpp"
-#include "glare/position_index.hpp"
+#include "glare/ratings.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/device.hpp"
 #include "photile/light_layers.hpp"

@@ -14,7 +14,7 @@ namespace {
 constexpr double half_circle = glm::half_pi<double>();  // radians from the middle to the border
 constexpr double largest_factor = 100;                  // up to this a threshold is a factor
 
-/// Of a pixel's middle from the picture's: 1 at the border.
+/// The offset of a pixel's middle from the picture's: 1 at the border.
 glm::dvec2 place_of(int side, int x, int y) {
   return {(2.0 * x + 1.0) / side - 1.0, 1.0 - (2.0 * y + 1.0) / side};
 }

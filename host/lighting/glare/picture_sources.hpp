@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
 #include "photile/defaults.hpp"
 #include "photile/image.hpp"
@@ -24,7 +23,7 @@ struct LuminancePicture {
 };
 
 struct SourceSearch {
-  /// Of a source's pixels: above 100 cd/m2, up to 100 times the mean luminance.
+  /// Luminance of a source's pixels: above 100 cd/m2, up to 100 times the mean luminance.
   double threshold = defaults::glare_source_luminance;
   double angle = defaults::glare_source_angle;  ///< radians: pixels nearer than that are one source
   double peak = defaults::glare_peak_luminance;  ///< cd/m2: pixels above are sources of their own

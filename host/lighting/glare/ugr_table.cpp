@@ -5,7 +5,6 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "glare/position_index.hpp"
 #include "glare/ratings.hpp"
 
 namespace photile::glare {
@@ -76,7 +75,7 @@ class DownwardLight {
   /// Share of the luminaire's flux that leaves it downwards.
   double whole() const { return std::min(1.0, whole_); }
 
-  /// Share that falls straight on the plane of the eyes within the room, from a place (metres from
+  /// Share that falls straight on the plane of the eyes within the room, from a point (metres from
   /// the middle of the observer's wall).
   double on_floor(double x, double y, double half_width, double depth) const {
     double sum = 0;
@@ -87,7 +86,7 @@ class DownwardLight {
     return sum;
   }
 
-  /// Its mean over a room full of luminaires, from a few places: it is smooth.
+  /// Its mean over a room full of luminaires, from a few points: it is smooth.
   double on_floor_of(double half_width, double depth) const {
     double sum = 0, count = 0;
     for (const double x : places(0, half_width, 0.5 * height)) {
@@ -101,7 +100,7 @@ class DownwardLight {
 
  private:
   struct Ray {
-    double x, y;  ///< metres from the place to where it meets the plane of the eyes
+    double x, y;  ///< metres from the point to where it meets the plane of the eyes
     double share;
   };
   std::vector<Ray> rays_;

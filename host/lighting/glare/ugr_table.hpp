@@ -13,7 +13,7 @@ namespace photile::glare {
 struct TableRoom {
   double across, along;  ///< to the line of sight
 };
-/// Those of CIE 190:2010.
+/// The rooms of CIE 190:2010.
 inline constexpr std::array<TableRoom, 19> table_rooms{{{2, 2},
                                                         {2, 3},
                                                         {2, 4},

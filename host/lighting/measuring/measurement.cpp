@@ -2,16 +2,112 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/gtc/constants.hpp>
+#include <string>
 #include <utility>
 
 #include "image/light_change.hpp"
 #include "photile/errors.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/limits.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
+#include "photile/sensors.hpp"
+#include "trace/portal_search.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::measuring {
+
+namespace {
+
+/// Which sensors the figures of a grid are about.
+struct Extremes {
+  std::size_t darkest, brightest;
+
+  static Extremes of(std::span<const double> values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {static_cast<std::size_t>(low - values.begin()),
+            static_cast<std::size_t>(high - values.begin())};
+  }
+};
+
+/// The figures of one set of values.
+struct Figures {
+  double mean = 0, minimum, maximum;
+
+  Figures(std::span<const double> values, const Extremes& extremes)
+      : minimum(values[extremes.darkest]), maximum(values[extremes.brightest]) {
+    for (const double value : values) mean += value;
+    mean /= static_cast<double>(values.size());
+  }
+  // A dark grid is uniform in no useful sense.
+  double uniformity() const { return mean > 0 ? minimum / mean : 0; }
+  double diversity() const { return maximum > 0 ? minimum / maximum : 0; }
+};
+
+/// Spread of the values of leaving one repeat out each, scaled to that of the whole.
+template <class Of>
+double jackknife_error(std::span<const Figures> without, const Of& of) {
+  const auto count = static_cast<double>(without.size());
+  double mean = 0, squares = 0;
+  for (const Figures& each : without) mean += of(each) / count;
+  for (const Figures& each : without) squares += std::pow(of(each) - mean, 2);
+  return std::sqrt((count - 1) / count * squares);
+}
+
+}  // namespace
+
+std::vector<Measured> means_of(std::span<const std::vector<float>> repeats) {
+  const auto count = static_cast<double>(repeats.size());
+  std::vector<Measured> result(repeats.front().size());
+  for (std::size_t sensor = 0; sensor < result.size(); ++sensor) {
+    double mean = 0, squares = 0;
+    for (const auto& repeat : repeats) mean += static_cast<double>(repeat[sensor]) / count;
+    for (const auto& repeat : repeats) {
+      squares += std::pow(static_cast<double>(repeat[sensor]) - mean, 2);
+    }
+    result[sensor] = {mean, std::sqrt(squares / (count - 1) / count)};
+  }
+  return result;
+}
+
+GridStatistics statistics_of(std::span<const std::vector<float>> repeats, std::size_t first,
+                             std::size_t count) {
+  const auto number = static_cast<double>(repeats.size());
+  std::vector<double> sums(count);
+  for (const auto& repeat : repeats) {
+    for (std::size_t i = 0; i < count; ++i) sums[i] += static_cast<double>(repeat[first + i]);
+  }
+  std::vector<double> means(sums);
+  for (double& mean : means) mean /= number;
+  const Extremes extremes = Extremes::of(means);
+  const Figures all(means, extremes);
+
+  GridStatistics result;
+  std::vector<Figures> without;
+  std::vector<double> others(count);
+  for (const auto& repeat : repeats) {
+    for (std::size_t i = 0; i < count; ++i) {
+      others[i] = (sums[i] - static_cast<double>(repeat[first + i])) / (number - 1);
+    }
+    without.emplace_back(others, extremes);
+    const Extremes seen = Extremes::of(others);
+    result.minimum_at_most += static_cast<double>(repeat[first + seen.darkest]) / number;
+    result.maximum_at_least += static_cast<double>(repeat[first + seen.brightest]) / number;
+  }
+  const auto measured = [&](auto of) { return Measured{of(all), jackknife_error(without, of)}; };
+  result.mean = measured([](const Figures& f) { return f.mean; });
+  result.minimum = measured([](const Figures& f) { return f.minimum; });
+  result.maximum = measured([](const Figures& f) { return f.maximum; });
+  result.uniformity = measured([](const Figures& f) { return f.uniformity(); });
+  result.diversity = measured([](const Figures& f) { return f.diversity(); });
+  return result;
+}
 
 Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readings) {
   const std::size_t lights = readings.lights().size();
@@ -68,4 +164,103 @@ std::vector<float> Readings::total(std::size_t repeat) const {
   return {sums.begin(), sums.end()};
 }
 
+namespace {
+
+/// Sensors of all grids, in the scene's own coordinates.
+std::vector<Sensor> sensors_of(const Scene& scene, std::span<const SensorGrid> grids) {
+  std::vector<Sensor> sensors;
+  for (const SensorGrid& grid : grids) {
+    for (const Sensor& sensor : grid.sensors) {
+      sensors.push_back(in_scene(scene, sensor));
+    }
+  }
+  return sensors;
+}
+
+std::vector<std::string> layer_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const LightGroup& group : light_groups_of(scene).groups) names.push_back(group.name);
+  return names;
+}
+
+}  // namespace
+
+Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,
+                       std::span<Device> devices, const MeasuringParameters& parameters,
+                       Progress& progress) {
+  const std::vector<Sensor> sensors = sensors_of(scene, grids);
+  Readings readings(layer_names(scene), sensors.size());
+  RenderParameters photons = parameters.photons;
+  QuietProgress quiet(progress);
+  progress.begin("measure", static_cast<std::uint64_t>(parameters.repeats), "repeats");
+  for (int repeat = 0; repeat < parameters.repeats; ++repeat) {
+    const std::uint64_t seed =
+        trace::seed_of_repeat(parameters.photons.seed, static_cast<std::uint32_t>(repeat));
+    photons.seed = seed;
+    if (parameters.by_paths) {
+      const auto result = gather_by_paths(scene, sensors, parameters.gathering, seed, quiet);
+      readings.add(result.layers, mix, parameters.maintenance);
+    } else {
+      const auto result = gather(scene, sensors, parameters.gathering, devices, photons, quiet);
+      photons.radius = result.used.radius;  // found once
+      readings.add(result.layers, mix, parameters.maintenance);
+    }
+    progress.advance(1);
+  }
+  progress.end();
+  return readings;
+}
+
+std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
+                                     std::span<const std::string> asked) {
+  constexpr double above = 0.01;  // metres: a sensor may lie on a surface
+  const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                           [](const Light& light) { return light.is_distant(); });
+  if (!lit_from_beyond) return {};
+  std::vector<glm::dvec3> points;
+  for (const Sensor& sensor : sensors_of(scene, grids))
+    points.push_back(sensor.position + above * sensor.normal);
+  return trace::portals_asked_for(scene, asked, points);
+}
+
+std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grids) {
+  constexpr double near = 0.01;  // metres
+  const RayScene rays(scene);
+  const trace::FlushDenormals flush_denormals;
+  const std::vector<Sensor> sensors = sensors_of(scene, grids);
+  return static_cast<std::size_t>(
+      std::count_if(sensors.begin(), sensors.end(), [&](const Sensor& sensor) {
+        return trace::occluded(rays, glm::vec3(sensor.position + 1e-4 * sensor.normal),
+                               glm::vec3(sensor.position + near * sensor.normal));
+      }));
+}
+
 }  // namespace photile::measuring
+
+namespace photile {
+
+std::vector<LightIlluminance> measure_illuminance(const Scene& scene,
+                                                  std::span<const Sensor> sensors,
+                                                  const LightMix& mix, std::span<Device> devices,
+                                                  const MeasuringParameters& parameters,
+                                                  Progress& progress) {
+  if (parameters.repeats < 2 || parameters.repeats > limits::max_repeats) {
+    throw UsageError(fmt::format("repeats: '{}' is not a whole number from 2 to {}",
+                                 parameters.repeats, limits::max_repeats));
+  }
+  const std::vector<measuring::SensorGrid> grids{
+      {"points", {sensors.begin(), sensors.end()}, std::nullopt}};
+  const measuring::Readings readings =
+      measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
+  std::vector<LightIlluminance> result;
+  for (std::size_t i = 0; i <= readings.lights().size(); ++i) {
+    std::vector<std::vector<float>> repeats;
+    for (std::size_t r = 0; r < readings.repeats(); ++r) {
+      repeats.push_back(i == 0 ? readings.total(r) : readings.of_light(r, i - 1));
+    }
+    result.push_back({i == 0 ? "" : readings.lights()[i - 1], measuring::means_of(repeats)});
+  }
+  return result;
+}
+
+}  // namespace photile

@@ -1,17 +1,48 @@
-// A finished measurement: grids with the values of their sensors and what follows from them.
+// A finished measurement: the values of the sensors of each grid, what standards ask of them, and
+// what the noise of the measurement leaves open.
 #pragma once
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "measuring/grid_statistics.hpp"
 #include "measuring/sensor_grid.hpp"
+#include "photile/device.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/sensors.hpp"
 
 namespace photile::measuring {
+
+/// Mean and standard error at each sensor.
+///   repeats   per repeat the values of all sensors; at least 2
+std::vector<Measured> means_of(std::span<const std::vector<float>> repeats);
+
+/// Statistics of the sensors first .. first + count - 1. Standard errors are those of the jackknife
+/// over repeats (Tukey, "Bias and confidence in not-quite large samples", 1958), which knows that
+/// sensors share photons. It holds the darkest and the brightest sensor of all repeats: a jackknife
+/// that chose them anew would converge to nothing where several are nearly as dark. The square of
+/// the error of a minimum is then the variance of the reading of the sensor that looks darkest. In
+/// the mean that is the variance of the minimum where one sensor is darkest in all measurements,
+/// and an upper bound of it where noise chooses (Poincare's inequality for normal readings, whether
+/// they are correlated or not). It says nothing of the bias, which the next two figures bound.
+struct GridStatistics {
+  Measured mean;        ///< Em
+  Measured minimum;     ///< Emin: the least of the sensors' means
+  Measured maximum;     ///< Emax
+  Measured uniformity;  ///< Uo = Emin / Em
+  Measured diversity;   ///< Ud = Emin / Emax
+  /// The minimum of noisy values is low and their maximum high. These are what the sensors that
+  /// look darkest (brightest) to all repeats but one read in that one: high (low) if anything. The
+  /// truth lies between minimum and minimum_at_most, maximum_at_least and maximum, up to their
+  /// standard errors.
+  double minimum_at_most = 0;
+  double maximum_at_least = 0;
+};
+GridStatistics statistics_of(std::span<const std::vector<float>> repeats, std::size_t first,
+                             std::size_t count);
 
 /// Illuminance in lux.
 class Readings {
@@ -28,11 +59,11 @@ class Readings {
   std::size_t repeats() const { return repeats_.size(); }
   const std::vector<std::string>& lights() const { return lights_; }
 
-  /// Of one light in one repeat, per sensor.
+  /// The lux of one light in one repeat, per sensor.
   const std::vector<float>& of_light(std::size_t repeat, std::size_t light) const {
     return repeats_[repeat][light];
   }
-  /// Of all lights together.
+  /// The lux of all lights together.
   std::vector<float> total(std::size_t repeat) const;
 
  private:
@@ -59,5 +90,20 @@ using Measurement = std::vector<GridValues>;  ///< lux
 
 /// The values of each grid. `readings` are those of all grids' sensors, one grid after the other.
 Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readings);
+
+/// The readings of all grids' sensors, one grid after the other. Errors: those of `gather`.
+Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,
+                       std::span<Device> devices, const MeasuringParameters& parameters,
+                       Progress& progress);
+
+/// Scene::portals of the rooms of the grids, where light comes from beyond the scene.
+///   asked   as SceneLoadOptions::portals
+/// Errors: those of portals_asked_for.
+std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
+                                     std::span<const std::string> asked);
+
+/// Sensors with a surface less than a centimetre in front of them: most are in furniture, or just
+/// below a top.
+std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grids);
 
 }  // namespace photile::measuring

@@ -45,7 +45,7 @@ struct Judgement {
   bool doubtful() const;
 };
 
-/// Of the mean and, of tasks and their surroundings, the uniformity: walls, ceilings and
+/// Judges the mean and, on tasks and their surroundings, the uniformity: walls, ceilings and
 /// cylindrical illuminance have a uniformity of 0.10, the immediate surroundings 0.40 and the mean
 /// of table 2 of the standard. Grids of another role are not judged.
 std::vector<Judgement> judge(const GridValues& values, const Requirement& requirement);

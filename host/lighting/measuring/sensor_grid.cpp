@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/ascii_text.hpp"
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -32,14 +32,14 @@ glm::dvec3 PlaneLayout::middle_of(std::uint32_t cell) const {
 }
 
 PlaneLayout in_world(const Scene& scene, PlaneLayout layout) {
-  layout.origin = place_in_world(scene, layout.origin);
+  layout.origin = position_in_world(scene, layout.origin);
   layout.u = direction_in_world(scene, layout.u);
   layout.v = direction_in_world(scene, layout.v);
   return layout;
 }
 
 PlaneLayout in_scene(const Scene& scene, PlaneLayout layout) {
-  layout.origin = place_in_scene(scene, layout.origin);
+  layout.origin = position_in_scene(scene, layout.origin);
   layout.u = direction_in_scene(scene, layout.u);
   layout.v = direction_in_scene(scene, layout.v);
   return layout;

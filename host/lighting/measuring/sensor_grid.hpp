@@ -47,7 +47,7 @@ struct SensorGrid {
   std::optional<PlaneLayout> layout;    ///< of a plane
   std::vector<BlankPoint> blanks = {};  ///< in the order of the grid
   GridRole role = GridRole::task;
-  std::string remark = {};  ///< what the user should know of its place; "" = nothing
+  std::string remark = {};  ///< what the user should know of its position; "" = nothing
 };
 
 /// Sensors in the middles of the layout's cells.

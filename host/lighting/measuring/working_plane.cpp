@@ -4,14 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "common/ascii_text.hpp"
 #include "measuring/floor.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/room.hpp"
 
 namespace photile::measuring {
+
 namespace {
 
 int cells_along(double metres, double spacing) {
@@ -89,6 +95,171 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
         "point in the room by --inside X,Y,Z";
   }
   return grid;
+}
+
+namespace {
+
+constexpr double before_surface = 1e-3;  // metres that sensors lie before it
+constexpr double surface_slack = 0.05;   // metres that a wall may lie before or behind its plane
+constexpr double look_from = 0.3;        // metres before a wall from where it is looked for
+constexpr int sides = 4;
+
+/// Metres to the first surface and whether it is glass.
+struct Met {
+  double distance;
+  bool glass;
+};
+
+std::optional<Met> met_by(const RayScene& rays, const glm::dvec3& from,
+                          const glm::dvec3& direction) {
+  const glm::vec3 ray(direction);
+  const auto hit = trace::intersect(rays, glm::vec3(from), ray);
+  if (!hit) return std::nullopt;
+  const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, ray);
+  return Met{glm::dot(glm::dvec3(point.position) - from, direction),
+             trace::material_of(rays.scene(), point).interaction == Interaction::glass};
+}
+
+Room room_of(const RayScene& rays, const PlanAxes& axes, const WorkingPlane& plane) {
+  auto room = Room::meant(rays, axes, plane.inside);
+  if (!room) {
+    throw InputError(
+        fmt::format("{}: the camera comes to no room with a ceiling, so there are no walls; name a "
+                    "point in the "
+                    "room by --inside X,Y,Z",
+                    rays.scene().source.string()));
+  }
+  return *std::move(room);
+}
+
+PointCounts counts_of(const WorkingPlane& plane, double u, double v) {
+  if (!(plane.spacing > 0)) return points_of_en12464(u, v);
+  return {std::max(1, static_cast<int>(std::lround(u / plane.spacing))),
+          std::max(1, static_cast<int>(std::lround(v / plane.spacing)))};
+}
+
+PlaneLayout layout_of(const glm::dvec3& origin, const glm::dvec3& u, const glm::dvec3& v,
+                      const WorkingPlane& plane) {
+  PlaneLayout layout{origin, u, v, 0, 0, {}};
+  const PointCounts counts = counts_of(plane, glm::length(u), glm::length(v));
+  layout.columns = counts.columns;
+  layout.rows = counts.rows;
+  layout.cells.resize(static_cast<std::size_t>(counts.columns) *
+                      static_cast<std::size_t>(counts.rows));
+  std::iota(layout.cells.begin(), layout.cells.end(), 0u);
+  return layout;
+}
+
+/// The sensors of a plane that lie on a surface, just before it; the others are blank. Coordinates
+/// are the scene's, and become the world's.
+SensorGrid on_surface(const RayScene& rays, const std::string& name, const PlaneLayout& layout,
+                      const char* missing) {
+  const trace::FlushDenormals flush_denormals;
+  const SensorGrid all = grid_on_plane(name, layout);
+  SensorGrid grid{name, {}, layout};
+  grid.layout->cells.clear();
+  const Scene& scene = rays.scene();
+  for (std::size_t i = 0; i < all.sensors.size(); ++i) {
+    const Sensor& sensor = all.sensors[i];
+    const auto met = met_by(rays, sensor.position + look_from * sensor.normal, -sensor.normal);
+    const bool there = met && std::abs(met->distance - look_from) <= surface_slack;
+    if (there && !met->glass) {
+      const glm::dvec3 place =
+          sensor.position + (look_from - met->distance + before_surface) * sensor.normal;
+      grid.sensors.push_back(
+          {position_in_world(scene, place), direction_in_world(scene, sensor.normal)});
+      grid.layout->cells.push_back(layout.cells[i]);
+    } else {
+      grid.blanks.push_back(
+          {{position_in_world(scene, sensor.position), direction_in_world(scene, sensor.normal)},
+           there ? "glass" : missing,
+           grid.sensors.size()});
+    }
+  }
+  grid.layout = in_world(scene, std::move(*grid.layout));
+  return grid;
+}
+
+/// The height of the ceiling over the cut, where most of it is.
+double ceiling_height(const RayScene& rays, const PlanAxes& axes, const Room& room) {
+  const trace::FlushDenormals flush_denormals;
+  std::vector<double> heights;
+  for (const glm::dvec3& place : room.places()) {
+    if (const auto met = met_by(rays, place, axes.up)) heights.push_back(met->distance);
+  }
+  if (heights.empty()) return room.cut_height();
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return room.cut_height() + *middle;
+}
+
+}  // namespace
+
+std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane) {
+  const PlanAxes axes;
+  const RayScene rays(scene);
+  const Room room = room_of(rays, axes, plane);
+  const double floor = find_floor(rays, axes, &room).height;
+  const glm::dvec3 height = (ceiling_height(rays, axes, room) - floor) * axes.up;
+  std::vector<SensorGrid> grids;
+  for (int side = 0; side < sides; ++side) {
+    const double turn = glm::half_pi<double>() * side;
+    const glm::dvec2 outwards(std::round(std::sin(turn)), std::round(std::cos(turn)));
+    // Seen from within the room the wall runs from left to right.
+    const glm::dvec2 along(outwards.y, -outwards.x);
+    const glm::dvec2 middle = 0.5 * (room.low() + room.high());
+    const glm::dvec2 half = 0.5 * (room.high() - room.low());
+    const glm::dvec2 corner = middle + half * (outwards - along);
+    const glm::dvec2 width = 2.0 * half * along;
+    const auto in_space = [&](const glm::dvec2& p) { return p.x * axes.right + p.y * axes.ahead; };
+    SensorGrid grid = on_surface(
+        rays, fmt::format("wall at {} degrees", 90 * side),
+        layout_of(in_space(corner) + floor * axes.up, in_space(width), height, plane), "no wall");
+    grid.role = GridRole::wall;
+    if (!grid.sensors.empty()) grids.push_back(std::move(grid));
+  }
+  return grids;
+}
+
+SensorGrid ceiling_grid(const Scene& scene, const WorkingPlane& plane) {
+  const PlanAxes axes;
+  const RayScene rays(scene);
+  const Room room = room_of(rays, axes, plane);
+  const glm::dvec2 size = room.high() - room.low();
+  // It faces down: u x v is -up.
+  const glm::dvec3 origin = room.low().x * axes.right + room.high().y * axes.ahead +
+                            ceiling_height(rays, axes, room) * axes.up;
+  SensorGrid grid = on_surface(rays, "ceiling",
+                               layout_of(origin, size.x * axes.right, -size.y * axes.ahead, plane),
+                               "no ceiling at that height");
+  grid.role = GridRole::ceiling;
+  return grid;
+}
+
+SensorGrid cylindrical_grid(const Scene& scene, const WorkingPlane& plane) {
+  SensorGrid grid = working_plane_grid(scene, plane);
+  grid.name = "cylindrical";
+  grid.role = GridRole::cylindrical;
+  for (Sensor& sensor : grid.sensors) sensor.response = SensorResponse::cylindrical;
+  return grid;
+}
+
+std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const WorkingPlane& plane) {
+  const PlanAxes axes = PlanAxes::in_world(scene);
+  const SensorGrid over_floor = working_plane_grid(scene, plane);
+  std::vector<SensorGrid> grids;
+  for (int side = 0; side < sides; ++side) {
+    const double turn = glm::half_pi<double>() * side;
+    SensorGrid grid = over_floor;
+    grid.name = fmt::format("semi-cylindrical at {} degrees", 90 * side);
+    grid.role = GridRole::other;
+    for (Sensor& sensor : grid.sensors) {
+      sensor.response = SensorResponse::semi_cylindrical;
+      sensor.facing = std::sin(turn) * axes.right + std::cos(turn) * axes.ahead;
+    }
+    grids.push_back(std::move(grid));
+  }
+  return grids;
 }
 
 }  // namespace photile::measuring

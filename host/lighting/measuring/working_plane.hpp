@@ -1,9 +1,11 @@
-// The grid of EN 12464-1 over the floor of a room.
+// The grids of EN 12464-1 in a room: over its floor, on its walls and ceiling, and on upright
+// cylinders.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "measuring/sensor_grid.hpp"
 #include "photile/scene.hpp"
@@ -34,5 +36,22 @@ WorkingPlane parse_working_plane(const std::string& text);
 /// Errors: InputError naming the scene where there is no floor, or none left within the band;
 /// UsageError where the given point is in no room.
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
+
+/// A grid on each of four walls, at the sides of the upright rectangle around the room's plan, from
+/// the floor to the ceiling, facing into the room; names say the direction in which the wall lies,
+/// clockwise from straight ahead as seen from above. Points with no wall there, or glass, are
+/// blank. Spacing as in working_plane_grid. Errors: InputError where the scene has no room with a
+/// ceiling; UsageError where the given point is in none.
+std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane);
+
+/// A grid on the ceiling, facing down, at the height that most of it has; points elsewhere are
+/// blank. Errors: as above.
+SensorGrid ceiling_grid(const Scene& scene, const WorkingPlane& plane);
+
+/// The grid over the floor, read by upright cylinders (EN 12464-1), or by upright half cylinders
+/// that face four directions (semi-cylindrical: CIE, EN 13201-3): a grid for each. Errors: those of
+/// working_plane_grid.
+SensorGrid cylindrical_grid(const Scene& scene, const WorkingPlane& plane);
+std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const WorkingPlane& plane);
 
 }  // namespace photile::measuring

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "daylight/daylight_metrics.hpp"
-#include "daylight/occupancy.hpp"
 #include "measuring/sensor_grid.hpp"
 
 namespace photile::report {

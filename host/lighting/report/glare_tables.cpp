@@ -1,12 +1,10 @@
-#include "report/glare_tables.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "report/number_text.hpp"
+#include "report/tables.hpp"
 
 namespace photile::report {
 namespace {
@@ -51,11 +49,8 @@ std::string csv_measured(const std::optional<Measured>& measured) {
   return measured ? fmt::format("{:.6g},{:.3g}", measured->value, measured->standard_error) : ",";
 }
 
-Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
 Json measured_json(const std::optional<Measured>& measured) {
-  if (!measured) return nullptr;
-  return {{"value", measured->value}, {"standard_error", measured->standard_error}};
+  return measured ? report::measured_json(*measured) : Json(nullptr);
 }
 
 Json number_json(const std::optional<double>& value) {

@@ -18,7 +18,7 @@ namespace photile::report {
 
 namespace {
 
-/// As honeybee cleans identifiers: letters, digits, '.', '_' and '-'.
+/// A name as honeybee cleans identifiers: letters, digits, '.', '_' and '-'.
 std::string identifier_of(const std::string& name) {
   std::string result;
   for (const char c : name) {

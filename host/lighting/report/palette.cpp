@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "image/srgb.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::report {

@@ -22,7 +22,7 @@ class Palette {
 
   /// 8-bit sRGB of a share in [0, 1]; beyond, that of the end. NaN is grey.
   std::array<std::uint8_t, 3> at(double share) const;
-  /// The same as "#rrggbb".
+  /// The colour at a fraction as "#rrggbb".
   std::string hex(double share) const;
 
  private:

@@ -11,7 +11,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
-#include "report/false_colour_picture.hpp"
+#include "report/false_colour.hpp"
 #include "report/palette.hpp"
 #include "report/sheet.hpp"
 
@@ -173,7 +173,8 @@ double rounded_up(double value) {
   return 10 * power;
 }
 
-/// Of the pixels that see no lamp in `b`: a lamp that moved would leave nothing else to see.
+/// The 99th percentile of the pixels that see no light in `b`: a light that moved would leave
+/// nothing else to see.
 double automatic_scale(const std::vector<double>& all, const Image& b) {
   const RelativeErrorWeights weights(b);
   std::vector<double> differences;

@@ -13,7 +13,7 @@ namespace photile::report {
 /// One picture against another, or one layer of both.
 struct ComparedPart {
   std::string light;  ///< "" for the whole picture
-  /// Of a against b; none where b is black.
+  /// The error of a against b; none where b is black.
   std::optional<PictureError> error;
 };
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/ascii_text.hpp"
-#include "report/isolines.hpp"
-#include "report/number_text.hpp"
+#include "report/plan_lines.hpp"
+#include "report/tables.hpp"
 
 namespace photile::report {
 namespace {
@@ -22,7 +22,7 @@ struct Sizes {
 constexpr Sizes whole_sizes{560, 130, 22, 200}, small_sizes{190, 75, 14, 130};
 constexpr double margin = 20, title_height = 48, foot_height = 40;
 constexpr double title_baseline = 20, title_size = 14;
-/// Of a mean letter in ems: what the fonts of screens differ little from.
+/// The width of a mean letter in ems, from which the fonts of screens differ little.
 constexpr double letter_width = 0.6;
 constexpr std::size_t most_numbered_cells = 400;
 
@@ -95,7 +95,7 @@ class Plan {
     fmt::format_to(std::back_inserter(text_), format, std::forward<T>(values)...);
   }
 
-  /// Pixels of a place in cells.
+  /// Pixels of a position in cells.
   glm::dvec2 at(const glm::dvec2& cells) const {
     const glm::dvec2 metres(cells.x / layout_.columns * glm::length(layout_.u),
                             cells.y / layout_.rows * glm::length(layout_.v));
@@ -136,8 +136,8 @@ class Plan {
         middle.x, middle.y + 0.35 * size, size, weight, number_text(value, 3));
   }
 
-  /// The value of a level at that of the places which is farthest from other numbers, or far enough
-  /// and nearest to the middle one. None where there is no room: the legend has it.
+  /// The value of a level at that of the positions which is farthest from other numbers, or far
+  /// enough and nearest to the middle one. None where there is no room: the legend has it.
   void add_level(const std::vector<glm::dvec2>& places, double level) {
     if (small_) return;
     constexpr double far_enough = 30, too_near = 12;
@@ -174,7 +174,7 @@ class Plan {
     return options_.contours == Contours::none || options_.contours == Contours::steps;
   }
 
-  /// Of bands, their levels are numbered as isolines are.
+  /// The levels of bands are numbered as isolines are.
   void add_bands() {
     const std::vector<double> levels = scale_.levels();
     const auto bands = scale_.bands();
@@ -199,7 +199,8 @@ class Plan {
     }
   }
 
-  /// Of a plan in colours, at the steps of the standard; of isolines alone, as falsecolor has them.
+  /// A plan in colours has isolines at the steps of the standard; a plan of isolines alone has them
+  /// as falsecolor does.
   std::vector<double> isoline_levels() const {
     if (options_.contours == Contours::lines) return scale_.levels();
     double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -248,7 +249,7 @@ class Plan {
     }
   }
 
-  /// Of two corners, in the scene's world.
+  /// Writes the coordinates of two corners, in the scene's world.
   void add_coordinates() {
     const auto write = [&](const glm::dvec2& place, const char* anchor, const glm::dvec3& world) {
       add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"8\" text-anchor=\"{}\">"
@@ -296,7 +297,7 @@ class Plan {
   std::string title_, text_;
   double per_metre_ = 0, width_ = 0, height_ = 0;  ///< pixels
   bool numbered_ = false;                          ///< whether cells have their values
-  std::vector<glm::dvec2> numbers_;                ///< places of them, and of levels
+  std::vector<glm::dvec2> numbers_;                ///< positions of them, and of levels
 };
 
 }  // namespace

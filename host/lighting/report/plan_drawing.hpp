@@ -5,7 +5,7 @@
 
 #include "measuring/measurement.hpp"
 #include "report/false_colour.hpp"
-#include "report/plan_surroundings.hpp"
+#include "report/plan_lines.hpp"
 
 namespace photile::report {
 

@@ -1,6 +1,7 @@
-// A measurement on one page, for people who plan light.
+// A measurement on one page, for people who plan light, and HTML pages as PDF.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,7 +10,7 @@
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "report/false_colour.hpp"
-#include "report/plan_surroundings.hpp"
+#include "report/plan_lines.hpp"
 
 namespace photile::report {
 
@@ -52,5 +53,24 @@ struct ReportText {
 std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,
                         const std::vector<PlanSurroundings>& surroundings);
+
+/// The page as PDF, on the paper that its style names, by WeasyPrint in a process of its own
+/// (Debian's package weasyprint). Errors: OutputError where it is missing or fails.
+std::string pdf_of(const std::string& html);
+
+/// Among the system's temporary files; removed with what it holds at the end.
+class ScratchFolder {
+ public:
+  /// Errors: OutputError.
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
 
 }  // namespace photile::report

@@ -10,7 +10,7 @@
 
 #include "geometry/box_tree.hpp"
 #include "photile/scene.hpp"
-#include "trace/triangle_hit.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::cache {
 

@@ -10,8 +10,8 @@
 
 #include "estimate/map_order.hpp"
 #include "estimate/reflected_radiance.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::cache {
 namespace {

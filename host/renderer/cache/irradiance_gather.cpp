@@ -19,9 +19,9 @@
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/hemisphere_rays.hpp"
-#include "trace/hit_point.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/receiver.hpp"
 
 namespace photile::cache {
 namespace {
@@ -89,12 +89,13 @@ struct RunLight {
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
     const auto batches = static_cast<std::uint32_t>(parameters.batches);
     const auto samples_of = [&](std::uint32_t batch) {
-      return trace::LookSamples(trace::RandomStream(parameters.seed, number[point], batch), 0);
+      return trace::LightSampleNumbers(trace::RandomStream(parameters.seed, number[point], batch),
+                                       0);
     };
     if (traced) {
-      thread_local trace::LampChances chances;
-      thread_local trace::LampLooks looks;
-      lamps.weigh(where.position, where.normal, chances);
+      thread_local trace::SelectionProbabilities probabilities;
+      thread_local trace::ShadowRays looks;
+      lamps.weigh(where.position, where.normal, probabilities);
       // What rays that meet lamps count is weighed by the looks of most points.
       const auto rays_per_look =
           static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch);
@@ -102,16 +103,16 @@ struct RunLight {
         const glm::vec3 weight(1.0f / static_cast<float>(count));
         looks.clear();
         for (std::uint32_t batch = 0; batch < batches; ++batch) {
-          const trace::LookSamples samples = samples_of(batch);
+          const trace::LightSampleNumbers samples = samples_of(batch);
           for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
-            looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, chances, batch);
+            looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, probabilities, batch);
           }
         }
         return looks.found(rays);
       };
       const int again = std::min(defaults::looks_again * looks_per_batch,
                                  defaults::most_looks_again / parameters.batches);
-      std::span<const trace::LampLooks::Found> found = found_by(looks_per_batch);
+      std::span<const trace::ShadowRays::Found> found = found_by(looks_per_batch);
       if (again > looks_per_batch && is_uncertain(found, indirect)) found = found_by(again);
       for (const auto& light : found) {
         sums.add_lamp(light.layer, light.tag, light.irradiance, light.direction);
@@ -129,7 +130,7 @@ struct RunLight {
     }
   }
   /// Whether the scatter of the batches is a visible part of all light.
-  bool is_uncertain(std::span<const trace::LampLooks::Found> found, double indirect) const {
+  bool is_uncertain(std::span<const trace::ShadowRays::Found> found, double indirect) const {
     if (found.empty()) return false;
     thread_local std::vector<double> of_batch;
     of_batch.assign(static_cast<std::size_t>(parameters.batches), 0.0);

@@ -18,7 +18,7 @@
 #include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
 #include "trace/eye_path.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::cache {
 namespace {

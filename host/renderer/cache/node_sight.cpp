@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "trace/ray_query.hpp"
-#include "trace/surface_sight.hpp"
 
 namespace photile::cache {
 namespace {

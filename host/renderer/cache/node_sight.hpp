@@ -24,7 +24,7 @@ class NodeSight {
   /// the nodes differ so much that it matters: their weight becomes 0, and those of the others 1
   /// together. Returns false where none is left; then the blend is what it was. Depends on the
   /// point and its nodes alone. Thread-safe; the caller's thread must flush denormals
-  /// (flush_denormals.hpp).
+  /// (ray_query.hpp).
   ///   position   of an opaque surface, metres
   ///   blend      of LightMaps::find, which found all nodes
   bool look(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;

@@ -10,7 +10,7 @@
 
 #include "photile/defaults.hpp"
 #include "photile/scene.hpp"
-#include "trace/by_pixel.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile::cache {
 namespace {

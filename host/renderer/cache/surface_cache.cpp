@@ -18,7 +18,7 @@
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/statistics.hpp"
-#include "trace/flush_denormals.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::cache {

@@ -47,7 +47,7 @@ std::optional<Number> parse_number(std::string_view text, int base = 10) {
   return value;
 }
 
-/// The same, where a leading + is allowed.
+/// A number, where a leading + is allowed.
 std::optional<double> parse_signed(std::string_view text);
 
 /// `text` as content or as an attribute's value in double quotes. Control characters, which XML

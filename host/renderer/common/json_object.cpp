@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

@@ -19,11 +19,11 @@ nlohmann::json read_input_json(const std::filesystem::path& file);
 /// limits::max_json_depth.
 void check_json_depth(std::string_view text, const std::string& file);
 
-/// One object of a file. Every error is an InputError that names its place in the file.
+/// One object of a file. Every error is an InputError that names its position in the file.
 class JsonObject {
  public:
   ///   object   must outlive this
-  ///   where    the file and the object's place in it, for messages
+  ///   where    the file and the object's position in it, for messages
   ///   known    the members that it may have
   /// Errors: InputError where it is no object, or has a member that is not known.
   JsonObject(const nlohmann::json& object, std::string where,

@@ -18,7 +18,7 @@ struct WholeNumbers {
 struct Numbers {
   double least, most;
 };
-/// Those that are neither zero nor infinite as floats, which the kernels compute with.
+/// Numbers that are neither zero nor infinite as floats, which the kernels compute with.
 struct PositiveNumbers {};
 struct Words {
   std::vector<std::string_view> words;

@@ -15,7 +15,7 @@ namespace photile::device {
 /// The names of a kernel's arguments, in their order; none where the runtime does not tell them.
 std::optional<std::vector<std::string>> argument_names(cl_kernel kernel);
 
-/// Of each kernel of a program, by its name.
+/// The names of the arguments of each kernel of a program, by its name.
 using ArgumentNames = std::map<std::string, std::vector<std::string>>;
 std::optional<ArgumentNames> argument_names(cl_program program);
 

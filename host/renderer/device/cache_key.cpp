@@ -63,7 +63,7 @@ CacheKey program_key(const DeviceInfo& device, std::string_view options, std::st
   add(device.driver_version);
   add(options);
   add(source);
-  // Those of PoCL, or of Intel's runtime, which others ignore.
+  // Variables of PoCL, or of Intel's runtime, which others ignore.
   for (const auto& variable : variables_of(device.is_pocl ? "POCL_" : "CL_CONFIG_")) add(variable);
   return hash(text);
 }

@@ -168,9 +168,9 @@ struct ProgramTime {
 /// ran out although the queue was waited for and the reclaimers have released all they can.
 class Context {
  public:
-  /// Of the one device that the selector means.
+  /// Opens the one device that the selector means.
   explicit Context(const DeviceOptions& options);
-  /// Of each device that the selector means.
+  /// Opens each device that the selector means.
   static std::vector<std::unique_ptr<Context>> open_all(const DeviceOptions& options);
   ~Context();
   Context(const Context&) = delete;
@@ -219,12 +219,14 @@ class Context {
   /// The point that the queue has come to; empty where transfers do not run beside kernels.
   Event mark();
   void wait(const Event& event);
-  /// As `write`, beside the kernels that were enqueued before, none of which may use the buffer.
+  /// Writes, as `write` does, beside the kernels that were enqueued before, none of which may use
+  /// the buffer.
   template <class T>
   void write_beside(Buffer<T>& buffer, std::span<const T> values) {
     write_bytes_beside(buffer.raw(), values.data(), values.size_bytes());
   }
-  /// As `read`, once the event has happened, beside the kernels that were enqueued after it.
+  /// Reads, as `read` does, once the event has happened, beside the kernels that were enqueued
+  /// after it.
   template <class T>
   void read_after(const Event& event, const Buffer<T>& buffer, std::span<T> out) {
     read_bytes_after(event, buffer.raw(), out.data(), out.size_bytes());

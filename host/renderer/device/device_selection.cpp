@@ -26,7 +26,7 @@ int rank(const DeviceInfo& device) {
   return device.type == DeviceType::cpu ? 2 : 3;
 }
 
-/// The same where nobody has asked for the device.
+/// The rank of a device that nobody has asked for.
 int default_rank(const DeviceInfo& device) {
   const bool untested = device.type == DeviceType::gpu && device.test_result != passed;
   return untested ? 3 : rank(device);

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "device/program.hpp"
 #include "device/program_source.hpp"
 #include "photile/errors.hpp"

@@ -16,9 +16,9 @@ class KernelSet {
       : context_(&context), file_(std::move(file)), defines_(std::move(defines)) {}
 
   Context& context() const { return *context_; }
-  /// As Context::kernel.
+  /// The kernel of a name: see Context::kernel.
   Kernel kernel(const std::string& name) const { return context_->kernel(file_, name, defines_); }
-  /// Of a kernel of the set.
+  /// A launch of a kernel of the set.
   Launch launch(const std::string& name) const { return {*context_, kernel(name)}; }
 
  private:

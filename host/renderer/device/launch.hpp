@@ -37,8 +37,8 @@ class Launch {
   /// was not set.
   void run(std::size_t global_size, std::size_t local_size);
 
-  /// The same for kernels that have memory for each work-item: over `global_size` of them, rounded
-  /// up to a multiple of `local_size`.
+  /// Runs kernels that have memory for each work-item over `global_size` of them, rounded up to a
+  /// multiple of `local_size`.
   void run_no_more(std::size_t global_size, std::size_t local_size);
 
  private:

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "device/cache_folder.hpp"
 
 namespace photile::device {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <set>
 
-#include "common/run_files.hpp"
+#include "common/files.hpp"
 #include "device/embedded_files.hpp"
 #include "photile/errors.hpp"
 
@@ -39,11 +39,16 @@ std::optional<std::string> registered_source(const std::string& name) {
 std::filesystem::path kernel_folder() {
   const char* const folder = std::getenv(kernel_folder_variable);
   if (folder == nullptr || *folder == '\0') return {};
-  std::error_code ignored;  // what cannot be looked at holds nothing
+  const auto has = [&](std::string_view name) {
+    std::error_code ignored;  // what cannot be looked at holds nothing
+    return std::filesystem::is_regular_file(std::filesystem::path(folder) / name, ignored);
+  };
   for (const auto& file : embedded_files()) {
-    if (std::filesystem::is_regular_file(std::filesystem::path(folder) / file.path, ignored)) {
-      return folder;
-    }
+    if (has(file.path)) return folder;
+  }
+  const std::lock_guard lock(registry().mutex);
+  for (const auto& [name, text] : registry().texts) {
+    if (has(name)) return folder;
   }
   throw UsageError(fmt::format("{}: {} holds no kernel file, such as {}; name a copy of kernels/",
                                kernel_folder_variable, folder, embedded_files().front().path));
@@ -66,8 +71,8 @@ std::optional<std::string> embedded_source(const std::string& name) {
 }
 
 std::optional<std::string> find_source(const std::string& name) {
-  if (auto text = registered_source(name)) return text;
   if (auto text = source_in_folder(name)) return text;
+  if (auto text = registered_source(name)) return text;
   return embedded_source(name);
 }
 

@@ -7,8 +7,8 @@
 namespace photile::device {
 
 /// Environment variable that names a folder with the layout of kernels/. A file found there
-/// replaces the embedded one of that name: for work on kernels without a rebuild. A folder without
-/// any is a UsageError.
+/// replaces the embedded or registered one of that name: for work on kernels without a rebuild. A
+/// folder without any is a UsageError.
 inline constexpr const char* kernel_folder_variable = "PHOTILE_KERNEL_DIR";
 
 /// The text of kernel file `file` with every `#include "path"` line replaced by that file's text.
@@ -18,7 +18,8 @@ inline constexpr const char* kernel_folder_variable = "PHOTILE_KERNEL_DIR";
 /// an unknown file, naming who included it.
 std::string assemble_source(const std::string& file);
 
-/// Makes `text` known as kernel file `name`, before any embedded one of that name. For tests.
+/// Makes `text` known as kernel file `name`, before any embedded one of that name: kernels that the
+/// library does not use, of benches and tests.
 void register_kernel_source(const std::string& name, std::string text);
 
 }  // namespace photile::device

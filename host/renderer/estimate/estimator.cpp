@@ -101,7 +101,8 @@ struct Estimator::Impl {
                 (overlaps() ? 2 : 1)};
   }
 
-  /// The estimates of hits [first, first + count) become those of hits from `place` on in `result`.
+  /// The estimates of hits [first, first + count) become those of hits from `place` on in
+  /// `result`.
   void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t place,
                 Estimates& result) {
     Batch& batch = in_flight[turn];

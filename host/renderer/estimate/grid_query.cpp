@@ -84,8 +84,8 @@ class GridQuery : public Query {
 
 }  // namespace
 
-std::unique_ptr<Query> make_grid_query(const maps::MapStore& store,
-                                       const QueryParameters& parameters) {
+std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters) {
+  if (store.make_query) return store.make_query(store, parameters);
   return std::make_unique<GridQuery>(store, parameters);
 }
 

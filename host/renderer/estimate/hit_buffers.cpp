@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "trace/diffuse_part.hpp"
+#include "trace/opaque_bsdf.hpp"
 
 namespace photile::estimate {
 namespace {

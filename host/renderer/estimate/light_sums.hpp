@@ -22,7 +22,7 @@ struct LightSums {
   bool glossy = false;
   /// Estimates that a hit has room for: one per light, or with many lights min(k, lights) slots.
   std::uint32_t per_hit = 1;
-  /// Many lights: places of the hash table that finds a light's slot. Half of them stay empty,
+  /// Many lights: positions of the hash table that finds a light's slot. Half of them stay empty,
   /// unless each light has its own.
   std::uint32_t table = 0;
 
@@ -32,11 +32,11 @@ struct LightSums {
 
   /// The symbols of sums.clh.
   void set_defines(device::Defines& defines) const;
-  /// Of the hash table.
+  /// Bytes of the hash table.
   std::size_t table_bytes() const;
-  /// Of the arrays that a work-item keeps in private memory.
+  /// Bytes of the arrays that a work-item keeps in private memory.
   std::size_t private_bytes() const;
-  /// Of EstimateBuffers.
+  /// Bytes that EstimateBuffers has for a hit.
   EstimateBytes bytes_per_hit() const;
 };
 

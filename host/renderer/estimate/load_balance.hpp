@@ -15,8 +15,8 @@ class LoadBalance {
   /// How many of the next `left` hits to share before measuring again; at least 1 unless left is 0.
   std::size_t round(std::size_t left) const;
 
-  /// Places where `count` hits are cut: device i takes [cuts[i], cuts[i + 1]). Ascending, from 0 to
-  /// `count`.
+  /// Positions where `count` hits are cut: device i takes [cuts[i], cuts[i + 1]). Ascending, from 0
+  /// to `count`.
   std::vector<std::size_t> cuts(std::size_t count) const;
 
   /// Device `device` took `seconds` for `hits` of this round.

@@ -26,7 +26,7 @@ std::size_t least_error_level(std::span<const double> values, std::span<const in
 Estimates estimates_of_least_error(std::vector<Estimates> levels, std::span<const int> neighbours,
                                    std::span<const double> weights);
 
-/// The powers of a scene's layers; all 1 where every lamp is off.
+/// The powers of a scene's layers; all 1 where every light is off.
 std::vector<double> layer_powers(const Scene& scene);
 
 }  // namespace photile::estimate

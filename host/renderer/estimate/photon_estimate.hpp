@@ -12,7 +12,7 @@
 #include "estimate/seen_photons.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_maps.hpp"
-#include "trace/hit_order.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile::estimate {
 
@@ -33,7 +33,8 @@ class PhotonEstimate : public LightAtPoints {
   struct Parts {
     std::vector<PhotonMaps> maps;            ///< the same on each device
     std::vector<EstimateParameters> levels;  ///< ascending in k: points choose one, each its own
-    /// Of the photons of these maps: what a point does not see does not count. Null: all count.
+    /// Tells which photons of these maps are visible from a point: hidden ones do not count. Null:
+    /// all count.
     std::shared_ptr<const SeenPhotons> seen = nullptr;
   };
   /// References are kept.
@@ -58,8 +59,8 @@ class PhotonEstimate : public LightAtPoints {
     LoadBalance balance;
   };
 
-  /// Positions of points by their maps, and by place on each map; empty where they are in the order
-  /// of their maps.
+  /// Positions of points by their maps, and by position on each map; empty where they are in the
+  /// order of their maps.
   std::vector<std::uint32_t> order_of(const PrimaryHits& points) const;
   /// Of points in the order of their maps, by the k of each level or by their own.
   Estimates estimate(const PrimaryHits& points);

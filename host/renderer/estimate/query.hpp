@@ -1,4 +1,4 @@
-// What answers queries on one page of photon maps: the kernels of a structure.
+// What answers queries on one page of photon maps: kernels on the device.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct PageHits {
   std::uint32_t first = 0, count = 0;
 };
 
-/// The kernels of one structure for one k and radius. Outputs of hits that lie on no page, or on
+/// The kernels for one k and radius. Outputs of hits that lie on no page, or on
 /// maps without photons, keep what they were filled with.
 class Query {
  public:
@@ -48,16 +48,13 @@ struct QueryParameters {
   std::uint32_t compiled_neighbours = 1;    ///< kernels are compiled for k up to this
   float radius = 0;                         ///< metres; no neighbour is farther
   float least_radius = 0;                   ///< metres; smaller discs count as this
-  EstimateTuning tuning;                    ///< for uniform grids only
+  EstimateTuning tuning;                    ///< of the grids' kernels
   const SurfaceBuffers* surface = nullptr;  ///< what areas are clipped to, or null for whole discs
   DensityKernel kernel = DensityKernel::constant;  ///< what photons count
 };
 
+/// Of the store's grids, or as MapStore::make_query has it.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters);
-std::unique_ptr<Query> make_grid_query(const maps::MapStore& store,
-                                       const QueryParameters& parameters);
-std::unique_ptr<Query> make_structure_query(const maps::MapStore& store,
-                                            const QueryParameters& parameters);
 
 /// Sets CLIPPED and DENSITY_KERNEL.
 inline void set_density_defines(device::Defines& defines, bool clipped, DensityKernel kernel) {

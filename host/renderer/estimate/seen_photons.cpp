@@ -7,8 +7,7 @@
 #include "estimate/reflected_radiance.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/surface_sight.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::estimate {
 SeenPhotons::SeenPhotons(const RayScene& rays, const Photons& photons)

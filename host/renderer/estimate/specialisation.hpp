@@ -22,12 +22,12 @@ inline constexpr std::size_t max_private_bytes_per_group = 512u << 10;
 /// pass, which takes twice as long.
 inline constexpr int largest_capacity = 12800;
 
-/// The same of scalar kernels, whose chunks are of one: a group of 64 work-items stays within
-/// max_private_bytes_per_group.
+/// The largest capacity of scalar kernels, whose chunks are of one: a group of 64 work-items stays
+/// within max_private_bytes_per_group.
 inline constexpr int largest_scalar_capacity = 800;
 
-/// The same for the lanes of a group, which keep them in local memory. What a group may have of
-/// that is at least 32 KiB on any device with a full profile; half of it leaves room for two
+/// The largest capacity for the lanes of a group, which keep candidates in local memory. A group
+/// may have at least 32 KiB on any device with a full profile; half of it leaves room for two
 /// groups.
 inline constexpr int largest_lane_capacity = 4096;
 
@@ -52,9 +52,9 @@ struct Specialisation {
   std::size_t work_items(std::uint32_t hits) const;
   /// Work-items of nearest.cl for so many hits.
   std::uint32_t nearest_items(std::uint32_t hits) const;
-  /// Of the arrays that one work-item keeps in private memory.
+  /// Bytes of the arrays that one work-item keeps in private memory.
   std::size_t private_bytes() const;
-  /// Of the local memory of a group: kernels/estimate/lane_path.clh. 0 but for `lanes`.
+  /// Bytes of local memory of a group: kernels/estimate/lane_path.clh. 0 but for `lanes`.
   std::size_t local_bytes() const;
 };
 

@@ -20,14 +20,14 @@ namespace photile::geometry {
 /// sort for vector multiprocessors", Supercomputing 1991.)
 template <class Item, class KeyOf>
 void radix_sort(std::vector<Item>& items, int bits, const KeyOf& key_of) {
-  constexpr int digit_bits = 8;  // as many places to write to as caches and TLBs keep at hand
+  constexpr int digit_bits = 8;  // as many positions to write to as caches and TLBs keep at hand
   constexpr std::size_t digits = std::size_t{1} << digit_bits, least_share = 4096;
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t shares = std::clamp<std::size_t>(items.size() / least_share, 1, threads);
   const auto begin_of = [&](std::size_t share) { return share * items.size() / shares; };
 
   std::vector<Item> moved(items.size());
-  std::vector<std::array<std::size_t, digits>> next(shares);  // place of the next item of a digit
+  std::vector<std::array<std::size_t, digits>> next(shares);  // position of a digit's next item
   for (int shift = 0; shift < bits; shift += digit_bits) {
     const auto digit_of = [&](const Item& item) {
       return static_cast<std::size_t>(key_of(item) >> shift) & (digits - 1);

@@ -1,21 +1,135 @@
-// Patches that hold mostly the same photons become one: the inner side of a thin plate joins the
-// outer side of its other face, and small parts of a curved body join their neighbours.
+#include "groups/merge_patches.hpp"
+
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "groups/patch_shape.hpp"
-#include "groups/patch_union.hpp"
-#include "groups/photon_sample.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
 
+namespace photile::groups {
+
+PatchUnion::PatchUnion(std::size_t patch_count) : parent_(patch_count) {
+  for (std::uint32_t patch = 0; patch < patch_count; ++patch) parent_[patch] = 2 * patch;
+}
+
+void PatchUnion::join(std::uint32_t patch, std::uint32_t other, std::uint32_t turned) {
+  parent_[patch] = 2 * other + turned;
+}
+
+std::uint32_t PatchUnion::map(std::uint32_t map) const {
+  while (parent_[map / 2] / 2 != map / 2) map = parent_[map / 2] ^ (map & 1u);
+  return number_.empty() ? map : 2 * number_[map / 2] + (map & 1u);
+}
+
+void PatchUnion::number() {
+  std::vector<std::uint32_t> numbers(parent_.size(), none);
+  std::uint32_t next = 0;
+  for (std::uint32_t patch = 0; patch < parent_.size(); ++patch) {
+    const std::uint32_t representative = map(2 * patch) / 2;
+    if (numbers[representative] == none) numbers[representative] = next++;
+  }
+  number_ = std::move(numbers);
+}
+
+Patches PatchUnion::apply(const Patches& patches) const {
+  Patches joined;
+  joined.map_of.resize(patches.map_of.size());
+  std::transform(patches.map_of.begin(), patches.map_of.end(), joined.map_of.begin(),
+                 [this](std::uint32_t old) { return map(old); });
+  std::uint32_t count = 0;
+  for (const std::uint32_t map : joined.map_of) count = std::max(count, map / 2 + 1);
+  joined.first_of.assign(count + 1, 0);
+  for (std::uint32_t s = 0; s < joined.map_of.size(); s += 2) {
+    ++joined.first_of[joined.map_of[s] / 2 + 1];
+  }
+  for (std::uint32_t patch = 0; patch < count; ++patch) {
+    joined.first_of[patch + 1] += joined.first_of[patch];
+  }
+  joined.members.resize(joined.map_of.size() / 2);
+  std::vector<std::uint32_t> next(joined.first_of.begin(), joined.first_of.end() - 1);
+  for (std::uint32_t s = 0; s < joined.map_of.size(); s += 2) {
+    const std::uint32_t map = joined.map_of[s];
+    joined.members[next[map / 2]++] = s + (map & 1u);  // the side that map 2 p holds
+  }
+  return joined;
+}
+
+namespace {
+
+constexpr std::uint64_t sample_size = 32'768;
+
+double gap(double coordinate, double low, double high) {
+  return std::max({low - coordinate, coordinate - high, 0.0});
+}
+
+}  // namespace
+
+std::uint64_t sample_step(std::uint64_t photons) {
+  return std::max<std::uint64_t>(1, photons / sample_size);
+}
+
+bool is_within(const PatchShape& shape, const glm::dvec3& point, double radius) {
+  const double u = gap(glm::dot(point, shape.u_axis), shape.low.x, shape.high.x);
+  const double v = gap(glm::dot(point, shape.v_axis), shape.low.y, shape.high.y);
+  const double h = gap(glm::dot(point, shape.axis), shape.low.z, shape.high.z);
+  return u * u + v * v + h * h <= radius * radius;
+}
+
+PhotonSample::PhotonSample(std::span<const PatchShape> shapes, const NeighbourGroups& groups,
+                           const Photons& photons) {
+  std::vector<std::uint32_t> triangles;
+  if (photons.of_all) {
+    position_.assign(photons.of_all->sample.begin(), photons.of_all->sample.end());
+    triangles = photons.of_all->sample_triangle;
+  } else {
+    const std::size_t step = sample_step(photons.size());
+    for (std::size_t i = step / 2; i < photons.size(); i += step) {
+      position_.emplace_back(photons.position[i]);
+      triangles.push_back(photons.sided_triangle[i]);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> maps(position_.size());
+  tbb::parallel_for(std::size_t{0}, position_.size(), [&](std::size_t i) {
+    for (const std::uint32_t map : groups.of(triangles[i])) {
+      if (is_within(shapes[map / 2], position_[i], groups.radius)) maps[i].push_back(map);
+    }
+  });
+  for (const std::vector<std::uint32_t>& entered : maps) {
+    maps_.insert(maps_.end(), entered.begin(), entered.end());
+    first_of_.push_back(static_cast<std::uint32_t>(maps_.size()));
+  }
+}
+
+void PhotonSample::rename(const PatchUnion& patches) { rename_maps(first_of_, maps_, patches); }
+
+HeldPhotons::HeldPhotons(const PhotonSample& sample, std::size_t map_count)
+    : first_of_(map_count + 1, 0) {
+  for (std::size_t photon = 0; photon < sample.size(); ++photon) {
+    for (const std::uint32_t map : sample.maps_of(photon)) ++first_of_[map + 1];
+  }
+  std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
+  photons_.resize(first_of_.back());
+  std::vector<std::uint32_t> next(first_of_.begin(), first_of_.end() - 1);
+  for (std::uint32_t photon = 0; photon < sample.size(); ++photon) {
+    for (const std::uint32_t map : sample.maps_of(photon)) photons_[next[map]++] = photon;
+  }
+}
+
+}  // namespace photile::groups
+
 namespace photile {
+
+// Patches that hold mostly the same photons become one: the inner side of a thin plate joins the
+// outer side of its other face, and small parts of a curved body join their neighbours.
+
 namespace {
 
 using namespace groups;
@@ -25,7 +139,7 @@ constexpr double least_shared = 0.65;
 
 /// At least as large a part must those be of what the joined patch would hold around it. With less,
 /// the queries of either would look at too many photons of the other in vain: of the bright side of
-/// a lamp for a hit on its dark side.
+/// a light for a hit on its dark side.
 constexpr double least_shared_around = 0.5;
 
 /// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map

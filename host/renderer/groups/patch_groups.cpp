@@ -8,11 +8,12 @@
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_bvh.hpp"
-#include "groups/group_lists.hpp"
+#include "groups/neighbour_groups.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
 
 namespace photile {
+
 namespace {
 
 using namespace groups;
@@ -154,6 +155,31 @@ NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
   }
   result.patches = std::move(patches);
   return result;
+}
+
+namespace {
+
+std::vector<std::uint8_t> where_landed(const Photons& photons) {
+  std::vector<std::uint8_t> landed(photons.first_of.size() - 1);
+  for (std::size_t s = 0; s < landed.size(); ++s) {
+    const bool any = photons.of_all ? photons.of_all->landed[s] > 0
+                                    : photons.first_of[s] < photons.first_of[s + 1];
+    landed[s] = any ? 1 : 0;
+  }
+  return landed;
+}
+
+}  // namespace
+
+NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapMode mode,
+                                const NeighbourGroupParameters& parameters, Progress& progress,
+                                MapUsers users) {
+  if (mode == MapMode::naive) return naive_groups(scene);
+  const std::vector<std::uint8_t> landed =
+      users == MapUsers::these_photons ? where_landed(photons) : std::vector<std::uint8_t>{};
+  Patches patches = find_patches(scene, parameters.radius, mode);
+  return merge_patches(
+      scene, find_patch_groups(scene, std::move(patches), parameters, progress, landed), photons);
 }
 
 }  // namespace photile

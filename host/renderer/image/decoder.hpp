@@ -50,7 +50,7 @@ class Decoder {
  public:
   virtual ~Decoder() = default;
 
-  /// As the header has it.
+  /// The shape as the header has it.
   const PictureShape& shape() const { return shape_; }
 
   /// Once. Errors: DecodeError, std::bad_alloc.

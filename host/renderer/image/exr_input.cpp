@@ -15,7 +15,6 @@
 #include <numeric>
 
 #include "image/decoder.hpp"
-#include "image/exr_headers.hpp"
 #include "image/picture_checks.hpp"
 #include "photile/limits.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "image/pixel_lights.hpp"
+#include "image/light_layers.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::image {

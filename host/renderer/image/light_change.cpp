@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "common/ascii_text.hpp"
-#include "image/srgb.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_emission.hpp"

@@ -1,8 +1,23 @@
 #include "photile/light_layers.hpp"
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "image/light_change.hpp"
+#include "image/picture_file.hpp"
+#include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 
 namespace photile {
+
 namespace {
 
 template <class T>
@@ -67,6 +82,136 @@ LightLayers LightLayers::dense() const {
     }
   }
   return result;
+}
+
+LightMix LightMix::of(const Scene& scene, double lumen_per_watt) {
+  LightMix mix;
+  mix.lumen_per_watt = lumen_per_watt;
+  for (const LightGroup& group : light_groups_of(scene).groups) {
+    MixedLight mixed;
+    mixed.name = group.name;
+    mixed.power = group.power;
+    mixed.unit = scene.unit;
+    mixed.color = group.color;
+    for (const std::uint32_t light : group.lights) {
+      if (!scene.lights[light].group.empty()) mixed.members.push_back(scene.lights[light].name);
+    }
+    mix.lights.push_back(std::move(mixed));
+  }
+  return mix;
+}
+
+namespace {
+
+/// Pixels summed at a time: their sums stay in the first cache while the layers stream by.
+constexpr std::size_t pixels_per_block = 1024;
+/// Floats of the loop that the compiler turns into vectors: a multiple of 3 and of any width.
+constexpr std::size_t stride = 48;
+
+static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+
+/// A layer as a row of floats, and the factor of each, repeated to the stride.
+struct ScaledLayer {
+  const float* values;
+  std::array<float, stride> scale;
+  std::array<std::uint32_t, stride> mask;  ///< no bits where the scale is 0, all elsewhere
+};
+
+/// Off means black, whatever the layer holds: infinity times zero is not. A mask of bits rather
+/// than a condition, which compilers do not turn into vectors where it may raise a floating-point
+/// exception.
+float scaled(float value, float scale, std::uint32_t mask) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value * scale) & mask);
+}
+
+/// sums[i] += values[i] x scale[i mod 3]
+void add_scaled(const ScaledLayer& layer, std::size_t first, std::size_t count, float* sums) {
+  const std::array<float, stride> scale = layer.scale;
+  const std::array<std::uint32_t, stride> mask = layer.mask;
+  const float* values = layer.values + first;
+  std::size_t i = 0;
+  for (; i + stride <= count; i += stride) {
+    std::array<float, stride> products;  // apart from the sums, which might overlap the values
+    for (std::size_t j = 0; j < stride; ++j) products[j] = scaled(values[i + j], scale[j], mask[j]);
+    for (std::size_t j = 0; j < stride; ++j) sums[i + j] += products[j];
+  }
+  for (std::size_t j = 0; i + j < count; ++j)
+    sums[i + j] += scaled(values[i + j], scale[j], mask[j]);
+}
+
+/// The factor of each light's radiance.
+std::vector<glm::vec3> scales_of(const LightLayers& layers, const LightMix& mix) {
+  std::vector<glm::vec3> scales;
+  for (const LightLayers::Layer& layer : layers.layers) {
+    const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
+    scales.emplace_back(light.power * glm::dvec3(light.tint));
+  }
+  return scales;
+}
+
+/// Lights that do not reach a pixel would add 0: leaving them out changes no bit.
+void combine_row(const LightLayers::Row& row, std::span<const glm::vec3> scales,
+                 std::span<glm::vec3> picture) {
+  for (std::size_t x = 0; x < picture.size(); ++x) {
+    glm::vec3 sum(0.0f);
+    for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
+      const glm::vec3& scale = scales[row.light[i]];
+      for (int c = 0; c < 3; ++c) {
+        if (scale[c] != 0.0f) sum[c] += row.radiance[i][c] * scale[c];
+      }
+    }
+    picture[x] = sum;
+  }
+}
+
+std::vector<ScaledLayer> scaled_layers(const LightLayers& layers,
+                                       std::span<const glm::vec3> scales) {
+  std::vector<ScaledLayer> result;
+  for (std::size_t l = 0; l < scales.size(); ++l) {
+    const LightLayers::Layer& layer = layers.layers[l];
+    const glm::vec3& scale = scales[l];
+    ScaledLayer entry{layer.radiance.empty() ? nullptr : &layer.radiance[0].x, {}, {}};
+    for (std::size_t i = 0; i < stride; ++i) {
+      entry.scale[i] = scale[static_cast<int>(i % 3)];
+      entry.mask[i] = entry.scale[i] == 0.0f ? 0u : ~0u;
+    }
+    result.push_back(entry);
+  }
+  return result;
+}
+
+}  // namespace
+
+void combine_layers(const LightLayers& layers, const LightMix& mix, std::span<glm::vec3> picture) {
+  const std::size_t pixels =
+      static_cast<std::size_t>(layers.width) * static_cast<std::size_t>(layers.height);
+  if (picture.size() != pixels) {
+    throw UsageError(fmt::format("combine_layers: a picture of {} pixels for layers of {} x {}",
+                                 picture.size(), layers.width, layers.height));
+  }
+  image::combine_rows(layers, scales_of(layers, mix), 0, picture);
+}
+
+void image::combine_rows(const LightLayers& layers, std::span<const glm::vec3> scales, int row,
+                         std::span<glm::vec3> picture) {
+  const auto width = static_cast<std::size_t>(layers.width), begin = static_cast<std::size_t>(row);
+  if (layers.sparse()) {
+    tbb::parallel_for(std::size_t{0}, picture.size() / width, [&](std::size_t y) {
+      combine_row(layers.rows[begin + y], scales, picture.subspan(y * width, width));
+    });
+    return;
+  }
+  const std::size_t pixels = picture.size();
+  const std::vector<ScaledLayer> entries = scaled_layers(layers, scales);
+  const std::size_t blocks = (pixels + pixels_per_block - 1) / pixels_per_block;
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    const std::size_t first = block * pixels_per_block;
+    const std::size_t count = std::min(pixels_per_block, pixels - first);
+    std::fill_n(picture.begin() + static_cast<std::ptrdiff_t>(first), count, glm::vec3(0.0f));
+    for (const ScaledLayer& layer : entries) {
+      add_scaled(layer, 3 * (begin * width + first), 3 * count, &picture[first].x);
+    }
+  });
 }
 
 }  // namespace photile

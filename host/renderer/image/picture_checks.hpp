@@ -1,8 +1,11 @@
-// What a picture may ask for, and what is looked at before a decoder sees it.
+// What a picture may ask for, and what is checked before a decoder sees it, EXR headers among it.
 #pragma once
+
+#include <OpenEXR/ImfIO.h>
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "image/decoder.hpp"
 #include "photile/limits.hpp"
@@ -21,8 +24,8 @@ std::string too_large(std::size_t channels, std::uint64_t bytes);
 /// Errors: DecodeError.
 void check_shape(const PictureShape& shape, std::size_t encoded);
 
-/// Of a picture that OpenImageIO is to open, what its reader would take memory for first, read as
-/// another picture, or leave the memory for. Errors: DecodeError.
+/// Refuses a picture for OpenImageIO for which its reader would reserve too much memory, which it
+/// would read as another picture, or past whose bytes it would read. Errors: DecodeError.
 void check_encoded(PictureFormat format, Encoded bytes);
 
 /// Decoded bytes that are not worth a check. Fuzzers take fewer: an input is to take microseconds.
@@ -31,5 +34,24 @@ inline constexpr std::uint64_t unchecked_bytes = 1ull << 20;
 #else
 inline constexpr std::uint64_t unchecked_bytes = limits::unchecked_image_bytes;
 #endif
+
+/// OpenEXR reserves what an attribute and a table of the rows are said to take, and reads
+/// attributes of types that it knows by their type, whatever their size says: its own limits would
+/// hold for the whole process. Leaves the stream at its beginning. `bytes` are those of the file.
+/// Returns where the headers end.
+/// Errors: DecodeError where an attribute is not as large as it has to be, announces more than the
+/// file holds, or the picture is larger than limits.hpp.
+std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
+
+/// Bytes of the tables of a file and of the blocks of pixels that they point at, compressed as they
+/// are: without attributes, and without what lies between and behind the blocks. Leaves the stream
+/// where it was.
+///   table     where the tables begin, as check_exr_headers returns it
+///   bytes     those of the file
+///   entries   of the tables: one a block, of all parts
+///   tiled     whether a part has tiles in place of rows, per part
+/// Errors: DecodeError where a block is not within the file.
+std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
+                              std::uint64_t entries, const std::vector<bool>& tiled);
 
 }  // namespace photile::image

@@ -63,7 +63,7 @@ struct Tile {
   std::size_t counted = 0, pixels = 0;
 };
 
-/// Fills in the worst tile and its place.
+/// Fills in the worst tile and its position.
 void find_worst_region(const Image& picture, const Image& reference,
                        const RelativeErrorWeights& weights, PictureError& error) {
   const int side = std::max(1, reference.height / tiles_per_height);
@@ -99,7 +99,7 @@ void find_worst_region(const Image& picture, const Image& reference,
   }
 }
 
-/// Of what a screen, whose white is 1, shows of the pixels that count; black elsewhere.
+/// The error of what a screen, whose white is 1, shows of the pixels that count; black elsewhere.
 double psnr(const Image& picture, const Image& reference, const RelativeErrorWeights& weights) {
   const Planes a = planes_of(picture), b = planes_of(reference);
   const double factor = middle_grey / weights.mean();
@@ -144,7 +144,7 @@ RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
   }
   mean_ = sum / (3.0 * static_cast<double>(counted_));
   if (!(mean_ > 0)) {
-    throw InputError("the reference is black where no lamp is seen; nothing can be compared");
+    throw InputError("the reference is black where no light is visible; nothing can be compared");
   }
   divisor_.resize(3 * luminances.size());
   for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/input_file.hpp"
+#include "common/files.hpp"
 #include "image/layer_set.hpp"
 #include "image/light_change.hpp"
 #include "image/picture_file.hpp"

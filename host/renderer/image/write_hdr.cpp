@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/output_file.hpp"
+#include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "photile/scene.hpp"

@@ -19,7 +19,6 @@
 #include "maps/map_numbers.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
-#include "maps/other_structures.hpp"
 #include "maps/page_queue.hpp"
 #include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
@@ -76,22 +75,15 @@ void give_back_records(Photons& photons) {
 
 /// A page of maps takes at most half of the memory: beside it lie a page of photons and what the
 /// build needs, later a batch of hits and its estimates.
-PageLimits page_limits(const Context& context, const MapStore& store, float photons_per_cell,
-                       bool normals) {
+PageLimits page_limits(const Context& context, const MapStore& store, bool normals) {
   const std::uint64_t record = bytes_per_entry(store.needs) + (normals ? 3 * sizeof(float) : 0);
   // Two cells for what photons_per_cell asks of one: grids reach beyond the photons.
-  const double cells = 2.0 / photons_per_cell;
+  const double cells = 2.0 / store.parameters.photons_per_cell;
   const auto cell_bytes = static_cast<std::uint64_t>(std::ceil(sizeof(std::uint32_t) * cells));
   return {.largest_buffer = context.largest_buffer(),
           .page_bytes = context.memory_limit() / 2,
           .bytes_per_entry = record + cell_bytes,
           .bytes_per_map = sizeof(PhotileGrid) + sizeof(std::uint32_t)};
-}
-
-/// Brute force and trees take the photons of a map from a grid of one cell.
-float photons_per_cell(const PhotonMapParameters& parameters) {
-  constexpr float all = 1e12f;
-  return parameters.structure == MapStructure::uniform_grid ? parameters.photons_per_cell : all;
 }
 
 std::string surface_name(std::uint32_t pair, const Patches& patches) {
@@ -113,8 +105,8 @@ struct CountedMaps {
 };
 
 ///   release   as EntryGathering
-MapPage build_page(const Build& build, const Photons& photons, const CountedMaps& counted,
-                   const MapRange& range, const PhotonRelease* release) {
+MapPage build_page(const Build& build, const CountedMaps& counted, const MapRange& range,
+                   const PhotonRelease* release) {
   const MapStore& store = build.store;
   MapPage page;
   page.first_map = range.first;
@@ -130,9 +122,6 @@ MapPage build_page(const Build& build, const Photons& photons, const CountedMaps
     place_grids(build, page);
   }
   fill_cells(build, page, cells);
-  if (is_tree(store.parameters.structure)) {
-    build_trees(build.context, store.parameters.structure, photons, counted.photons, page);
-  }
   gather_entries(build.kernels, store.needs, *build.photon_pages,
                  {.normals = counted.any_mixed(range) ? &build.normals : nullptr,
                   .gaps = range.tile.has_value(),
@@ -141,16 +130,6 @@ MapPage build_page(const Build& build, const Photons& photons, const CountedMaps
                  page);
   build.context.finish();
   return page;
-}
-
-void add_page(MapStore& store, MapPage page) {
-  PhotonMapStatistics& statistics = store.statistics;
-  statistics.references += page.entry_count;
-  statistics.cells += page.cell_count;
-  statistics.nodes += page.node_count;
-  statistics.device_bytes += page.device_bytes();
-  ++statistics.pages;
-  store.pages.add(std::move(page));
 }
 
 /// `counts`: photons per map.
@@ -171,14 +150,13 @@ void renumber_tile(MapStore& store, const MapRange& range, std::uint32_t map, Ma
 
 /// Builds the pages of `queue` into the store. Tiles are numbered after all whole maps.
 ///   release   what lets go of photons, for the last page; null: they stay
-void build_pages(MapStore& store, const Build& build, const Photons& photons,
-                 const CountedMaps& counted, PageQueue& queue, const PhotonRelease* release,
-                 Progress& progress) {
+void build_pages(MapStore& store, const Build& build, const CountedMaps& counted, PageQueue& queue,
+                 const PhotonRelease* release, Progress& progress) {
   auto tile_number = static_cast<std::uint32_t>(counted.photons.size());
   while (const auto range = queue.next()) {
     progress.throw_if_cancelled();
     try {
-      MapPage page = build_page(build, photons, counted, *range, queue.empty() ? release : nullptr);
+      MapPage page = build_page(build, counted, *range, queue.empty() ? release : nullptr);
       if (range->tile) renumber_tile(store, *range, tile_number++, page);
       add_page(store, std::move(page));
       progress.advance(range->entries);
@@ -197,6 +175,15 @@ void build_pages(MapStore& store, const Build& build, const Photons& photons,
 }
 
 }  // namespace
+
+void add_page(MapStore& store, MapPage page) {
+  PhotonMapStatistics& statistics = store.statistics;
+  statistics.references += page.entry_count;
+  statistics.cells += page.cell_count;
+  statistics.device_bytes += page.device_bytes();
+  ++statistics.pages;
+  store.pages.add(std::move(page));
+}
 
 std::vector<glm::vec3> sided_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(2 * scene.triangle_count());
@@ -234,8 +221,7 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
               .tile_kernels = tile_kernels(store),
               .patches = plan.normals,
               .squared_reach = plan.reach * plan.reach,
-              .radius = static_cast<float>(store.parameters.radius),
-              .photons_per_cell = photons_per_cell(store.parameters)};
+              .radius = static_cast<float>(store.parameters.radius)};
   build.corners = context.upload(std::span<const float>(plan.surfaces.corners), "triangle corners");
   build.shapes =
       context.upload(std::span<const PhotileMapShape>(plan.surfaces.shapes), "map shapes");
@@ -252,46 +238,14 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   statistics.mixed_maps =
       static_cast<std::uint64_t>(std::count(counted.mixed.begin(), counted.mixed.end(), 1u));
   PageQueue queue(
-      counted.photons,
-      page_limits(context, store, build.photons_per_cell, statistics.mixed_maps > 0), store.tilings,
+      counted.photons, page_limits(context, store, statistics.mixed_maps > 0), store.tilings,
       [&](std::uint32_t map) { return tiling_of(build, map); },
       [&](std::uint32_t map) { return plan.name_of(map / 2); });
   const PhotonRelease release{[&] { plan.candidates = CandidateMaps(); },
                               [&] { give_back_records(*spent); }};
-  build_pages(store, build, photons, counted, queue, spent ? &release : nullptr, progress);
+  build_pages(store, build, counted, queue, spent ? &release : nullptr, progress);
   if (statistics.mixed_maps == 0) store.normals.clear();
   set_map_sizes(counted.photons, statistics);
-}
-
-void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count) {
-  const auto count = static_cast<std::uint32_t>(photons.size());
-  if (count == 0) return;
-  Context& context = device::context_of(*store.device);
-  const PageLimits limits{.largest_buffer = context.largest_buffer()};
-  if (!limits.fit(count, 1)) {
-    throw DeviceError(
-        fmt::format("{} of {} photons, more than the {} that the device's largest buffer holds; "
-                    "use fewer photons, more passes or another structure",
-                    name_of(store.parameters.structure), count, limits.most_entries()));
-  }
-  MapPage page;
-  page.first_map = 0;
-  page.last_map = map_count;
-  page.entry_count = count;
-  build_global_structure(store, photons, page);
-
-  PhotonPages pages(
-      context,
-      [&](std::uint64_t) {
-        return std::vector<PhotonRange>{{0, count}};
-      },
-      [&](PhotonRange range) { return upload_photon_records(context, photons, range); },
-      context.largest_buffer());
-  const device::Buffer<float> normals = upload_normals(context, store);
-  gather_entries(build_kernels(store, false), store.needs, pages, {.normals = &normals}, page);
-  context.finish();
-  set_map_sizes({count}, store.statistics);
-  add_page(store, std::move(page));
 }
 
 }  // namespace photile::maps

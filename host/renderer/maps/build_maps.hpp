@@ -15,8 +15,8 @@
 
 namespace photile::maps {
 
-/// Builds one map per sided triangle or side of a patch: uniform grids, kd-trees, or plain lists of
-/// photons. Fills the pages and statistics of `store`, whose device, needs and parameters are set.
+/// Builds one map per sided triangle or side of a patch. Fills the pages and statistics of `store`,
+/// whose device, needs and parameters are set.
 ///   spent    the same photons where their arrays may be given back on the way, else null
 ///   wanted   as PhotonMaps has it
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
@@ -40,9 +40,8 @@ struct MapPlan {
 void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan plan,
                 Progress& progress);
 
-/// Builds one structure over all photons for hits of `map_count` maps; `store.normals` is set.
-/// Errors: DeviceError when they do not fit in one buffer.
-void build_global_map(MapStore& store, const Photons& photons, std::uint32_t map_count);
+/// Adds a page whose maps are built to the store and its statistics.
+void add_page(MapStore& store, MapPage page);
 
 /// The radius that photons must lie within of a surface to enter its map, metres: grown by what
 /// rounding may do to positions as large as the scene's, so that no neighbour is lost.

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "maps/entry_defines.hpp"
-#include "maps/other_structures.hpp"
 #include "maps/prefix_sum.hpp"
 #include "photile/device/grid.h"
 #include "photile/errors.hpp"
@@ -58,7 +57,7 @@ device::Launch photon_launch(const Build& build, const device::KernelSet& kernel
   return launch;
 }
 
-/// The same, where those that they enter are found.
+/// A launch over the photons where the maps that they are inserted into are found.
 device::Launch entered_launch(const Build& build, const device::KernelSet& kernels,
                               const char* kernel, const PhotonPage& photons) {
   device::Launch launch = photon_launch(build, kernels, kernel, photons);
@@ -122,7 +121,7 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
       .set("map_crowding", build.crowding)
       .set("map_mixed", build.counts.mixed)
       .set("radius", build.radius)
-      .set("photons_per_cell", build.photons_per_cell)
+      .set("photons_per_cell", build.store.parameters.photons_per_cell)
       .set("grids", page.grids)
       .set("cell_total", cells);
   launch.run(maps, work_group_size);
@@ -254,8 +253,7 @@ void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle
         .set("entry_photon", page.entry_photon)
         .run(photons.count, work_group_size);
   }
-  // Trees bring them into an order of their own.
-  if (!is_tree(build.store.parameters.structure)) sort_cells(build.kernels, page);
+  sort_cells(build.kernels, page);
 }
 
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,

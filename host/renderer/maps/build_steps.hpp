@@ -23,7 +23,7 @@ namespace photile::maps {
 /// (works_in_groups).
 device::KernelSet build_kernels(const MapStore& store, bool patches);
 
-/// Those that pages need which hold a tile of a map.
+/// The kernels of pages that hold a tile of a map.
 device::KernelSet tile_kernels(const MapStore& store);
 
 /// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
@@ -40,7 +40,6 @@ struct Build {
   bool patches;         ///< maps may serve several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
-  float photons_per_cell;
   device::Buffer<std::uint32_t> map_of = {};    ///< per sided triangle
   device::Buffer<float> normals = {};           ///< 3 per sided triangle; only with patches
   device::Buffer<PhotileMapShape> shapes = {};  ///< per pair of maps
@@ -93,7 +92,7 @@ struct EntryGathering {
   device::MemoryPages memory = device::MemoryPages::large;
 };
 
-/// Of a store's maps.
+/// The pages of memory of a store's maps.
 inline device::MemoryPages memory_pages(const MapStore& store) {
   return store.parameters.large_pages ? device::MemoryPages::large : device::MemoryPages::ordinary;
 }

@@ -6,12 +6,10 @@
 #include "device/context.hpp"
 #include "photile/device/constants.h"
 #include "photile/device/grid.h"
-#include "photile/device/kdtree.h"
 
 namespace photile::maps {
 
 static_assert(sizeof(PhotileGrid) == 20 * 4, "PhotileGrid must have no padding");
-static_assert(sizeof(PhotileTreeNode) == 4 * 4, "PhotileTreeNode must have no padding");
 
 /// What a page covers: maps [first_map, last_map). A map is a sided triangle's or one side of a
 /// patch's.
@@ -20,30 +18,22 @@ struct PageExtent {
   std::uint32_t entry_count = 0;
   std::uint32_t entry_stride = 0;  ///< distance of planes: entry_count and padding
   std::uint32_t cell_count = 0;
-  std::uint32_t node_count = 0;
 };
 
-/// None is larger than the device's largest allocation. Which exist depends on the structure and on
-/// the scene's needs.
+/// None is larger than the device's largest allocation. Which exist depends on the scene's needs.
 struct PageBuffers {
-  // Entries: the photons of each map, in ascending order within a grid's cell or in the order of
-  // the leaves of its tree.
+  // Entries: the photons of each map, cell by cell, in ascending order within a cell.
   device::Buffer<std::uint32_t> entry_photon;  ///< index into Photons
   device::Buffer<float> entry_position;        ///< planes x, y, z
   device::Buffer<float> entry_flux;            ///< planes r, g, b
   device::Buffer<std::uint8_t> entry_light;    ///< bytes_per_light(needs) each
   device::Buffer<float> entry_incoming;        ///< planes x, y, z; only in glossy scenes
-  /// Planes x, y, z of the photon's sided triangle; only in a global tree, and in pages with a map
-  /// that serves triangles of different normals.
+  /// Planes x, y, z of the photon's sided triangle; only in pages with a map that serves triangles
+  /// of different normals.
   device::Buffer<float> entry_normal;
 
-  // Grids; in the plane of its triangle also the frame of a 2D tree.
   device::Buffer<PhotileGrid> grids;         ///< per map
   device::Buffer<std::uint32_t> cell_start;  ///< per cell, and the end of the last, twice
-
-  // Structures other than grids.
-  device::Buffer<std::uint32_t> tree_root;  ///< of kd-trees, per map; none without photons
-  device::Buffer<std::uint32_t> nodes;      ///< words; what they are, kernels/structures say
 
   std::uint64_t device_bytes() const;
 };
@@ -59,8 +49,6 @@ void for_each_buffer(Buffers& buffers, Visit visit) {
   visit(buffers.entry_normal);
   visit(buffers.grids);
   visit(buffers.cell_start);
-  visit(buffers.tree_root);
-  visit(buffers.nodes);
 }
 
 struct MapPage : PageExtent, PageBuffers {};

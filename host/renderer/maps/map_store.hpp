@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 
 #include "device/context.hpp"
 #include "maps/page_queue.hpp"
@@ -10,6 +12,11 @@
 #include "photile/photon_maps.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
+
+namespace photile::estimate {
+class Query;
+struct QueryParameters;
+}  // namespace photile::estimate
 
 namespace photile::maps {
 
@@ -32,6 +39,11 @@ struct MapStore {
   std::vector<std::uint32_t> landed;  ///< per sided triangle: photons that landed there
   std::vector<glm::vec3> normals;     ///< per sided triangle; only if a page has entry_normal
 
+  /// Makes what answers queries on these maps where they are no grids: what grids are compared with
+  /// is made so (bench/structures). Empty for grids.
+  std::function<std::unique_ptr<estimate::Query>(const MapStore&, const estimate::QueryParameters&)>
+      make_query;
+
   /// The maps of hits [first, first + count); those on tiles get the tiles' numbers, which follow
   /// those of all maps.
   std::vector<std::uint32_t> maps_of(const PrimaryHits& hits, std::size_t first,
@@ -41,7 +53,7 @@ struct MapStore {
 /// Work-items of a group in every kernel of build and estimate.
 inline constexpr std::size_t work_group_size = 64;
 
-/// That of the kernels whose work-items work together in local memory.
+/// The group size of the kernels whose work-items work together in local memory.
 inline constexpr std::size_t group_size = PHOTILE_COOPERATIVE_GROUP;
 
 /// Whether such kernels are used: anywhere but on CPUs, where work-items of a group run in turn,

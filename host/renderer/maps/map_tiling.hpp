@@ -58,7 +58,7 @@ class MapTiling {
 
   /// Hits on the tile belong to map `map` from now on.
   void assign(const Rectangle& tile, std::uint32_t map);
-  /// The map assigned to the place; `none` where no photon is near.
+  /// The map assigned to the point; `none` where no photon is near.
   std::uint32_t map_at(const glm::vec3& position) const { return map_of_bin_[bin_of(position)]; }
 
  private:

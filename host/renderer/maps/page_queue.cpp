@@ -28,7 +28,7 @@ std::optional<MapRange> PageQueue::next() {
     const std::uint64_t most = limits_.most_entries();
     if (page.entries > most) {
       throw DeviceMemoryError(fmt::format(
-          "the photon map of {} has {} photons within the radius of one place, more than the {} "
+          "the photon map of {} has {} photons within the radius of one point, more than the {} "
           "that the device's largest buffer holds; use fewer photons, a smaller radius or more "
           "passes, or a larger memory limit if one is set",
           name_map_(page.first), page.entries, most));

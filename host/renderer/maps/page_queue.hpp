@@ -31,7 +31,7 @@ class PageQueue {
             MakeTiling make_tiling, NameMap name_map);
 
   /// The next page, as far as possible within the limits; nothing at the end. Errors: DeviceError
-  /// where the photons within the radius of one place need a buffer larger than the largest.
+  /// where the photons within the radius of one point need a buffer larger than the largest.
   std::optional<MapRange> next();
   /// Whether `next` will return none, unless a page is cut or put back.
   bool empty() const { return pages_.empty(); }

@@ -28,26 +28,13 @@ void check(const Scene& scene, const Photons& photons, const NeighbourGroups& gr
                                  parameters.radius, groups.radius));
   }
   check_setting("photons_per_cell", setting_value(parameters.photons_per_cell));
-  if (is_global(parameters.structure) && std::isinf(groups.radius)) {
-    throw UsageError(fmt::format("{} knows no triangles' maps: use other maps than naive",
-                                 name_of(parameters.structure)));
-  }
   if (photons.size() > limits::max_stored_photons) {
     throw UsageError(fmt::format("{} stored photons; at most {} can be indexed", photons.size(),
                                  limits::max_stored_photons));
   }
 }
 
-const MapStructureRow& row_of(MapStructure structure) {
-  return *std::find_if(map_structure_table.begin(), map_structure_table.end(),
-                       [&](const MapStructureRow& row) { return row.structure == structure; });
-}
-
 }  // namespace
-
-std::string_view name_of(MapStructure structure) { return row_of(structure).name; }
-
-bool is_global(MapStructure structure) { return row_of(structure).global; }
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
@@ -79,17 +66,11 @@ void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photon
   store_->naive = std::isinf(groups.radius);
   store_->landed = landed_on(scene, photons);
   store_->statistics.photons = photons.size();
-  if (is_global(parameters.structure)) {
-    store_->normals = maps::sided_normals(scene);
-    const auto maps = static_cast<std::uint32_t>(2 * scene.triangle_count());
-    maps::build_global_map(*store_, photons, maps);
-  } else {
-    if (groups.offsets.size() != 2 * scene.triangle_count() + 1) {
-      throw InputError(
-          fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
-    }
-    maps::build_maps_of_groups(*store_, scene, photons, spent, groups, wanted, progress);
+  if (groups.offsets.size() != 2 * scene.triangle_count() + 1) {
+    throw InputError(
+        fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
   }
+  maps::build_maps_of_groups(*store_, scene, photons, spent, groups, wanted, progress);
 
   store_->statistics.spilled_bytes = store_->pages.spilled_bytes();
   store_->statistics.seconds = stopwatch.seconds();

@@ -12,7 +12,7 @@ namespace photile::maps {
 /// must stay below 2^32.
 void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values);
 
-/// The same, into another buffer of the same size.
+/// The exclusive prefix sum, into another buffer of the same size.
 void exclusive_prefix_sum(const device::KernelSet& kernels,
                           const device::Buffer<std::uint32_t>& values,
                           device::Buffer<std::uint32_t>& scanned);

@@ -34,7 +34,7 @@ class ResidentMaps final : private Residents {
     ~Release() { pages.release(); }
   };
 
-  /// Of the pages that are not on the device.
+  /// Bytes of the pages that are not on the device.
   std::uint64_t spilled_bytes() const;
 
  private:

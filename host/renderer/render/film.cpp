@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "estimate/reflected_radiance.hpp"
-#include "trace/by_pixel.hpp"
+#include "trace/hit_batch.hpp"
 
 namespace photile {
 namespace {

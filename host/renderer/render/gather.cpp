@@ -6,7 +6,7 @@
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
 #include "render/hit_source.hpp"
-#include "trace/sensor_hits.hpp"
+#include "trace/sensors.hpp"
 
 namespace photile {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "photile/errors.hpp"
 #include "trace/hit_batch.hpp"
-#include "trace/sensor_hits.hpp"
+#include "trace/sensors.hpp"
 
 namespace photile {
 namespace {

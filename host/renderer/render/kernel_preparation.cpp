@@ -68,7 +68,7 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
     const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
                                                    {sample.radius, parameters.angle_degrees});
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
-                          {sample.radius, parameters.photons_per_cell, parameters.structure});
+                          {sample.radius, parameters.photons_per_cell});
     const EstimateParameters estimate{
         .neighbours = parameters.neighbours, .area = parameters.area, .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);

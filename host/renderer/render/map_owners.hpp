@@ -18,9 +18,9 @@ class MapOwners {
   MapOwners(const Scene& scene, const Patches& patches, std::span<const std::uint32_t> landed,
             std::uint32_t processes);
 
-  /// Of the maps that serve a sided triangle: a rank.
+  /// The rank that has the maps of an oriented face.
   std::uint32_t of(std::uint32_t sided_triangle) const { return of_triangle_[sided_triangle / 2]; }
-  /// Of a map of the groups.
+  /// The rank that has a map of the groups.
   std::uint32_t of_map(std::uint32_t map) const { return of_pair_[map / 2]; }
   /// Per map of the groups: 1 for those of a rank.
   std::vector<std::uint8_t> maps_of(std::uint32_t rank) const;

@@ -7,8 +7,8 @@
 
 #include "estimate/estimate_writer.hpp"
 #include "render/surface_path.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/hit_point.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/receiver.hpp"
 
 namespace photile::reference {
 namespace {

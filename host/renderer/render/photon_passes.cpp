@@ -285,7 +285,7 @@ void PhotonPasses::find_groups(const Photons& photons, PreparedPhotons* prepared
   const Stopwatch stopwatch;
   groups_ = prepared ? std::move(prepared->groups)
                      : find_map_groups(
-                           scene_, photons, plan_.map_mode(), plan_.groups(radius_), progress,
+                           scene_, photons, plan_.used().maps, plan_.groups(radius_), progress,
                            plan_.passes() > 1 ? MapUsers::any_photons : MapUsers::these_photons);
   costs_.group.add(stopwatch.taken(), groups_.bytes());
   costs_.group_members = groups_.members.size();

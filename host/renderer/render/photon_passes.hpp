@@ -23,7 +23,7 @@ namespace photile {
 /// The photon estimate, as points ask for it.
 struct PhotonLight {
   std::shared_ptr<estimate::LightAtPoints> of_points;
-  /// Of points that all processes ask for together; the same where there is one process.
+  /// The light at points that all processes ask for together; `own` where there is one process.
   std::shared_ptr<estimate::LightAtPoints> of_nodes;
   std::shared_ptr<const estimate::PhotonEstimate>
       estimate;  ///< null where maps are built when they are needed
@@ -92,7 +92,7 @@ class PhotonPasses {
   /// Errors: those of the stages.
   PassPhotons next(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
 
-  /// Of the first pass, metres.
+  /// The radius of the first pass, metres.
   double radius() const { return radius_; }
 
   /// In words: what nodes depend on beside the scene and the photons.
@@ -115,7 +115,7 @@ class PhotonPasses {
                                 Progress& progress);
   std::shared_ptr<estimate::PhotonEstimate> estimate_of(
       std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const;
-  /// As it is asked for where several processes have the maps.
+  /// The estimate as it is asked for where several processes have the maps.
   PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.
   PassPhotons facts(const Photons& photons) const;

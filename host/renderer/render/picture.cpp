@@ -78,7 +78,7 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
 
 RenderResult Picture::finish(double radius) {
   if (auto* const processes = plan_.used().processes) bring_rows(*processes, layers_);
-  // Looks at lamps may take more off a surface than light maps, which blur, hold there.
+  // Light samples may take more off a surface than light maps, which blur, hold there.
   if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
   RenderCosts costs = costs_;
   costs.film.host_bytes = layers_.bytes();

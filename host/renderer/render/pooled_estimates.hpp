@@ -10,7 +10,7 @@ namespace photile {
 /// The estimates of the pooled layers; those of a hit are summed in its own order.
 Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::size_t hits);
 
-/// The same of lamps that are seen.
+/// Pools the emission of visible lights.
 void pool_emission(const LightPooling& pooling, PrimaryHitBatch& batch);
 
 }  // namespace photile

@@ -18,7 +18,7 @@ double mean_of(const std::vector<std::uint32_t>& counts) {
   return ratio(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}), counts.size());
 }
 
-/// Of an even number the mean of the two in the middle; 0 of none.
+/// The median; of an even number of counts the mean of the two in the middle, of none 0.
 double median_of(std::vector<std::uint32_t> counts) {
   if (counts.empty()) return 0;
   std::sort(counts.begin(), counts.end());

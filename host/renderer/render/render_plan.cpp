@@ -29,27 +29,17 @@ PhotonTracerParameters all_photons(const RenderParameters& used) {
           .keep_caustics = used.light_map_rays > 0};
 }
 
-/// Says so where most photons have no other within the radius: most places then read nothing.
+/// Says so where most photons have no other within the radius: most points then read nothing.
 void note_lonely_photons(const Photons& photons, double radius, Progress& progress) {
   try {
     const double nearest = automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance;
     if (radius >= nearest) return;
     progress.note(
         fmt::format("radius {:.3g} m: half of the photons have no other within {:.3g} m; "
-                    "most places read no light; give a larger radius, or none",
+                    "most points receive no light; give a larger radius, or none",
                     radius, nearest));
   } catch (const UsageError&) {
     // Most photons lie in the same points.
-  }
-}
-
-/// Errors: SettingError for what one process alone can do.
-void check_for_several(const RenderParameters& asked) {
-  if (is_global(asked.structure)) {
-    throw SettingError(
-        setting_named("structure"),
-        std::string(name_of(asked.structure)) +
-            " is over all photons, which several processes share; take uniform-grid");
   }
 }
 
@@ -89,7 +79,6 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
       least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
-  if (asked.processes) check_for_several(asked);
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) {
@@ -135,7 +124,7 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
     return used_.radius;
   }
   if (photons.total() < 2) {
-    // Nothing but lamps, mirrors and glass is seen, or rays bring all the light there is.
+    // Nothing but lights, mirrors and glass is seen, or rays bring all the light there is.
     if (all_photons(used_).store_direct) {
       progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
     }
@@ -153,11 +142,6 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
   }
 }
 
-MapMode RenderPlan::map_mode() const {
-  const bool global = is_global(used_.structure);  // no use for patches
-  return global ? MapMode::triangle : used_.maps;
-}
-
 NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
   return {first_radius, used_.angle_degrees};
 }
@@ -165,7 +149,6 @@ NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
 PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
   return {.radius = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
           .photons_per_cell = used_.photons_per_cell,
-          .structure = used_.structure,
           .large_pages = !reads_light_maps()};  // whose nodes are few
 }
 

@@ -18,7 +18,7 @@
 namespace photile {
 
 /// Whether nodes of light maps gather light for what is asked: with rays of theirs, and unless the
-/// light is not that of nodes, or looks at lamps from the hits replace a part of it.
+/// light is not that of nodes, or light samples from the hits replace a part of it.
 bool nodes_gather(const RenderParameters& asked);
 
 /// Who asks for light: pictures, whose hits lie so close that many share nodes of light maps, or
@@ -32,7 +32,7 @@ class RenderPlan {
   RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits, Progress& progress);
 
   /// What is asked, with what follows from it in place: photon passes that fit in memory, looks at
-  /// lamps where rays gather, discs for naive maps. The radius is 0 where photons tell it.
+  /// lights where rays gather, discs for naive maps. The radius is 0 where photons tell it.
   const RenderParameters& used() const { return used_; }
 
   int passes() const { return used_.passes; }
@@ -44,29 +44,29 @@ class RenderPlan {
   bool keeps_caustics() const { return gathers_at_nodes(); }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
 
-  /// Of this pass, whose paths follow those of the passes before.
+  /// The parameters of tracing in this pass, whose paths follow those of the passes before.
   ///   paths_before   of each light
   PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before) const;
 
-  /// Of the first pass, metres: as asked, or by its photons. Errors: SettingError where they tell
-  /// none.
+  /// The radius of the first pass, metres: as asked, or by its photons. Errors: SettingError where
+  /// they tell none.
   double radius(const Photons& photons, Progress& progress) const;
 
-  MapMode map_mode() const;
   NeighbourGroupParameters groups(double first_radius) const;
   PhotonMapParameters maps(int pass, double first_radius) const;
 
-  /// Of each k that hits choose from, ascending; just one unless they are to have their own.
+  /// The parameters of each k that hits choose from, ascending; just one unless they are to have
+  /// their own.
   ///   surface   where areas are clipped, else null
   std::vector<EstimateParameters> estimates(
       int pass, const std::shared_ptr<const SurfaceIndex>& surface) const;
 
-  /// Of light maps from the photons of this pass.
+  /// The parameters of light maps from the photons of this pass.
   ///   powers   per layer
   LightMapParameters light_maps(int pass, double first_radius, const Scene& scene,
                                 const Photons& photons, std::span<const double> powers) const;
 
-  /// Of light maps where gathering rays end.
+  /// The parameters of light maps where gathering rays end.
   LightMapParameters ends(int pass, double first_radius, const Scene& scene, const Photons& photons,
                           std::span<const double> powers) const;
   /// At nodes of light maps.

@@ -10,7 +10,7 @@
 namespace photile {
 namespace {
 
-/// Of the sums of a pixel's runs: red, green, blue, illuminance.
+/// The scatter of the sums of a pixel's runs: red, green, blue, illuminance.
 struct Scatter {
   glm::dvec4 sum{0.0}, squares{0.0};
 

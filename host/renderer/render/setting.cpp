@@ -18,7 +18,6 @@ namespace photile {
 namespace {
 
 const auto& all_values(MapMode) { return all_map_modes; }
-const auto& all_values(MapStructure) { return all_map_structures; }
 const auto& all_values(AreaMode) { return all_area_modes; }
 const auto& all_values(DensityKernel) { return all_density_kernels; }
 const auto& all_values(LightMapMode) { return all_light_map_modes; }
@@ -110,11 +109,6 @@ std::string kept_for_radius(const Setting& setting, const RenderParameters& para
   return parameters.radius > 0 ? std::string() : kept_as_it_is(setting, parameters);
 }
 
-/// Structures over all photons have other groups than those of triangles.
-std::string kept_for_structure(const Setting& setting, const RenderParameters& parameters) {
-  return is_global(parameters.structure) ? kept_as_it_is(setting, parameters) : std::string();
-}
-
 /// Rays leave no direct light to photons, however many there are.
 std::string kept_for_direct_light(const Setting& setting, const RenderParameters& parameters) {
   return setting.is_given(parameters) ? "direct light by rays" : std::string();
@@ -200,12 +194,10 @@ std::vector<Setting> estimate_rows() {
                       "weights of photons; cone, epanechnikov: less blur, more noise", not_kept),
       of_groups(row<&P::maps>("maps", groups, words_of(all_map_modes),
                               "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
-      of_groups(row<&P::structure>("structure", build, words_of(all_map_structures),
-                                   "how photons are found; same neighbours", kept_for_structure)),
       row<&P::photons_per_cell>("photons_per_cell", build, PositiveNumbers{},
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>("direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
-                           "looks at lamps from a hit, which replace photons straight from lamps",
+                           "light samples from a hit, which replace photons directly from lights",
                            kept_for_direct_light, "photons bring it"),
       row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
                      "what finds the light that lobes reflect; auto: rays where light maps are "
@@ -217,8 +209,8 @@ std::vector<Setting> estimate_rows() {
                           not_kept),
       by_quality(row<&P::light_map_rays>(
                      "light_map_rays", "light maps", WholeNumbers{1, limits::max_gathering_rays},
-                     "rays, and looks at lamps, by which nodes of light maps gather light",
-                     not_kept, "the photon estimate values nodes"),
+                     "rays, and light samples, by which nodes of light maps gather light", not_kept,
+                     "the photon estimate values nodes"),
                  0, 64, 256),
       row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
                                 "largest distance between the finest nodes of light maps", not_kept,
@@ -303,11 +295,6 @@ void check(const RenderParameters& parameters) {
     if (setting.name == "least_neighbours" && parameters.least_neighbours > parameters.neighbours) {
       throw SettingError(setting, fmt::format("{} is more than the {} neighbours",
                                               parameters.least_neighbours, parameters.neighbours));
-    }
-    if (setting.name == "structure" && is_global(parameters.structure) &&
-        parameters.maps == MapMode::naive) {
-      throw SettingError(setting, fmt::format("{} knows no triangles' maps, and so no naive ones",
-                                              name_of(parameters.structure)));
     }
   }
 }

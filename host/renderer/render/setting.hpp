@@ -43,7 +43,7 @@ std::span<const Setting> settings();
 /// The row of this name, which has to be there.
 const Setting& setting_named(std::string_view name);
 
-/// Of the group Picture: what paths have, too.
+/// Whether a setting is of the group Picture, which path tracing has, too.
 inline bool is_of_any_integrator(const Setting& setting) { return setting.group == "Picture"; }
 
 /// The number times `factor`, within its range.

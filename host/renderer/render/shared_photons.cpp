@@ -10,8 +10,8 @@
 
 #include "common/byte_stream.hpp"
 #include "geometry/box.hpp"
-#include "groups/photon_blocks.hpp"
-#include "groups/photon_sample.hpp"
+#include "groups/automatic_radius.hpp"
+#include "groups/merge_patches.hpp"
 #include "maps/build_maps.hpp"
 #include "photile/defaults.hpp"
 
@@ -99,7 +99,7 @@ class Destinations {
       geometry::Box place;
       place.extend(photons.position[i]);
       for (const std::uint32_t map : others) {
-        // As kernels/grid/entry.clh, which looks closer.
+        // kernels/grid/entry.clh tests the same distance more closely.
         if (geometry::squared_distance(boxes_[map / 2], place) > squared_reach_) continue;
         const std::uint32_t rank = owners_.of_map(map);
         if (std::find(ranks.begin(), ranks.end(), rank) == ranks.end()) ranks.push_back(rank);

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "photile/defaults.hpp"
-#include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
@@ -73,20 +73,20 @@ class SurfacePath {
     }
   }
 
-  /// Of light that the path met, where looking at lamps finds it with density `other`. Lamps seen
-  /// in mirrors or through refracting glass are found by following alone.
+  /// The weight of light that the path met, where sampling lights finds it with density `other`.
+  /// Lights seen in mirrors or through refracting glass are found by following alone.
   float weight_against(float other) const {
     return density_ > 0.0f ? power_heuristic(density_, other) : 1.0f;
   }
 
-  /// Adds a lamp as seen from the point; goes on in a new direction, written to `direction`, or
+  /// Adds a light as seen from the point; goes on in a new direction, written to `direction`, or
   /// returns false.
   bool scatter(const SurfacePoint& point, glm::vec3& direction) {
     const RandomBlock numbers = random_.block(Purpose::path_scattering, ++bounce_);
     if (trace::material_of(scene_, point).interaction != Interaction::opaque) {
       const trace::Scattered scattered =
           trace::scatter_specular(scene_, point, direction, numbers.uniform(trace::choice_word));
-      // A pane of thin glass passes light straight on, and looking at lamps sees through it.
+      // A pane of thin glass passes light straight on, and sampling lights sees through it.
       const bool straight = scattered.direction == direction;
       if (!straight || !trace::material_of(scene_, point).thin) density_ = 0.0f;
       radiance_factor_ *= scattered.radiance_factor;
@@ -106,7 +106,7 @@ class SurfacePath {
     return survives(bsdf.reflected(*scattered) / density_, numbers);
   }
 
-  /// Light of one lamp, chosen at random, at a point: `weigh` and `density` of directions there.
+  /// Light of one light, chosen at random, at a point: `weigh` and `density` of directions there.
   template <class Weigh, class Density>
   void look_at_lamp(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
     const auto lamp =

@@ -20,7 +20,7 @@ struct PathLight {
 };
 
 /// Traces one path and appends what it finds, in its order: an unbiased sample of irradiance and
-/// reflected radiance (Kajiya, "The rendering equation", 1986). At each surface point a lamp is
+/// reflected radiance (Kajiya, "The rendering equation", 1986). At each surface point a light is
 /// sampled and a direction is followed; where both can find the same light, the power heuristic
 /// weighs them (Veach and Guibas, "Optimally combining sampling techniques for Monte Carlo
 /// rendering", 1995). Paths end by Russian roulette alone.

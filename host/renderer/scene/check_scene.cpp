@@ -12,7 +12,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene_builder.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile {
 namespace {
@@ -210,7 +210,7 @@ class SceneCheck {
     if (!std::isfinite(numbers) || !std::isfinite(glm::length(direction)) ||
         !std::isfinite(glm::length(glm::dvec3(light.x_axis))) ||
         !scene::within_limit(glm::dvec3(light.position))) {
-      refuse(scene_, owner + " has a colour, place, direction or angle that is no number");
+      refuse(scene_, owner + " has a colour, position, direction or angle that is no number");
     }
     check_index(light.emission_texture, scene_.textures.size(), "emission texture", owner);
     check_index(light.distribution, scene_.distributions.size(), "distribution", owner);

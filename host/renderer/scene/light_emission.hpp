@@ -1,14 +1,57 @@
-// What lights emit, from what people know of them: flux in closed form, and colour. SI units:
-// radiance (or luminance) per square metre and steradian, intensity per steradian, irradiance per
-// square metre.
+// What lights emit, from what people know of them: flux in closed form, colour, and the surface of
+// a textured light in cells of even radiance. SI units: radiance (or luminance) per square metre
+// and steradian, intensity per steradian, irradiance per square metre.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
+#include <vector>
 
 #include "photile/scene.hpp"
 
 namespace photile::scene {
+
+/// Triangles of an area light with an emission texture, each cut into congruent triangles about as
+/// large as a texel. A cell's light is the mean of a few lookups in it.
+class EmissionCells {
+ public:
+  /// References are kept. `light` has an emission texture and Light::texel_radiance, in any unit.
+  EmissionCells(const Scene& scene, const Light& light);
+
+  /// Integral of the radiance over one side of the light, per channel; times square metres.
+  const glm::dvec3& integral() const { return integral_; }
+
+  /// A point of the light's surface.
+  struct Place {
+    std::uint32_t triangle;  ///< into Scene::triangles
+    double u, v;             ///< barycentric weights of the second and third corner
+  };
+  /// Numbers in [0, 1) to a point: a cell by its luminance times its area, then evenly over the
+  /// cell. No cell is left out: each counts at least a fiftieth of the mean luminance.
+  Place sample(double cell, double u1, double u2) const;
+  /// The density of `sample` at a position, per square metre.
+  double density(const Place& place) const;
+
+ private:
+  struct Triangle {
+    std::uint32_t cuts;  ///< of each edge; cuts^2 cells
+    std::size_t first_cell;
+    double cell_area;  ///< square metres
+  };
+  double weight(std::size_t cell) const {
+    return weight_up_to_[cell] - (cell == 0 ? 0.0 : weight_up_to_[cell - 1]);
+  }
+
+  const Light* light_;
+  std::vector<Triangle> triangles_;   ///< of the light's, in their order
+  std::vector<double> weight_up_to_;  ///< of the cells up to and with this one
+  glm::dvec3 integral_{0.0};
+};
+
+/// Radiance of a textured light at a point, in the unit of Light::texel_radiance.
+glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
+                             const EmissionCells::Place& place);
 
 /// `light.color` and the luminance of `rgb`, which may be any radiometric colour; false if black.
 bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb);

@@ -23,8 +23,9 @@ void make_light_names_unique(std::vector<Light>& lights);
 /// of a long list.
 std::string listed_names(std::span<const std::string> names);
 
-/// The same with those first that differ least from `name` (Levenshtein, "Binary codes capable of
-/// correcting deletions, insertions and reversals", 1966; small and capital letters are alike).
+/// The names listed, with those first that differ least from `name` (Levenshtein, "Binary codes
+/// capable of correcting deletions, insertions and reversals", 1966; small and capital letters are
+/// alike).
 std::string names_like(std::string_view name, std::vector<std::string> names);
 
 }  // namespace photile::scene

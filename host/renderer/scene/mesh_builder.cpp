@@ -10,7 +10,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/coordinate_limit.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::scene {
 namespace {
@@ -140,7 +140,7 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
 
 /// Whether the triangle lies exactly on one before it. Which of the two a ray meets would be
 /// chance, and photons would be shared between them. Files have such pairs for both sides of a
-/// surface, which here reflects on either; lamps emit from one side only, so that they need both.
+/// surface, which here reflects on either; lights emit from one side only, so that they need both.
 bool MeshBuilder::is_duplicate(std::uint32_t triangle) {
   const auto [first, inserted] = distinct_.insert(triangle);
   if (inserted) return false;

@@ -7,11 +7,11 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/coordinate_limit.hpp"
-#include "scene/default_camera.hpp"
+#include "scene/camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
+#include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile {
@@ -59,7 +59,7 @@ struct SceneBuilder::Impl {
 
 namespace {
 
-/// Of unit length; zero where there is no direction.
+/// The direction as a unit vector; zero where there is no direction.
 glm::vec3 unit_or_zero(const glm::vec3& direction) {
   const double length = glm::length(glm::dvec3(direction));
   if (!(length > 0) || !std::isfinite(length)) return glm::vec3(0.0f);
@@ -275,7 +275,8 @@ void SceneBuilder::add(Camera camera) {
                      glm::length(camera.up) + glm::length(camera.right) +
                      camera.vertical_field_of_view;
   if (!std::isfinite(sum)) {
-    impl_->refuse(fmt::format("camera '{}' has a place or an axis that is no number", camera.name));
+    impl_->refuse(
+        fmt::format("camera '{}' has a position or an axis that is no number", camera.name));
   }
   impl_->scene.cameras.push_back(std::move(camera));
 }

@@ -1,4 +1,4 @@
-#include "scene/scene_hash.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::scene {
 namespace {

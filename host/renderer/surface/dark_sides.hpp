@@ -1,12 +1,16 @@
-// Surface of a lit sheet that no photon reaches: the wall behind a cabinet, or above a ceiling.
+// The unlit sides of smooth components that no photon reaches (the wall behind a cabinet, or above
+// a ceiling), and the pieces that the area of a disc is put together from.
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "geometry/triangle_bvh.hpp"
 #include "photile/photons.hpp"
 #include "photile/surface_index.hpp"
+#include "surface/facets.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 
@@ -34,5 +38,21 @@ std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
 ///   dark      sides that are dark as a whole: have no parts
 std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
                                       std::span<const std::uint8_t> dark, double radius);
+
+/// A piece of surface as PhotileSurfaceLeaf describes it, with its box.
+struct SurfacePiece {
+  geometry::Box box = {};
+  glm::vec3 a{0.0f}, b{0.0f}, c{0.0f};
+  std::uint32_t facet = 0;
+  std::uint32_t triangle = 0;      ///< with PHOTILE_PIECE_BORDER where it is a border edge
+  std::uint32_t dark_side = none;  ///< sided triangle of which it is a dark part
+};
+
+/// All border edges, dark parts, and those triangles that hits must look at: triangles of small
+/// facets, and those within the radius of a triangle in another plane whose normal agrees with
+/// theirs on one side or the other. The middle of a floor is neither.
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
+                                      const PlaneTree& planes, std::span<const DarkPart> dark_parts,
+                                      double radius, double angle_degrees);
 
 }  // namespace photile::surface

@@ -10,7 +10,7 @@
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_bvh.hpp"
-#include "groups/group_lists.hpp"
+#include "groups/neighbour_groups.hpp"
 #include "photile/device/surface.h"
 
 namespace photile::surface {

@@ -1,4 +1,5 @@
-// Facets: connected triangles in one plane, and the edges that bound them.
+// Facets: connected triangles in one plane, the edges that bound them, and what lies near a
+// triangle in another plane.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/triangle_bvh.hpp"
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
@@ -29,5 +31,39 @@ struct Facets {
 /// of normals_agree, heights by less than a thousandth of the radius.
 ///   dark   per sided triangle: no facet goes on where that of one of its sides changes; or empty
 Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark = {});
+
+/// A hierarchy over the triangles that count, whose nodes know whether all of theirs belong to one
+/// facet: the middle of a large wall is left out at once, however finely it is tessellated.
+class PlaneTree {
+ public:
+  PlaneTree(const SurfaceMesh& mesh, const Facets& facets);
+
+  /// Calls visit(other) for triangles of other facets than `triangle` in leaves at most `radius`
+  /// metres from `box`, until it returns true.
+  template <class Visit>
+  void visit_others(std::uint32_t triangle, const geometry::Box& box, double radius,
+                    Visit&& visit) const {
+    const std::uint32_t own = mesh_.counts(triangle) ? facets_.plane[triangle] : nothing;
+    tree_.visit_within(
+        box, radius,
+        [&](std::uint32_t node) { return plane_[node] != own && plane_[node] != nothing; },
+        [&](std::size_t first, std::size_t last) {
+          for (std::size_t i = first; i < last; ++i) {
+            const std::uint32_t other = tree_.order()[i];
+            if (mesh_.counts(other) && facets_.plane[other] != own && visit(other)) return true;
+          }
+          return false;
+        });
+  }
+
+ private:
+  static constexpr std::uint32_t several = none;      ///< facets below a node
+  static constexpr std::uint32_t nothing = none - 1;  ///< no triangle that counts
+
+  const SurfaceMesh& mesh_;
+  const Facets& facets_;
+  geometry::TriangleBvh tree_;
+  std::vector<std::uint32_t> plane_;  ///< per node: as Facets::plane, or one of the above
+};
 
 }  // namespace photile::surface

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "photile/neighbour_groups.hpp"
-#include "surface/disjoint_sets.hpp"
-#include "surface/lone_edges.hpp"
+#include "surface/boundary_edges.hpp"
 
 namespace photile::surface {
+
 namespace {
 
 /// The parts of several tasks, one after the other.
@@ -18,12 +18,12 @@ void append_all(const std::vector<std::vector<Value>>& parts, std::vector<Value>
   for (const std::vector<Value>& part : parts) all.insert(all.end(), part.begin(), part.end());
 }
 
-void join_along_edges(const SurfaceMesh& mesh, const LoneEdges& edges, double cos_angle,
+void join_along_edges(const SurfaceMesh& mesh, const BoundaryEdges& edges, double cos_angle,
                       std::vector<Connection>& connections) {
   constexpr std::size_t edges_per_task = 1024;
   std::vector<std::vector<Connection>> found((edges.size() + edges_per_task - 1) / edges_per_task);
   tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
-    const auto connect = [&](const LoneEdge& edge, const LoneEdge& other) {
+    const auto connect = [&](const BoundaryEdge& edge, const BoundaryEdge& other) {
       const std::uint32_t a = edge.triangle, b = other.triangle;
       if (mesh.stores(a) != mesh.stores(b)) return;
       const std::uint32_t flip = glm::dot(edge.to - edge.from, other.to - other.from) > 0 ? 1 : 0;
@@ -43,7 +43,7 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees) {
   const double cos_angle = std::cos(glm::radians(angle_degrees));
   std::vector<std::vector<Connection>> connected(mesh.edge_shares());
-  std::vector<std::vector<LoneEdge>> alone(mesh.edge_shares());
+  std::vector<std::vector<BoundaryEdge>> alone(mesh.edge_shares());
   tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
     mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
       if (edges.size() == 1) {
@@ -61,10 +61,10 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
     });
   });
   std::vector<Connection> connections;
-  std::vector<LoneEdge> lone;
+  std::vector<BoundaryEdge> lone;
   append_all(connected, connections);
   append_all(alone, lone);
-  join_along_edges(mesh, LoneEdges(std::move(lone), 1e-3 * radius), cos_angle, connections);
+  join_along_edges(mesh, BoundaryEdges(std::move(lone), 1e-3 * radius), cos_angle, connections);
   return connections;
 }
 

@@ -1,13 +1,37 @@
 // Sheets: sided triangles that connect over edges which fold by no more than an angle.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
+
+/// The smallest number of a set stands for it, whatever the order in which sets were joined.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
 
 struct Sheets {
   std::vector<std::uint32_t> of;  ///< per sided triangle

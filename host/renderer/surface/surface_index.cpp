@@ -11,10 +11,8 @@
 #include "surface/dark_sides.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
-#include "surface/plane_tree.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
-#include "surface/surface_pieces.hpp"
 #include "surface/surface_tree.hpp"
 
 namespace photile {

@@ -15,7 +15,7 @@ namespace {
 
 std::tuple<float, float, float> tuple_of(const glm::vec3& p) { return {p.x, p.y, p.z}; }
 
-/// Per vertex: the smallest index of those at the same place.
+/// Per vertex: the smallest index of those at the same position.
 std::vector<std::uint32_t> welded_vertices(const std::vector<glm::vec3>& vertices) {
   std::vector<std::uint32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -92,7 +92,7 @@ SurfaceMesh::SurfaceMesh(const Scene& from)
                        from_corner < to_corner});
     }
   }
-  // Those of equal corners are in the order of their triangles, and stay so.
+  // Edges of equal corners are in the order of their triangles, and stay so.
   const int bits = std::bit_width(scene.vertices.size());
   geometry::radix_sort(edges, 2 * bits, [bits](const MeshEdge& edge) {
     return std::uint64_t{edge.low} << bits | edge.high;

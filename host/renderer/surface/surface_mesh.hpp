@@ -1,4 +1,4 @@
-// The triangles of a scene with what they share: corners, edges, places.
+// The triangles of a scene with what they share: corners, edges, positions.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct SurfaceMesh {
     for_each_edge_from(0, edges.size(), visit);
   }
 
-  /// Those of them that begin in a share of all edges: shares may be visited in parallel.
+  /// Visits the pairs that begin in a part of all edges: parts may be visited in parallel.
   template <class Visit>
   void for_each_edge_of(std::size_t share, const Visit& visit) const {
     const auto begin_of = [&](std::size_t i) {

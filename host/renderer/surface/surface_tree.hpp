@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/device/surface.h"
-#include "surface/surface_pieces.hpp"
+#include "surface/dark_sides.hpp"
 
 namespace photile::surface {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "trace/ray_scene_impl.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {

@@ -24,7 +24,7 @@ struct CoherentHits {
 };
 
 /// The nearest hit of each ray. As robust as a ray alone: none slips between two triangles.
-/// Thread-safe; the caller's thread must flush denormals (flush_denormals.hpp). Directions must be
+/// Thread-safe; the caller's thread must flush denormals (ray_query.hpp). Directions must be
 /// finite.
 void intersect(const RayScene& rays, const glm::vec3& origin, const CoherentDirections& directions,
                CoherentHits& hits);

@@ -3,16 +3,16 @@
 #include <glm/gtc/constants.hpp>
 
 #include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
-#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {
 
-/// Panes and holes that a ray may pass on its way to a lamp: each takes it on, but for rounding.
+/// Panes and holes that a ray may pass on its way to a light: each takes it on, but for rounding.
 constexpr int most_passed = 4096;
 
 class DirectLight {
@@ -27,7 +27,7 @@ class DirectLight {
         share_(share),
         found_(found) {}
 
-  void look_at_lamp(const LookSamples::Look& look) {
+  void look_at_lamp(const LightSampleNumbers::Look& look) {
     const auto lamp = lamps_.sample(point_.position, look.lamp, look.place);
     if (!lamp || !(glm::dot(lamp->direction, point_.normal) > 0.0f)) return;
     glm::vec3 arrives =
@@ -39,8 +39,8 @@ class DirectLight {
     add(lamp->layer, receiver_.weights(lamp->direction) * arrives);
   }
 
-  /// Follows a direction through panes and holes until it meets a lamp, or what bends or stops it.
-  void look_around(const LookSamples::Look& look) {
+  /// Follows a direction through panes and holes until it meets a light, or what bends or stops it.
+  void look_around(const LightSampleNumbers::Look& look) {
     const auto direction = receiver_.sample(look.lobe, look.direction);
     if (!direction) return;
     const float density = receiver_.density(*direction);
@@ -94,14 +94,15 @@ class DirectLight {
 
 }  // namespace
 
-LookSamples::LookSamples(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface)
+LightSampleNumbers::LightSampleNumbers(const RandomStream& sequences, std::uint32_t first,
+                                       std::uint32_t surface)
     : scrambles_{sequences.block(Purpose::direct_light, 4 * surface),
                  sequences.block(Purpose::direct_light, 4 * surface + 1),
                  sequences.block(Purpose::direct_light, 4 * surface + 2),
                  sequences.block(Purpose::direct_light, 4 * surface + 3)},
       first_(first) {}
 
-LampNumbers LookSamples::lamp(std::uint32_t number) const {
+LightNumbers LightSampleNumbers::lamp(std::uint32_t number) const {
   const glm::uvec2 choices = sobol_words(first_ + number, scrambles_[0]);
   const glm::uvec2 place = sobol_words(first_ + number, scrambles_[1]);
   // A choice among many takes more than 32 bits: all looks share what follows.
@@ -109,7 +110,7 @@ LampNumbers LookSamples::lamp(std::uint32_t number) const {
           RandomBlock({choices.y, scrambles_[1].word(3), place.x, place.y})};
 }
 
-LookSamples::Look LookSamples::look(std::uint32_t number) const {
+LightSampleNumbers::Look LightSampleNumbers::look(std::uint32_t number) const {
   const glm::uvec2 direction = sobol_words(first_ + number, scrambles_[2]);
   const glm::uvec2 lobe = sobol_words(first_ + number, scrambles_[3]);
   return {lamp(number), RandomBlock({lobe.x, 0, 0, 0}),
@@ -118,7 +119,7 @@ LookSamples::Look LookSamples::look(std::uint32_t number) const {
 
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
                        const glm::vec3& direction, ReflectedPart part, int count,
-                       const LookSamples& samples, std::vector<ReceivedLight>& found) {
+                       const LightSampleNumbers& samples, std::vector<ReceivedLight>& found) {
   OpaqueBsdf bsdf(rays.scene(), point, direction);
   bsdf.shade_smoothly(rays.scene(), point);
   if (part == ReflectedPart::but_the_base) bsdf.drop_diffuse();
@@ -126,21 +127,21 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
   const Receiver receiver(point, bsdf);
   DirectLight light(rays, lamps, point, receiver, 1.0f / static_cast<float>(count), found);
   for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
-    const LookSamples::Look look = samples.look(number);
+    const LightSampleNumbers::Look look = samples.look(number);
     light.look_at_lamp(look);
     light.look_around(look);
   }
 }
 
-void LampLooks::clear() {
+void ShadowRays::clear() {
   lines_.clear();
   found_.clear();
 }
 
-void LampLooks::add(const LightSampler& lamps, const SurfacePoint& point,
-                    const LampNumbers& numbers, const glm::vec3& weight, float directions,
-                    const LampChances& chances, std::uint32_t tag) {
-  const auto lamp = lamps.sample(point.position, numbers.lamp, numbers.place, chances);
+void ShadowRays::add(const LightSampler& lamps, const SurfacePoint& point,
+                     const LightNumbers& numbers, const glm::vec3& weight, float directions,
+                     const SelectionProbabilities& probabilities, std::uint32_t tag) {
+  const auto lamp = lamps.sample(point.position, numbers.lamp, numbers.place, probabilities);
   if (!lamp) return;
   const float cosine = glm::dot(lamp->direction, point.normal);
   if (!(cosine > 0.0f)) return;
@@ -153,7 +154,7 @@ void LampLooks::add(const LightSampler& lamps, const SurfacePoint& point,
   found_.push_back({tag, lamp->layer, arrives, lamp->direction});
 }
 
-std::span<const LampLooks::Found> LampLooks::found(const RayScene& rays) {
+std::span<const ShadowRays::Found> ShadowRays::found(const RayScene& rays) {
   hidden_.resize(lines_.size());
   occluded(rays, lines_, hidden_);
   std::size_t left = 0;

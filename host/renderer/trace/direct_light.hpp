@@ -1,4 +1,4 @@
-// Light that reaches a surface straight from lamps, by rays instead of photons.
+// Light that reaches a surface directly from lights, by rays instead of photons.
 #pragma once
 
 #include <array>
@@ -22,27 +22,27 @@ struct ReceivedLight {
   glm::vec3 radiance;    ///< reflected against the ray that arrived at the receiver
 };
 
-/// Random numbers for a look at a lamp.
-struct LampNumbers {
-  RandomBlock lamp, place;  ///< which lamp, and where on it
+/// Random numbers for a light sample.
+struct LightNumbers {
+  RandomBlock lamp, place;  ///< which light, and where on it
 };
 
-/// The places of scrambled sequences (sobol.hpp) that a receiver's looks take: point `first` and
-/// those after it.
-class LookSamples {
+/// The positions of scrambled sequences (random_stream.hpp) that a receiver's looks take: point
+/// `first` and those after it.
+class LightSampleNumbers {
  public:
   /// `sequences`: receivers that share them, as the samples of a pixel do, take others of their
   /// points each.
   ///   surface   of a path, counted from 0: each has sequences of its own
-  LookSamples(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
+  LightSampleNumbers(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
-  /// Random numbers of one look, at a lamp and in a direction of the receiver's own.
-  struct Look : LampNumbers {
+  /// Random numbers of one look, at a light and in a direction of the receiver's own.
+  struct Look : LightNumbers {
     RandomBlock lobe, direction;  ///< of the receiver
   };
   Look look(std::uint32_t number) const;
-  /// Its numbers for the lamp alone.
-  LampNumbers lamp(std::uint32_t number) const;
+  /// Its numbers for the light alone.
+  LightNumbers lamp(std::uint32_t number) const;
 
  private:
   std::array<RandomBlock, 4> scrambles_;  ///< of pairs of dimensions
@@ -56,39 +56,39 @@ enum class ReflectedPart : std::uint8_t {
   but_the_lobe   ///< OpaqueBsdf::drop_lobe
 };
 
-/// Estimates what lamps send straight to a point of an opaque surface, or through panes of thin
+/// Estimates what lights send straight to a point of an opaque surface, or through panes of thin
 /// glass and holes of cut-out surfaces: just what photons bring that are not scattered before.
-/// `count` times a lamp is looked at, and a direction of the surface's own is followed; what both
+/// `count` times a light is sampled, and a direction of the surface's own is followed; what both
 /// would find is weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to
 /// `found` is unbiased.
 ///   direction   of the ray that arrived at the point, unit
 ///   part        of the reflection that the radiance has
 void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
                        const glm::vec3& direction, ReflectedPart part, int count,
-                       const LookSamples& samples, std::vector<ReceivedLight>& found);
+                       const LightSampleNumbers& samples, std::vector<ReceivedLight>& found);
 
-/// Looks at lamps from surfaces that lie close together, for irradiance: the part that looks find
-/// where directions with the density of the cosine are followed as well. Lines of sight are traced
+/// Light samples from surfaces that lie close together, for irradiance: the part that looks find
+/// where directions with the density of the cosine are followed as well. Shadow rays are traced
 /// sixteen at a time.
-class LampLooks {
+class ShadowRays {
  public:
   void clear();
 
   /// Looks once.
   ///   weight       of what the look finds
   ///   directions   followed for each look; what both would find is weighed
-  ///   chances      of lamps at the point
+  ///   probabilities      of lights at the point
   ///   tag          that is found again with the light
-  void add(const LightSampler& lamps, const SurfacePoint& point, const LampNumbers& numbers,
-           const glm::vec3& weight, float directions, const LampChances& chances,
+  void add(const LightSampler& lamps, const SurfacePoint& point, const LightNumbers& numbers,
+           const glm::vec3& weight, float directions, const SelectionProbabilities& probabilities,
            std::uint32_t tag);
 
   struct Found {
     std::uint32_t tag, layer;
     glm::vec3 irradiance;  ///< weighed, lm/m2
-    glm::vec3 direction;   ///< towards the lamp, unit
+    glm::vec3 direction;   ///< towards the light, unit
   };
-  /// Of all looks, in their order, those that nothing hides.
+  /// The light samples that nothing occludes, in their order.
   std::span<const Found> found(const RayScene& rays);
 
  private:

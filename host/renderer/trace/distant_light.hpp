@@ -1,17 +1,48 @@
-// Light from beyond the scene that rays can meet: surroundings, or the disc of a sun.
+// Light from beyond the scene that rays can meet (surroundings, the disc of a sun), and directions
+// towards it in proportion to its luminance.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "photile/scene.hpp"
-#include "trace/environment_sampler.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile::trace {
+
+/// A row of the map by its luminance, then a texel of the row, then a direction uniformly over the
+/// texel's solid angle (Pharr, Jakob and Humphreys, "Physically Based Rendering", 12.5).
+class EnvironmentSampler {
+ public:
+  /// A reference is kept. `map` is not black.
+  explicit EnvironmentSampler(const EnvironmentMap& map);
+
+  /// In proportion to luminance times a factor, of the middle of each texel, >= 0.
+  EnvironmentSampler(const EnvironmentMap& map,
+                     const std::function<double(const glm::dvec3& direction)>& factor);
+  /// Whether there is a direction to choose.
+  bool empty() const { return !(row_up_to_.back() > 0); }
+
+  struct Sample {
+    glm::vec3 direction;  ///< unit, towards the surroundings
+    glm::vec3 color;      ///< radiance / luminance of the texel
+    float density;        ///< per steradian: luminance x factor / its integral over the sphere
+  };
+  Sample sample(const RandomBlock& random) const;
+  float density(const glm::vec3& direction) const;
+
+ private:
+  /// The weight of a texel: luminance x factor.
+  double weight(int column, int row) const;
+
+  const EnvironmentMap* map_;
+  std::vector<double> row_up_to_;  ///< luminance x solid angle of the rows up to and with this one
+  std::vector<double> texel_up_to_;  ///< luminance of the texels of a row up to and with this one
+};
 
 /// What rays see of a light beyond the scene.
 class DistantLight {
@@ -44,7 +75,7 @@ class DistantLights {
   auto end() const { return lights_.end(); }
   const DistantLight& operator[](std::size_t index) const { return lights_[index]; }
 
-  /// Those that may shine from a unit direction, as indices; all that do are among them.
+  /// The lights that may shine from a unit direction, as indices; all that do are among them.
   std::span<const std::uint32_t> towards(const glm::vec3& direction) const {
     return cells_.size() == 1 ? cells_.front() : cells_[cell_towards(direction)];
   }

@@ -6,12 +6,11 @@
 
 #include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/holes.hpp"
 #include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
-#include "trace/sobol.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -19,7 +18,7 @@ namespace photile::trace {
 namespace {
 
 void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
-                      ReflectedPart part, const LookSamples& samples, EyeRecord& record) {
+                      ReflectedPart part, const LightSampleNumbers& samples, EyeRecord& record) {
   thread_local std::vector<ReceivedLight> found;
   found.clear();
   find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, part,
@@ -78,11 +77,11 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
 }
 
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
-                                     EyeRecord& record, const LampTechnique* other,
-                                     const LookSamples* looks, std::vector<EyeRay>* parted) {
+                                     EyeRecord& record, const LightTechnique* other,
+                                     const LightSampleNumbers* looks, std::vector<EyeRay>* parted) {
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
-  // Lamps seen in mirrors or through refracting glass are found by following alone.
+  // Lights seen in mirrors or through refracting glass are found by following alone.
   const bool sees_near_lamps = other == nullptr || !other->distant_only;
   const auto weight_against = [&](float found) {
     return ray.straight ? power_heuristic(other->density, found) : 1.0f;
@@ -100,10 +99,9 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
         const DistantLight& light = (*setup.distant)[index];
         const glm::vec3 radiance = light.radiance(ray.direction);
         if (radiance == glm::vec3(0.0f)) continue;
-        const float weight =
-            other
-                ? weight_against(other->lamps.density(light, start, ray.direction, other->chances))
-                : 1.0f;
+        const float weight = other ? weight_against(other->lamps.density(
+                                         light, start, ray.direction, other->probabilities))
+                                   : 1.0f;
         record.emission.push_back(
             {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
       }
@@ -113,7 +111,7 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
     if (emits(scene, point) && sees_lamps && (sees_near_lamps || !ray.straight)) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight =
-          other ? weight_against(other->lamps.density(start, point, other->chances)) : 1.0f;
+          other ? weight_against(other->lamps.density(start, point, other->probabilities)) : 1.0f;
       record.emission.push_back({ray.pixel, light,
                                  weight * ray.radiance_weight() * (*setup.emitted_radiance)[light] *
                                      emission_towards(scene, point, -ray.direction)});
@@ -170,7 +168,7 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   if (direction == glm::vec3(0.0f)) return;  // beyond the circle of a fisheye
   EyeRay ray{setup.eye + glm::vec3(setup.film->offset(x + offset.x, y + offset.y)), direction,
              glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
-  std::optional<LookSamples> looks;
+  std::optional<LightSampleNumbers> looks;
   if (setup.direct) {
     looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
   }
@@ -195,10 +193,10 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
 
 namespace {
 
-/// A lamp as the lobe reflects it; also by how much the base reflects more or less of it than of
+/// A light as the lobe reflects it; also by how much the base reflects more or less of it than of
 /// light from all sides, for hits say no more of the base.
 void look_at_lamp(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& whole,
-                  const OpaqueBsdf& lobe, const LookSamples::Look& look, EyeRecord& record) {
+                  const OpaqueBsdf& lobe, const LightSampleNumbers::Look& look, EyeRecord& record) {
   const auto lamp = setup.lobes->lamps.sample(end.point.position, look.lamp, look.place);
   if (!lamp) return;
   glm::vec3 reflected = lobe.reflected(lamp->direction);
@@ -229,7 +227,8 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     whole.shade_smoothly(scene, end.point);
     OpaqueBsdf lobe = whole;
     lobe.keep_lobe();
-    const LookSamples::Look look = LookSamples(sample.of_pixel, sample.index, surface - 1).look(0);
+    const LightSampleNumbers::Look look =
+        LightSampleNumbers(sample.of_pixel, sample.index, surface - 1).look(0);
     look_at_lamp(setup, end, whole, lobe, look, record);
     const auto direction = lobe.sample(look.direction);
     if (!direction) return;
@@ -242,8 +241,8 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     left *= weight;
     const EyeRay ray{end.point.origin_towards(*direction), *direction, end.ray.throughput * weight,
                      end.ray.pixel, end.ray.radiance_factor};
-    const LampTechnique other{setup.lobes->lamps, density};
-    const LookSamples looks(sample.of_pixel, sample.index * looks_at_hits, surface);
+    const LightTechnique other{setup.lobes->lamps, density};
+    const LightSampleNumbers looks(sample.of_pixel, sample.index * looks_at_hits, surface);
     const RandomStream random(setup.parameters->seed, sample.path,
                               first_stream + static_cast<std::uint32_t>(depth));
     const auto next = follow_eye_ray(setup, ray, random, record, &other, &looks);

@@ -13,7 +13,7 @@
 #include "trace/distant_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/random_stream.hpp"
-#include "trace/ray_scene_impl.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -39,11 +39,11 @@ struct EyeRecord {
   std::vector<EyeHit> hits;
   std::vector<GlossyEyeHit> glossy;    ///< one for each hit; empty unless the scene is glossy
   std::vector<SeenEmission> emission;  ///< by light
-  std::vector<SeenEmission> direct;    ///< straight from lamps at the hits, by layer
+  std::vector<SeenEmission> direct;    ///< directly from lights at the hits, by layer
   std::uint64_t rays = 0;
 };
 
-/// How hits get the light that comes straight from lamps, where it is not left to the photons.
+/// How hits get the light that comes directly from lights, where it is not left to the photons.
 struct DirectRays {
   const RayScene& rays;
   const LightSampler& lamps;
@@ -80,7 +80,7 @@ struct EyeRay {
   std::uint32_t pixel;
   double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
   int depth = 0;               ///< mirrors and glass so far
-  bool straight = true;        ///< but for panes of thin glass, which looking at lamps sees through
+  bool straight = true;        ///< but for panes of thin glass, which sampling lights sees through
   std::uint32_t holes = 0;     ///< that were looked at so far
   float share = 1.0f;          ///< of its sample, where glass parted it
 
@@ -98,19 +98,19 @@ struct EyeEnd {
   EyeRay ray;
 };
 
-/// Looking at lamps, as another technique that finds those which a ray meets at once, or through
+/// Sampling lights, as another technique that finds those which a ray meets at once, or through
 /// panes.
-struct LampTechnique {
+struct LightTechnique {
   const LightSampler& lamps;
-  float density;                                 ///< of the ray's direction, per steradian
-  bool only = false;                             ///< lamps that it does not find count nothing
-  const LampChances& chances = by_shares_alone;  ///< at the ray's start
-  /// Lamps within the scene that the ray meets at once, or through panes, count nothing.
+  float density;      ///< of the ray's direction, per steradian
+  bool only = false;  ///< lights that it does not find count nothing
+  const SelectionProbabilities& probabilities = by_power_alone;  ///< at the ray's start
+  /// Lights within the scene that the ray meets at once, or through panes, count nothing.
   bool distant_only = false;
 };
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to
-/// `record`. Lamps that `other` would find as well are weighed by the power heuristic. Returns the
+/// `record`. Lights that `other` would find as well are weighed by the power heuristic. Returns the
 /// surface if it has a lobe that rays are to follow, which is not in the hit then.
 ///   looks   of the hit, where EyeSetup::direct is set
 ///   parted  where given, glass whose lesser part counts enough (defaults::least_glass_share) does
@@ -118,8 +118,8 @@ struct LampTechnique {
 ///           followed as well ("splitting": Arvo and Kirk, "Particle transport and image
 ///           synthesis", 1990)
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
-                                     EyeRecord& record, const LampTechnique* other = nullptr,
-                                     const LookSamples* looks = nullptr,
+                                     EyeRecord& record, const LightTechnique* other = nullptr,
+                                     const LightSampleNumbers* looks = nullptr,
                                      std::vector<EyeRay>* parted = nullptr);
 
 /// Traces sample `sample` of pixel (x, y) and appends what it sees.
@@ -137,7 +137,7 @@ struct PixelSample {
 };
 
 /// Follows the lobe of `end`, and those of the surfaces met, and appends what each reflects beside
-/// its lobe to `record`, and lamps seen in lobes: at each surface a lamp is looked at, and one
+/// its lobe to `record`, and lights seen in lobes: at each surface a light is sampled, and one
 /// direction of the lobe is followed; what both would find is weighed by the power heuristic (Veach
 /// and Guibas 1995). Directions are those of visible normals (opaque_bsdf.hpp). What reflects
 /// little goes on by Russian roulette.

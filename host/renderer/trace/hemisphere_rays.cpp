@@ -6,12 +6,12 @@
 #include <glm/gtc/constants.hpp>
 
 #include "photile/defaults.hpp"
-#include "trace/diffuse_part.hpp"
 #include "trace/direct_light.hpp"
-#include "trace/flush_denormals.hpp"
-#include "trace/hit_point.hpp"
+#include "trace/opaque_bsdf.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
-#include "trace/sobol.hpp"
 
 namespace photile::trace {
 namespace {
@@ -39,10 +39,10 @@ struct RunSetup {
 ///   from     the point
 ///   before   ends of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
-///   looks    at lamps, to which those from near surface are added; their tag is the pixel
+///   looks    at lights, to which those from near surface are added; their tag is the pixel
 void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
                      std::size_t before, std::uint32_t stream, std::uint32_t streams,
-                     LampLooks& looks, EyeRecord& ends) {
+                     ShadowRays& looks, EyeRecord& ends) {
   const Scene& scene = run.rays.scene();
   const LightSampler& lamps = *run.parameters.lamps;
   for (int bounce = 1; bounce <= defaults::most_near_surfaces && ends.hits.size() > before;
@@ -66,12 +66,12 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     const glm::vec3 throughput = hit.throughput * reflection.reflectance / survival;
     looks.add(lamps, point,
               {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
-              glm::one_over_pi<float>() * throughput, 1.0f, by_shares_alone, hit.pixel);
+              glm::one_over_pi<float>() * throughput, 1.0f, by_power_alone, hit.pixel);
     const glm::vec3 direction =
         Frame(point.normal)
             .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
     const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
-    const LampTechnique look{lamps, cosine * glm::one_over_pi<float>(), true};
+    const LightTechnique look{lamps, cosine * glm::one_over_pi<float>(), true};
     const std::size_t seen_before = ends.emission.size();
     follow_eye_ray(run.later, {point.origin_towards(direction), direction, throughput, hit.pixel},
                    random, ends, &look);
@@ -84,7 +84,7 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
 }
 
 /// All rays of a point. Returns the sum of their inverse distances to what they meet first.
-///   run_point   its place in the run
+///   run_point   its position in the run
 float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
                   std::uint32_t run_point, TaskEnds& found) {
   EyeRecord& ends = found.ends;
@@ -94,10 +94,11 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
   const RandomStream of_point(parameters.seed, number, 0);
   const Frame frame(point.normal);
   const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
-  thread_local LampChances chances;
-  thread_local LampLooks near_looks;
+  thread_local SelectionProbabilities probabilities;
+  thread_local ShadowRays near_looks;
   near_looks.clear();
-  if (parameters.rays_per_look > 0) parameters.lamps->weigh(point.position, point.normal, chances);
+  if (parameters.rays_per_look > 0)
+    parameters.lamps->weigh(point.position, point.normal, probabilities);
   float inverse_distances = 0;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
@@ -110,9 +111,9 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
       const std::uint32_t stream = batch * rays + i + 1;
       const RandomStream random(parameters.seed, number, stream);
       const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
-      const LampTechnique looks{*parameters.lamps,
-                                parameters.rays_per_look * cosine * glm::one_over_pi<float>(), true,
-                                chances};
+      const LightTechnique looks{*parameters.lamps,
+                                 parameters.rays_per_look * cosine * glm::one_over_pi<float>(),
+                                 true, probabilities};
       const std::size_t before = ends.hits.size();
       follow_eye_ray(run.first,
                      {point.origin_towards(direction), direction, throughput,
@@ -126,7 +127,7 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
       }
     }
   }
-  for (const LampLooks::Found& light : near_looks.found(run.rays)) {
+  for (const ShadowRays::Found& light : near_looks.found(run.rays)) {
     ends.direct.push_back({light.tag, light.layer, light.irradiance});
   }
   return inverse_distances;

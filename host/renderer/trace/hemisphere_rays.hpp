@@ -15,16 +15,16 @@ namespace photile::trace {
 
 struct HemisphereParameters {
   int batches;  ///< of a point: independent of each other
-  int rays;     ///< of a batch: spread evenly (sobol.hpp)
+  int rays;     ///< of a batch: spread evenly (random_stream.hpp)
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
   const LightSampler* lamps;
   const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at power 1
-  /// > 0: rays also see the lamps that they meet at once or through panes, and looks at lamps find
+  /// > 0: rays also see the lights that they meet at once or through panes, and light samples find
   /// the same: by the power heuristic. 0 = they see none.
   float rays_per_look = 0;
   /// Surface without a strong lobe nearer than this, metres, does not end a ray: what light falls
-  /// there is looked for by one more look at lamps and one more ray, a few times over. 0 = all
+  /// there is looked for by one more light sample and one more ray, a few times over. 0 = all
   /// opaque surface does.
   float near = 0;
 };
@@ -34,10 +34,10 @@ struct HemisphereRays {
   /// Where they end. `pixel` is the ray: (point of the run x batches + batch) x rays + ray.
   /// `throughput` is such that throughput x radiance, summed over a point's batch, is an unbiased
   /// estimate of the irradiance that other surfaces send there straight or over mirrors and glass.
-  /// `emission` is the same of lamps, weighed.
-  /// `direct` is light that lamps send to near surface, by layer.
+  /// `emission` is the same of lights, weighed.
+  /// `direct` is light that lights send to near surface, by layer.
   EyeRecord ends;
-  /// Of the run's point i are [first[i], first[i + 1]): ends, lamps that its rays saw and light
+  /// Point i of the run has [first[i], first[i + 1]): ray hits, lights that its rays met and light
   /// that reached near surface.
   std::vector<std::size_t> first, first_emission, first_direct;
   /// Where each ray left its point to, unit, by its number (`pixel`); empty unless the scene has
@@ -60,7 +60,7 @@ struct EndReflection {
 EndReflection reflection_of(const EyeRecord& ends, std::size_t end);
 
 /// Traces rays with the density of the cosine to the geometric normal, through holes, mirrors and
-/// glass to the next opaque surface. Lamps in mirrors or behind glass that bends are not seen:
+/// glass to the next opaque surface. Lights in mirrors or behind glass that bends are not seen:
 /// their light is a caustic.
 /// Depends on the scene, each point, its number and the parameters only.
 ///   number   of each point, below 2^48: the same number and point give the same rays

@@ -3,10 +3,69 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 
+#include "geometry/radix_sort.hpp"
 #include "photile/light_layers.hpp"
 
 namespace photile::trace {
+
+namespace {
+
+constexpr std::uint32_t cells_per_axis = 1u << HitCells::bits_per_axis;
+constexpr int code_bits = 3 * HitCells::bits_per_axis;
+constexpr std::uint32_t no_map = (1u << (64 - code_bits)) - 1;  // after all others, within 64 bits
+
+struct Key {
+  std::uint64_t order;   ///< map, Morton code
+  std::uint32_t number;  ///< of the hit, counted through all records
+};
+
+}  // namespace
+
+HitCells::HitCells(const geometry::Box& box) : low_(box.lower) {
+  const glm::vec3 extent = box.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (extent[axis] > 0) cells_per_metre_[axis] = float{cells_per_axis} / extent[axis];
+  }
+}
+
+std::uint64_t HitCells::morton_code(const glm::vec3& position) const {
+  const glm::vec3 cell = cells_per_metre_ * (position - low_);
+  return geometry::morton_code(glm::uvec3(glm::clamp(cell, 0.0f, float{cells_per_axis - 1})));
+}
+
+std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
+                                    std::span<const std::uint32_t> map_of) {
+  std::vector<std::uint32_t> first{0};
+  for (const EyeRecord& record : records) {
+    first.push_back(first.back() + static_cast<std::uint32_t>(record.hits.size()));
+  }
+  const HitCells cells(box);
+  std::vector<Key> keys(first.back());
+  std::vector<std::uint32_t> record_of(first.back());
+  std::vector<std::uint32_t> last_map(records.size());
+  tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t record) {
+    std::uint32_t number = first[record];
+    for (const EyeHit& hit : records[record].hits) {
+      const std::uint32_t own = hit.sided_triangle;
+      const std::uint32_t map = std::min(map_of.empty() ? own : map_of[own], no_map);
+      last_map[record] = std::max(last_map[record], map);
+      keys[number] = {std::uint64_t{map} << code_bits | cells.morton_code(hit.position), number};
+      record_of[number++] = static_cast<std::uint32_t>(record);
+    }
+  });
+  std::uint32_t last = 0;
+  for (const std::uint32_t map : last_map) last = std::max(last, map);
+  geometry::radix_sort(keys, code_bits + std::bit_width(last),
+                       [](const Key& key) { return key.order; });
+  std::vector<HitPlace> places(keys.size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
+    const std::uint32_t record = record_of[keys[i].number];
+    places[i] = {record, keys[i].number - first[record]};
+  });
+  return places;
+}
 
 PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places) {
   const bool glossy = std::any_of(records.begin(), records.end(),

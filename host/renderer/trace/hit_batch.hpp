@@ -1,17 +1,67 @@
-// What runs of samples saw, as one batch of hits.
+// Primary hits in batches: ordered by photon map and along a Morton curve, and grouped by pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "geometry/box.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/eye_path.hpp"
-#include "trace/hit_order.hpp"
 
 namespace photile::trace {
 
-/// The hits at these places of the records, in the order of the places.
+/// Which elements belong to each of a range of pixels, in their order.
+struct ByPixel {
+  std::vector<std::uint32_t> first, index;
+
+  template <class PixelOf>
+  ByPixel(std::size_t elements, std::size_t first_pixel, std::size_t pixels, PixelOf pixel_of)
+      : first(pixels + 1), index(elements) {
+    for (std::size_t i = 0; i < elements; ++i) ++first[pixel_of(i) - first_pixel + 1];
+    for (std::size_t p = 0; p < pixels; ++p) first[p + 1] += first[p];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::size_t i = 0; i < elements; ++i) {
+      index[next[pixel_of(i) - first_pixel]++] = static_cast<std::uint32_t>(i);
+    }
+  }
+
+  std::span<const std::uint32_t> of(std::size_t pixel) const {
+    return std::span(index).subspan(first[pixel], first[pixel + 1] - first[pixel]);
+  }
+};
+
+/// The cells of a box, equally many along each axis, by which hits on one map are sorted.
+class HitCells {
+ public:
+  /// So that code and map together, which is below 2^30 (limits::max_triangles), fit 64 bits.
+  static constexpr int bits_per_axis = 11;
+
+  explicit HitCells(const geometry::Box& box);
+
+  /// Along the Morton curve. Positions outside count as on the border.
+  std::uint64_t morton_code(const glm::vec3& position) const;
+
+ private:
+  glm::vec3 low_;
+  glm::vec3 cells_per_metre_{0.0f};  ///< 0 along an axis where the box is flat
+};
+
+/// One of the hits of several records.
+struct HitPlace {
+  std::uint32_t record;
+  std::uint32_t index;  ///< into EyeRecord::hits
+};
+
+/// All hits in the order map, Morton code of their cell of `box`, position.
+///   map_of   per sided triangle, `none`, which is the last, where it has no map; empty where a
+///            sided triangle is the map itself
+std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
+                                    std::span<const std::uint32_t> map_of);
+
+/// The hits at these positions of the records, in the order of the positions.
 PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places);
 
 /// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place
@@ -20,10 +70,10 @@ PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace
 PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
                          std::span<const std::uint32_t> map_of);
 
-/// Of trace_primary_hits, with the same samples, what comes by a mirror, by glass that bends or
-/// reflects it, or by a glossy lobe: hits behind those as they are, hits that are seen directly (or
-/// through panes of thin glass) with their lobe alone, and lamps in neither case. Added to what is
-/// left out it is the whole.
+/// The part of trace_primary_hits, with the same samples, that comes by a mirror, by glass that
+/// bends or reflects it, or by a glossy lobe: hits behind those as they are, hits that are seen
+/// directly (or through panes of thin glass) with their lobe alone, and lights in neither case.
+/// Added to what is left out it is the whole.
 PrimaryHitBatch trace_reflected_hits(const RayScene& scene, const Camera& camera,
                                      const PrimaryHitParameters& parameters, int first_row,
                                      int last_row, std::span<const std::uint32_t> map_of = {});

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "photile/defaults.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/sampling.hpp"
-#include "trace/spot_falloff.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -23,7 +23,7 @@ enum Block : std::uint32_t {
 
 constexpr int least_map_columns = 32;
 
-/// A place on the disc of the bounding sphere through which parallel light enters the scene.
+/// A point on the disc of the bounding sphere through which parallel light enters the scene.
 glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, float u1, float u2) {
   const Frame frame(direction);
   const glm::vec2 disc = sample_disc(u1, u2);
@@ -100,7 +100,7 @@ EmittedRay LightEmitter::emit_through_portals(const RandomStream& random) const 
   const glm::dvec3 travel(-from.direction);
   glm::vec3 origin = entrance(bounds_, glm::vec3(travel), numbers.uniform(0), numbers.uniform(1));
   if (through) {
-    // Of a disc or a patch a part may lie behind all portals.
+    // A part of a disc or a patch may lie behind all portals.
     if (!(portals_->area_facing(travel) > 0)) return {origin, -glm::vec3(travel), glm::vec3(0.0f)};
     const glm::dvec3 point = portals_->entrance(
         travel, double{place.uniform(2)}, double{numbers.uniform(0)}, double{numbers.uniform(1)});
@@ -154,7 +154,7 @@ EmittedRay LightEmitter::emit_from_luminaire(const RandomStream& random) const {
 
 glm::vec3 LightEmitter::color_of(const SurfacePoint& point) const {
   if (light_->emission_texture == none) return light_->color;
-  // Radiosity over the density of the place, which follows the luminance only about.
+  // Radiosity over the density of the point, which follows the luminance only about.
   const double sides = light_->two_sided ? 2 : 1;
   return glm::vec3(glm::dvec3(light_->texel_radiance * emission_texel(*scene_, point)) *
                    (glm::pi<double>() * sides / area_->density(point.where)));

@@ -7,9 +7,8 @@
 #include <optional>
 
 #include "photile/scene.hpp"
-#include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
@@ -57,7 +56,7 @@ class LightEmitter {
   std::optional<DistantSampler> distant_;      ///< of environments and suns with a disc
   BoundingSphere bounds_;
   std::shared_ptr<const Portals> portals_;
-  /// Of photons that start through portals; 0 where the light reaches none.
+  /// The fraction of photons that start through portals; 0 where the light reaches none.
   double portal_share_ = 0;
   std::optional<EnvironmentSampler> towards_portals_;  ///< of environments
 };

@@ -7,8 +7,8 @@
 
 #include "photile/defaults.hpp"
 #include "photile/ray_scene.hpp"
-#include "trace/lamp_intensity.hpp"
-#include "trace/photon_quota.hpp"
+#include "trace/emission_sampling.hpp"
+#include "trace/light_clusters.hpp"
 
 namespace photile::trace {
 
@@ -17,7 +17,7 @@ LightSampler::LightSampler(const Scene& scene)
       groups_(light_groups_of(scene)),
       bounds_(bounding_sphere(scene)),
       share_(light_shares(scene.lights, PhotonQuota::balanced)),
-      pieces_(scene, share_, bounds_),
+      clusters_(scene, share_, bounds_),
       radiance_(emitted_radiance_at_unit_power(scene)),
       distant_(scene),
       portals_(scene),
@@ -38,10 +38,12 @@ LightSampler::LightSampler(const Scene& scene)
   if (!portals_.empty()) portal_share_ = defaults::portal_looks * std::min(1.0, beyond);
 }
 
-/// Of a light that is chosen as a whole.
-float LightSampler::chance(std::uint32_t light, const LampChances& chances) const {
+/// The selection probability of a light that is chosen as a whole.
+float LightSampler::probability(std::uint32_t light,
+                                const SelectionProbabilities& probabilities) const {
   const double others = 1 - portal_share_;
-  if (!chances.up_to.empty()) return static_cast<float>(others * chances.of(pieces_.whole(light)));
+  if (!probabilities.up_to.empty())
+    return static_cast<float>(others * probabilities.of(clusters_.whole(light)));
   const double before = light == 0 ? 0.0 : share_up_to_[light - 1];
   return static_cast<float>(others * (share_up_to_[light] - before) / share_up_to_.back());
 }
@@ -49,56 +51,56 @@ float LightSampler::chance(std::uint32_t light, const LampChances& chances) cons
 std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
                                                 const RandomBlock& chosen_by,
                                                 const RandomBlock& place,
-                                                const LampChances& chances) const {
+                                                const SelectionProbabilities& probabilities) const {
   RandomBlock choice = chosen_by;
   if (portal_share_ > 0) {
     const double number = chosen_by.uniform_double(0);
     if (number < portal_share_)
-      return through_portal(number / portal_share_, position, place, chances);
+      return through_portal(number / portal_share_, position, place, probabilities);
     choice = RandomBlock::of(std::min((number - portal_share_) / (1 - portal_share_), 1 - 0x1p-53));
   }
   std::uint32_t light, triangle = none;
-  if (chances.up_to.empty()) {
+  if (probabilities.up_to.empty()) {
     // The last entry is larger than the target, so there always is one.
     const double target = choice.uniform_double(0) * share_up_to_.back();
     light = static_cast<std::uint32_t>(
         std::upper_bound(share_up_to_.begin(), share_up_to_.end(), target) - share_up_to_.begin());
   } else {
-    const LampPieces::Choice chosen = pieces_.choose(chances, choice, place);
+    const LightClusters::Choice chosen = clusters_.choose(probabilities, choice, place);
     light = chosen.light;
     triangle = chosen.triangle;
   }
-  if (distant_of_[light] != none) return towards_distant(light, position, place, chances);
+  if (distant_of_[light] != none) return towards_distant(light, position, place, probabilities);
   if (scene_->lights[light].kind == LightKind::area) {
     const AreaSampler& area = areas_[area_of_[light]];
     return towards_area(
         light, triangle == none ? area.sample_front(place) : area.sample_front_of(triangle, place),
-        position, chances);
+        position, probabilities);
   }
   return scene_->lights[light].kind == LightKind::directional
-             ? towards_sun(light, position, chances)
-             : towards_point(light, position, chances);
+             ? towards_sun(light, position, probabilities)
+             : towards_point(light, position, probabilities);
 }
 
 /// Towards a point of the light.
-std::optional<LightSample> LightSampler::towards_area(std::uint32_t light, SurfacePoint point,
-                                                      const glm::vec3& position,
-                                                      const LampChances& chances) const {
+std::optional<LightSample> LightSampler::towards_area(
+    std::uint32_t light, SurfacePoint point, const glm::vec3& position,
+    const SelectionProbabilities& probabilities) const {
   const glm::vec3 direction = glm::normalize(point.position - position);
   if (glm::dot(point.normal, direction) > 0.0f) {
     point.side = 1 - point.side;
     point.normal = -point.normal;
   }
   if (!emits(*scene_, point)) return std::nullopt;
-  const float seen = density(position, point, chances);
+  const float seen = density(position, point, probabilities);
   if (!(seen > 0.0f) || !(seen < std::numeric_limits<float>::infinity())) return std::nullopt;
   return LightSample{groups_.group_of[light], direction, point.origin_towards(-direction),
                      radiance_[light] * emission_towards(*scene_, point, -direction) / seen, seen};
 }
 
-std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
-                                                       const glm::vec3& position,
-                                                       const LampChances& chances) const {
+std::optional<LightSample> LightSampler::towards_point(
+    std::uint32_t light, const glm::vec3& position,
+    const SelectionProbabilities& probabilities) const {
   const Light& lamp = scene_->lights[light];
   const glm::dvec3 offset = glm::dvec3(lamp.position) - glm::dvec3(position);
   const double squared_distance = glm::dot(offset, offset);
@@ -108,7 +110,7 @@ std::optional<LightSample> LightSampler::towards_point(std::uint32_t light,
   if (!(intensity > 0)) return std::nullopt;
   return LightSample{groups_.group_of[light], glm::vec3(direction), lamp.position,
                      glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] * intensity /
-                               (squared_distance * double{chance(light, chances)})),
+                               (squared_distance * double{probability(light, probabilities)})),
                      0.0f};
 }
 
@@ -118,28 +120,29 @@ glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direc
 }
 
 LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position,
-                                      const LampChances& chances) const {
+                                      const SelectionProbabilities& probabilities) const {
   const Light& lamp = scene_->lights[light];
-  // Its flux falls on the disc of the bounding sphere, which the line of sight leaves.
+  // Its flux falls on the disc of the bounding sphere, which the shadow ray leaves.
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
   return {groups_.group_of[light],
           -lamp.direction,
           beyond(position, -lamp.direction),
           glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] /
-                    (disc * double{chance(light, chances)})),
+                    (disc * double{probability(light, probabilities)})),
           0.0f,
           true};
 }
 
 LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& position,
                                           const RandomBlock& place,
-                                          const LampChances& chances) const {
+                                          const SelectionProbabilities& probabilities) const {
   const std::uint32_t index = distant_of_[light];
   const DistantSampler::Sample chosen = distant_samplers_[index].sample(place);
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
-  const float alone = chance(light, chances) * chosen.density;
-  const float all =
-      portal_share_ > 0 ? density(distant_[index], position, chosen.direction, chances) : alone;
+  const float alone = probability(light, probabilities) * chosen.density;
+  const float all = portal_share_ > 0
+                        ? density(distant_[index], position, chosen.direction, probabilities)
+                        : alone;
   // Density is in proportion to luminance, and both integrate to 1 over the sphere.
   return {groups_.group_of[light],
           chosen.direction,
@@ -150,9 +153,9 @@ LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& 
           true};
 }
 
-std::optional<LightSample> LightSampler::through_portal(double number, const glm::vec3& position,
-                                                        const RandomBlock& place,
-                                                        const LampChances& chances) const {
+std::optional<LightSample> LightSampler::through_portal(
+    double number, const glm::vec3& position, const RandomBlock& place,
+    const SelectionProbabilities& probabilities) const {
   thread_local std::vector<double> weights;
   const double sum = portals_.weigh(glm::dvec3(position), weights);
   if (!(sum > 0)) return std::nullopt;
@@ -170,7 +173,7 @@ std::optional<LightSample> LightSampler::through_portal(double number, const glm
   for (const std::uint32_t index : there) {
     if (!shines(index) || skipped-- > 0) continue;
     const DistantLight& light = distant_[index];
-    const float all = density(light, position, direction, chances);
+    const float all = density(light, position, direction, probabilities);
     if (!(all > 0.0f)) return std::nullopt;
     return LightSample{groups_.group_of[light.light()], direction, beyond(position, direction),
                        light.radiance(direction) / all, all,       true};
@@ -179,8 +182,9 @@ std::optional<LightSample> LightSampler::through_portal(double number, const glm
 }
 
 float LightSampler::density(const DistantLight& light, const glm::vec3& position,
-                            const glm::vec3& direction, const LampChances& chances) const {
-  const float alone = chance(light.light(), chances) *
+                            const glm::vec3& direction,
+                            const SelectionProbabilities& probabilities) const {
+  const float alone = probability(light.light(), probabilities) *
                       distant_samplers_[distant_of_[light.light()]].density(direction);
   if (!(portal_share_ > 0)) return alone;
   thread_local std::vector<double> weights;
@@ -198,7 +202,7 @@ float LightSampler::density(const DistantLight& light, const glm::vec3& position
 }
 
 float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting,
-                            const LampChances& chances) const {
+                            const SelectionProbabilities& probabilities) const {
   const std::uint32_t triangle = emitting.where.triangle;
   const std::uint32_t light = scene_->triangle_light[triangle];
   const glm::vec3 offset = emitting.position - position;
@@ -206,12 +210,13 @@ float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitt
   const float cosine = -glm::dot(offset, emitting.normal) / std::sqrt(squared_distance);
   if (!(cosine > 0.0f)) return 0.0f;
   float chosen;  // per square metre
-  if (chances.up_to.empty() || pieces_.whole(light) != none) {
-    chosen = chance(light, chances) *
+  if (probabilities.up_to.empty() || clusters_.whole(light) != none) {
+    chosen = probability(light, probabilities) *
              static_cast<float>(areas_[area_of_[light]].density(emitting.where));
   } else {
-    const std::uint32_t piece = pieces_.piece_of(triangle);
-    chosen = static_cast<float>((1 - portal_share_) * chances.of(piece) / pieces_.area(piece));
+    const std::uint32_t cluster = clusters_.cluster_of(triangle);
+    chosen = static_cast<float>((1 - portal_share_) * probabilities.of(cluster) /
+                                clusters_.area(cluster));
   }
   return chosen * squared_distance / cosine;
 }

@@ -1,4 +1,4 @@
-// Next event estimation: a point of a lamp to look at from a surface.
+// Next event estimation: a point of a light to sample from a surface.
 #pragma once
 
 #include <cstdint>
@@ -8,31 +8,31 @@
 
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
-#include "trace/area_sampler.hpp"
 #include "trace/distant_light.hpp"
-#include "trace/lamp_pieces.hpp"
+#include "trace/emission_sampling.hpp"
+#include "trace/light_clusters.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
 
-/// Light from one place of a lamp, as long as nothing is in the way.
+/// Light from one point of a light, as long as nothing is in the way.
 struct LightSample {
   std::uint32_t layer;  ///< into LightGroups::groups
-  glm::vec3 direction;  ///< unit, towards the lamp
-  glm::vec3 target;     ///< where the line of sight ends, metres
-  /// What a surface receives for each unit of its cosine: radiance / density, or, of lamps without
+  glm::vec3 direction;  ///< unit, towards the light
+  glm::vec3 target;     ///< where the shadow ray ends, metres
+  /// What a surface receives for each unit of its cosine: radiance / density, or, of lights without
   /// size, the illuminance of a surface that faces them. The layer's lights have power 1 together.
   glm::vec3 received;
-  /// Of the direction, per steradian, the choice of the lamp included. 0 for lamps without size,
-  /// which no other technique can find.
+  /// The density of the direction, per steradian, the choice of the light included. 0 for lights
+  /// without size, which no other technique can find.
   float density;
   bool distant = false;  ///< from beyond the scene
 };
 
-/// Chooses one lamp of all, half by power and half equally as PhotonQuota::balanced does, and on an
-/// area light a point by what it emits, of light from beyond the scene a direction by its
+/// Chooses one light of all, half by power and half equally as PhotonQuota::balanced does, and on
+/// an area light a point by what it emits, of light from beyond the scene a direction by its
 /// luminance, or one through a portal, towards whatever shines there: densities are those of both
 /// together. Looks from one point may prefer what is near it and faces it.
 class LightSampler {
@@ -40,29 +40,30 @@ class LightSampler {
   /// References are kept. Errors: InputError for an area light without area.
   explicit LightSampler(const Scene& scene);
 
-  /// Chances of lamps for looks from a point of a surface, which take as long as two rays to find:
-  /// for several looks.
+  /// Selection probabilities of lights at a point of a surface, which take as long as two rays to
+  /// find: for several samples.
   ///   normal   unit, to the side from which is looked
-  void weigh(const glm::vec3& position, const glm::vec3& normal, LampChances& chances) const {
-    pieces_.weigh(position, normal, chances);
+  void weigh(const glm::vec3& position, const glm::vec3& normal,
+             SelectionProbabilities& probabilities) const {
+    clusters_.weigh(position, normal, probabilities);
   }
 
-  /// A lamp as seen from `position`. Nothing where it shines elsewhere.
+  /// A light as seen from `position`. Nothing where it shines elsewhere.
   ///   choice, place   blocks of their own
-  std::optional<LightSample> sample(const glm::vec3& position, const RandomBlock& choice,
-                                    const RandomBlock& place,
-                                    const LampChances& chances = by_shares_alone) const;
+  std::optional<LightSample> sample(
+      const glm::vec3& position, const RandomBlock& choice, const RandomBlock& place,
+      const SelectionProbabilities& probabilities = by_power_alone) const;
 
   /// Density per steradian with which `sample` would have chosen a point that emits, seen from
   /// `position`.
   float density(const glm::vec3& position, const SurfacePoint& emitting,
-                const LampChances& chances = by_shares_alone) const;
+                const SelectionProbabilities& probabilities = by_power_alone) const;
 
   /// Lights beyond the scene that rays can meet, and the density per steradian with which `sample`
   /// would have chosen a direction towards one of them.
   const DistantLights& distant() const { return distant_; }
   float density(const DistantLight& light, const glm::vec3& position, const glm::vec3& direction,
-                const LampChances& chances = by_shares_alone) const;
+                const SelectionProbabilities& probabilities = by_power_alone) const;
 
   /// Radiance that a point of an area light emits in a unit direction, at the power 1 of its layer.
   glm::vec3 radiance(const SurfacePoint& emitting, const glm::vec3& direction) const {
@@ -72,29 +73,30 @@ class LightSampler {
   std::uint32_t layer(std::uint32_t light) const { return groups_.group_of[light]; }
 
  private:
-  float chance(std::uint32_t light, const LampChances& chances) const;
+  float probability(std::uint32_t light, const SelectionProbabilities& probabilities) const;
   std::optional<LightSample> towards_area(std::uint32_t light, SurfacePoint point,
                                           const glm::vec3& position,
-                                          const LampChances& chances) const;
+                                          const SelectionProbabilities& probabilities) const;
   std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position,
-                                           const LampChances& chances) const;
+                                           const SelectionProbabilities& probabilities) const;
   /// Through a portal, towards what shines from there.
   ///   number   in [0, 1)
   std::optional<LightSample> through_portal(double number, const glm::vec3& position,
                                             const RandomBlock& place,
-                                            const LampChances& chances) const;
+                                            const SelectionProbabilities& probabilities) const;
   LightSample towards_sun(std::uint32_t light, const glm::vec3& position,
-                          const LampChances& chances) const;
+                          const SelectionProbabilities& probabilities) const;
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
-                              const RandomBlock& place, const LampChances& chances) const;
-  /// A place in that direction behind all of the scene, wherever the position is.
+                              const RandomBlock& place,
+                              const SelectionProbabilities& probabilities) const;
+  /// A point in that direction behind all of the scene, wherever the position is.
   glm::vec3 beyond(const glm::vec3& position, const glm::vec3& direction) const;
 
   const Scene* scene_;
   LightGroups groups_;
   BoundingSphere bounds_;
   std::vector<double> share_;  ///< of looks from everywhere, per light
-  LampPieces pieces_;
+  LightClusters clusters_;
   std::vector<double> share_up_to_;     ///< of the lights up to and with this one
   std::vector<glm::vec3> radiance_;     ///< per light, of white texels; black without area
   std::vector<std::uint32_t> area_of_;  ///< per light: its sampler, or `none`

@@ -17,7 +17,6 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
@@ -30,14 +29,14 @@ namespace {
 constexpr std::uint64_t paths_of_search = 16'384, most_paths = 131'072;
 constexpr int path_bounces = 3;
 constexpr std::size_t enough_escapes = 400;
-/// Of the rays from a camera that leave at once: beyond, it stands outside.
+/// The fraction of the rays from a camera that leave at once above which it stands outside.
 constexpr double outside_share = 0.4;
 constexpr std::size_t most_planes = 256;  ///< of the largest area
 constexpr double least_share = 0.02;      ///< of what escapes that a portal takes
 constexpr double wanted_share = 0.97;     ///< of what escapes that all take
 /// So much larger may a portal be that takes more than the narrowest.
 constexpr double roomier = 1.5;
-/// Of the disc of the bounding sphere: beyond, portals would gain little.
+/// The part of the disc of the bounding sphere above which portals would gain little.
 constexpr double most_portal_area = 0.25;
 
 /// A straight way out of the scene, from the last surface that scatters.
@@ -117,7 +116,7 @@ glm::dvec3 plane_normal(const Scene& scene, std::uint32_t triangle) {
 
 using PlaneKey = std::array<long, 4>;
 
-/// The same for triangles in about one plane.
+/// A key that is equal for triangles in about one plane.
 PlaneKey plane_key(const glm::dvec3& normal, double offset) {
   return {std::lround(500 * normal.x), std::lround(500 * normal.y), std::lround(500 * normal.z),
           std::lround(std::clamp(100 * offset, -1e15, 1e15))};
@@ -232,10 +231,11 @@ std::vector<Opening> openings_of(const Scene& scene, const std::vector<Escape>& 
   return openings;
 }
 
-/// Those that together take most of what escapes, by little area: of about the narrowest, each is
-/// that which takes most. What lights a frame from outside, and the room from there, crosses the
-/// plane of the pane, and not that of the frame; where no portal is, light starts on the whole of
-/// the bounding sphere, and each of its photons weighs a hundred times as much as others.
+/// The portals that together take most of what escapes, by little area: among about the narrowest,
+/// each is the one that takes most. What lights a frame from outside, and the room from there,
+/// crosses the plane of the pane, and not that of the frame; where no portal is, light starts on
+/// the whole of the bounding sphere, and each of its photons weighs a hundred times as much as
+/// others.
 std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t escapes,
                               std::size_t least, double most_area) {
   std::vector<bool> taken(escapes, false);
@@ -312,7 +312,7 @@ std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
     return place;
   };
   std::map<PlaneKey, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a place of it
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a point of it
   for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
     if (!chosen[scene.triangle_material[triangle]]) continue;
     std::array<std::uint32_t, 3> places{};

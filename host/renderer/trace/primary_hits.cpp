@@ -11,9 +11,9 @@
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/eye_path.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/light_sampler.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile {
 

@@ -1,6 +1,8 @@
-// Questions to a RayScene, for rooms that do not know Embree. Thread-safe; the caller's thread must
-// flush denormals (flush_denormals.hpp).
+// Questions to a RayScene, for rooms that do not know Embree: what a ray meets, alpha cutouts and
+// visibility. Thread-safe; the calling thread must hold a FlushDenormals.
 #pragma once
+
+#include <xmmintrin.h>
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -8,10 +10,32 @@
 #include <span>
 
 #include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
-#include "trace/triangle_hit.hpp"
+
+#if defined(__SSE__)
+#endif
 
 namespace photile::trace {
+
+/// Flushes denormal results and operands to zero while it lives; restores the thread's mode after.
+class FlushDenormals {
+ public:
+#if defined(__SSE__)
+  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+#else
+  FlushDenormals() = default;
+#endif
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+#if defined(__SSE__)
+  unsigned saved_;
+#endif
+};
 
 /// Nearest hit of the ray, or nothing. A ray with a NaN or infinity hits nothing.
 std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
@@ -20,13 +44,13 @@ std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& orig
 /// Whether a surface of any material cuts the straight line between two points.
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
-/// A straight line from a surface to a lamp, say.
+/// A straight line from a surface to a light, say.
 struct LineOfSight {
   glm::vec3 from, to;
 };
 
-/// The same of lines that begin close together: packets of sixteen, twice as fast. The answer for a
-/// line may depend, in its roundings, on those beside it.
+/// Whether lines that begin close together are occluded: packets of sixteen, twice as fast. The
+/// answer for a line may depend, in its roundings, on those beside it.
 ///   hidden   of each line: set to 1, or 0
 void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
               std::span<std::uint8_t> hidden);
@@ -39,5 +63,42 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
 /// bends or stops light, the product of their transmittances behind panes of thin glass and
 /// surfaces with holes.
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
+
+/// Whether a ray passes the surface here as if it were not there: always in a hole, never where the
+/// surface is whole, by chance where it is partly there. Behind 4096 holes of a path all surfaces
+/// count as whole.
+///   holes   passed so far on the path; counts on
+bool passes_hole(const Scene& scene, const SurfacePoint& point, const RandomStream& random,
+                 Purpose purpose, std::uint32_t& holes);
+
+/// Where a ray meets a surface that it does not pass, or nothing. `origin` moves behind the last
+/// hole.
+std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& origin,
+                                         const glm::vec3& direction, const RandomStream& random,
+                                         Purpose purpose, std::uint32_t& holes);
+std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin,
+                                         const glm::vec3& direction, const RandomStream& random,
+                                         Purpose purpose, std::uint32_t& holes);
+
+struct SurfacePlace {
+  glm::vec3 position;  ///< metres
+  glm::vec3 normal;    ///< unit, of the side
+};
+
+inline SurfacePlace place_on(const Scene& scene, std::uint32_t sided_triangle,
+                             const glm::vec3& position) {
+  return {position, glm::vec3(sided_normal(scene, sided_triangle))};
+}
+
+/// How a shadow ray differs from the straight way between two points.
+struct SightLine {
+  float lift;      ///< it runs so far above them, metres
+  float left_out;  ///< and ends short of the second by this part of its length
+};
+
+/// Whether nothing is between two points of one surface, just above it. Where it is curved, a line
+/// of sight as deep in it as a circle's chord is lifted out by twice as much.
+bool see_each_other(const RayScene& rays, const SurfacePlace& from, const SurfacePlace& to,
+                    const SightLine& line);
 
 }  // namespace photile::trace

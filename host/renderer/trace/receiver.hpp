@@ -1,14 +1,38 @@
-// A point of an opaque surface that light is looked for from.
+// A shading point: the surface under a hit, and how it weighs the light that arrives.
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
+
+/// The point of its surface where a hit lies.
+inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit) {
+  const std::uint32_t sided = hits.sided_triangle[hit];
+  return surface_point(
+      scene, nearest_on_triangle(scene, triangle_of(sided), glm::dvec3(hits.position[hit])),
+      side_of(sided));
+}
+
+/// How the surface reflects light against the ray of an eye that arrived there, smoothly shaded. A
+/// Lambertian surface does not
+/// ask where it is seen from: where nothing is glossy, hits do not say it, and any direction
+/// serves.
+inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit,
+                          const SurfacePoint& point) {
+  OpaqueBsdf bsdf(scene, point, hits.outgoing.empty() ? -point.normal : -hits.outgoing[hit]);
+  bsdf.shade_smoothly(scene, point);
+  // Hits that are seen directly, where reflections alone are looked at.
+  if (hits.diffuse_albedo[hit] == glm::vec3(0.0f)) bsdf.drop_diffuse();
+  return bsdf;
+}
 
 /// What light counts for the two things measured at a receiver.
 struct LightWeights {
@@ -27,7 +51,7 @@ class Receiver {
  public:
   Receiver(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
 
-  /// Of light from `direction` (unit, away from the surface), per steradian.
+  /// The weights of light from `direction` (unit, away from the surface), per steradian.
   LightWeights weights(const glm::vec3& direction) const {
     return {glm::vec3(cosine(direction)), bsdf_.reflected(direction)};
   }

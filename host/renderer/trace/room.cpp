@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "photile/errors.hpp"
-#include "trace/flush_denormals.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::measuring {
@@ -69,7 +68,7 @@ std::optional<Room> Room::around(const RayScene& rays, const PlanAxes& axes,
   const trace::FlushDenormals flush_denormals;
   auto most = headroom_at(rays, axes, point);
   if (!most) return std::nullopt;
-  // What hangs right above the point, such as a lamp, is not the ceiling.
+  // What hangs right above the point, such as a luminaire, is not the ceiling.
   glm::dvec3 seed = point;
   const double aside = 0.2 * (most->up + most->down);
   for (const auto& step : steps) {
@@ -107,7 +106,7 @@ std::optional<Room> Room::meant(const RayScene& rays, const PlanAxes& axes,
     if (scene.cameras.empty()) return std::nullopt;
     return of_camera(rays, axes, scene.cameras.front());
   }
-  std::optional<Room> room = around(rays, axes, place_in_scene(scene, *inside));
+  std::optional<Room> room = around(rays, axes, position_in_scene(scene, *inside));
   if (!room) {
     throw UsageError(
         fmt::format("point {},{},{}: is in no room with a floor below and a ceiling above, each "

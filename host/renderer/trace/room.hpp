@@ -16,7 +16,7 @@ namespace photile::measuring {
 struct PlanAxes {
   glm::dvec3 right{1.0, 0.0, 0.0}, ahead{0.0, 0.0, -1.0}, up{0.0, 1.0, 0.0};
 
-  /// The same in the world of the scene's file.
+  /// The axes in the world of the scene's file.
   static PlanAxes in_world(const Scene& scene);
   glm::dvec2 plan(const glm::dvec3& point) const {
     return {glm::dot(point, right), glm::dot(point, ahead)};
@@ -49,10 +49,10 @@ class Room {
   const glm::dvec2& high() const { return high_; }
   bool holds(const glm::dvec2& plan) const;
 
-  /// Places in the cut, spread evenly: one for each `cell_area`.
+  /// Points in the cut, spread evenly: one for each `cell_area`.
   std::vector<glm::dvec3> places() const;
   double cell_area() const { return cell_ * cell_; }
-  /// Of the cut along `up`, metres: just below the ceiling.
+  /// The height of the cut along `up`, metres: just below the ceiling.
   double cut_height() const { return glm::dot(seed_, axes_.up); }
 
  private:

@@ -68,7 +68,8 @@ Deflected deflect(const Material& material, bool entering, const glm::vec3& dire
   return {boundary.transmitted(material, direction, normal), true};
 }
 
-/// Of a ray that the surface transmits: (index where it comes from / index beyond)^2.
+/// The factor of the radiance of a ray that the surface transmits: (index where it comes from /
+/// index beyond)^2.
 double radiance_factor(const Material& material, bool entering) {
   if (material.thin) return 1;
   const double index{material.index_of_refraction};
@@ -109,8 +110,8 @@ Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
   return {deflected.direction, material.transmission, radiance_factor(material, entering)};
 }
 
-std::optional<PartedLight> both_parts(const Scene& scene, const SurfacePoint& point,
-                                      const glm::vec3& direction) {
+std::optional<SplitLight> both_parts(const Scene& scene, const SurfacePoint& point,
+                                     const glm::vec3& direction) {
   const Material& material = material_of(scene, point);
   if (material.interaction == Interaction::mirror) return std::nullopt;
   const bool entering = on_front(scene, point);
@@ -122,9 +123,9 @@ std::optional<PartedLight> both_parts(const Scene& scene, const SurfacePoint& po
   if (glm::dot(back, point.normal) < 0.0f || !(glm::dot(on, point.normal) < 0.0f)) {
     return std::nullopt;
   }
-  return PartedLight{boundary.reflectance,
-                     {back, glm::vec3(1.0f)},
-                     {on, material.transmission, radiance_factor(material, entering)}};
+  return SplitLight{boundary.reflectance,
+                    {back, glm::vec3(1.0f)},
+                    {on, material.transmission, radiance_factor(material, entering)}};
 }
 
 }  // namespace photile::trace

@@ -30,15 +30,15 @@ Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction, float choice);
 
 /// Both ways that light takes at the boundary of glass.
-struct PartedLight {
+struct SplitLight {
   float reflectance;  ///< share of the light that is reflected, in (0, 1)
   Scattered reflected, transmitted;
 };
 
 /// Nothing where there is one way alone: mirrors, total internal reflection, and shading normals
 /// that would send one of the rays to the wrong side.
-std::optional<PartedLight> both_parts(const Scene& scene, const SurfacePoint& point,
-                                      const glm::vec3& direction);
+std::optional<SplitLight> both_parts(const Scene& scene, const SurfacePoint& point,
+                                     const glm::vec3& direction);
 
 /// A photon scattered by an opaque surface, as OpaqueBsdf samples it, weighted by the density of
 /// both lobes. Nothing where it would enter the surface.

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "photile/device/bsdf.h"
-#include "trace/lamp_intensity.hpp"
+#include "trace/emission_sampling.hpp"
 #include "trace/sampling.hpp"
 
 namespace photile::trace {
@@ -130,7 +130,7 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
       std::max(grazing, std::abs(glm::dot(glm::dvec3(point.normal), glm::dvec3(direction))));
   const double sides = light.two_sided ? 2 : 1;
   const double intensity =
-      distribution.intensity(LampAxes(light).to_lamp(glm::dvec3(direction))) / distribution.flux();
+      distribution.intensity(LightAxes(light).to_lamp(glm::dvec3(direction))) / distribution.flux();
   return texel * static_cast<float>(glm::pi<double>() * sides * intensity / cosine);
 }
 

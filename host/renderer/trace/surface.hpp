@@ -6,9 +6,14 @@
 
 #include "photile/scene.hpp"
 #include "scene/surface_models.hpp"
-#include "trace/triangle_hit.hpp"
 
 namespace photile::trace {
+
+/// A point of a triangle of the scene.
+struct TriangleHit {
+  std::uint32_t triangle;
+  float u, v;  ///< barycentric weights of the second and third corner
+};
 
 /// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
 /// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
@@ -78,14 +83,14 @@ float opacity(const Scene& scene, const SurfacePoint& point);
 /// seen. The geometric one where the file has none, or where the two are more than a right angle
 /// apart.
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
-/// The same at a place, metres, on a side of a triangle.
+/// The shading normal at a position, metres, on a side of a triangle.
 glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
                          const glm::vec3& position);
 
 /// Unit shading normals at a point where a ray arrives, on its side.
 struct ShadingNormals {
-  /// Of the corners; the geometric one where the file has none, or where the ray would arrive at
-  /// the shading normal's back.
+  /// The normal interpolated from the corners; the geometric one where the file has none, or where
+  /// the ray would arrive at the shading normal's back.
   glm::vec3 smooth;
   glm::vec3 mapped;  ///< `smooth` as the material's normal map turns it; the same without one
   glm::vec3 seen;    ///< `mapped`, or `smooth` where the ray would arrive at the mapped one's back

@@ -1,0 +1,112 @@
+// kd-trees over the photons of each map, in its plane (kdtree-2d) or in space (kdtree-3d), and one
+// over all photons (kdtree-global), which is the classic photon map: built on the host, searched by
+// kernels/structures/kdtree.cl.
+#include "structures/kdtree.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "maps/grid_cells.hpp"
+#include "structures/halving.hpp"
+#include "structures/structure.hpp"
+
+namespace photile::structures {
+namespace {
+
+static_assert(sizeof(PhotileTreeNode) == 4 * 4, "PhotileTreeNode must have no padding");
+
+constexpr std::size_t leaf_size = 8;
+
+/// Appends the nodes of a tree over points[order[i]] to `nodes` and brings `order` into the order
+/// of the leaves. Leaves hold up to leaf_size points (more where points coincide or the depth is
+/// used up) and refer to entries first_entry + position in `order`. Splits the longest side of the
+/// points' box at its middle, slid to the nearest point where one side would be empty
+/// (Maneewongvatana and Mount, "It's okay to be skinny, if your friends are fat", 1999).
+struct TreeBuilder {
+  std::span<const glm::vec3> points;
+  int dimensions;  ///< 2 ignores z
+  std::uint32_t first_entry;
+  std::vector<PhotileTreeNode>& nodes;
+
+  /// Returns the index of the root.
+  std::uint32_t build(std::span<std::uint32_t> order, std::uint32_t offset, int depth) {
+    const auto node = static_cast<std::uint32_t>(nodes.size());
+    const std::uint32_t first = first_entry + offset;
+    nodes.push_back(
+        {0, PHOTILE_TREE_LEAF, first, first + static_cast<std::uint32_t>(order.size())});
+    if (order.size() <= leaf_size || depth == PHOTILE_TREE_DEPTH) return node;
+
+    const PointBox box = box_of(points, order);
+    const glm::vec3 &low = box.low, &high = box.high;
+    const int axis = widest_axis(box, dimensions);
+    if (!(high[axis] > low[axis])) return node;  // all in one point
+    // The lower child takes what lies below the plane. Rounded down to `low`, the middle would
+    // leave it empty.
+    float split = low[axis] + 0.5f * (high[axis] - low[axis]);
+    if (!(split > low[axis])) split = high[axis];
+    const auto half = std::partition(order.begin(), order.end(),
+                                     [&](std::uint32_t i) { return points[i][axis] < split; });
+    const auto lower = static_cast<std::size_t>(half - order.begin());
+    build(order.first(lower), offset, depth + 1);
+    const std::uint32_t upper =
+        build(order.subspan(lower), offset + static_cast<std::uint32_t>(lower), depth + 1);
+    nodes[node] = {split, static_cast<std::uint32_t>(axis), upper, 0};
+    return node;
+  }
+};
+
+/// The tree of one list, whose part of `entries` it brings into the order of its leaves.
+std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list, int dimensions,
+                                     std::vector<std::uint32_t>& entries) {
+  const auto members = lists.of(list);
+  std::vector<glm::vec3> points(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const glm::vec3& position = lists.photons.position[members[i]];
+    points[i] =
+        dimensions == 2 ? glm::vec3(maps::project(position, lists.planes[list]), 0.0f) : position;
+  }
+  std::vector<std::uint32_t> order(members.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::vector<PhotileTreeNode> nodes;
+  TreeBuilder{points, dimensions, lists.first[list], nodes}.build(order, 0, 0);
+  for (std::size_t i = 0; i < order.size(); ++i) entries[lists.first[list] + i] = members[order[i]];
+  return nodes;
+}
+
+template <int dimensions>
+Index build_trees(const PhotonLists& lists) {
+  std::vector<std::uint32_t> entries(lists.members.size());
+  std::vector<std::vector<PhotileTreeNode>> trees(lists.size());
+  tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t list) {
+    if (!lists.of(list).empty()) trees[list] = tree_of(lists, list, dimensions, entries);
+  });
+  std::vector<std::uint32_t> root(lists.size(), none);
+  std::vector<PhotileTreeNode> nodes;
+  for (std::size_t list = 0; list < lists.size(); ++list) {
+    if (trees[list].empty()) continue;
+    root[list] = static_cast<std::uint32_t>(nodes.size());
+    for (PhotileTreeNode node : trees[list]) {
+      if (node.axis != PHOTILE_TREE_LEAF) node.first += root[list];
+      nodes.push_back(node);
+    }
+  }
+  constexpr std::size_t words = sizeof(PhotileTreeNode) / sizeof(std::uint32_t);
+  device::Context& context = lists.context;
+  return {
+      .entry_photon = context.upload(std::span<const std::uint32_t>(entries), "photon references"),
+      .root = context.upload(std::span<const std::uint32_t>(root), "tree roots"),
+      .nodes = context.upload(
+          std::span(reinterpret_cast<const std::uint32_t*>(nodes.data()), words * nodes.size()),
+          "tree nodes")};
+}
+
+const Registration kdtree_2d(
+    {.name = "kdtree-2d", .build = build_trees<2>, .kernel = "kdtree", .symbol = "TREE_2D"});
+const Registration kdtree_3d({.name = "kdtree-3d", .build = build_trees<3>, .kernel = "kdtree"});
+const Registration kdtree_global(
+    {.name = "kdtree-global", .build = build_trees<3>, .global = true, .kernel = "kdtree"});
+
+}  // namespace
+}  // namespace photile::structures

@@ -1,0 +1,164 @@
+#include "walk/frames.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "photile/defaults.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+
+namespace photile::walk {
+
+namespace {
+
+/// The position of a number in a name.
+struct Place {
+  std::size_t length = 0;  ///< 0: none is there
+  int width = 1;
+  char fill = '0';
+};
+
+/// The position that a text begins with. Not by std::regex, whose stack grows with the text.
+Place place_at(std::string_view text) {
+  const std::size_t hashes = std::min(text.find_first_not_of('#'), text.size());
+  if (hashes > 0) return {hashes, static_cast<int>(hashes), '0'};
+  if (!text.starts_with('%')) return {};
+  Place place{1, 1, ' '};
+  if (text.substr(place.length).starts_with('0')) {
+    place.fill = '0';
+    ++place.length;
+  }
+  if (place.length < text.size() && text[place.length] >= '1' && text[place.length] <= '9') {
+    place.width = text[place.length] - '0';
+    ++place.length;
+  }
+  if (!text.substr(place.length).starts_with('d')) return {};
+  ++place.length;
+  return place;
+}
+
+}  // namespace
+
+FrameNames::FrameNames(const std::string& pattern) {
+  // Only the name: a folder may be called C#.
+  const std::string name = std::filesystem::path(pattern).filename().string();
+  const std::string folder = pattern.substr(0, pattern.size() - name.size());
+  int places = 0;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const Place place = place_at(std::string_view(name).substr(begin));
+    if (place.length > 0) {
+      ++places;
+      before_ = folder + name.substr(0, begin);
+      after_ = name.substr(begin + place.length);
+      width_ = place.width;
+      fill_ = place.fill;
+    }
+    begin += std::max<std::size_t>(place.length, 1);
+  }
+  const bool meant_one =
+      name.find('%') != std::string::npos || folder.find("##") != std::string::npos;
+  if (places > 1 || (places == 0 && meant_one)) {
+    throw UsageError(
+        fmt::format("{}: needs one field for the number of a frame, #### or %04d", pattern));
+  }
+  if (places == 0) {
+    const std::filesystem::path path(name);
+    before_ = folder + path.stem().string() + ".";
+    after_ = path.extension().string();
+    width_ = 4;
+    fill_ = '0';
+  }
+}
+
+std::filesystem::path FrameNames::of(int frame) const {
+  const std::string digits = std::to_string(frame);
+  const auto width = static_cast<std::size_t>(width_);
+  const std::string padding(digits.size() < width ? width - digits.size() : 0, fill_);
+  return before_ + padding + digits + after_;
+}
+
+namespace {
+
+/// Takes a number of digits alone off the front.
+std::optional<int> take_number(std::string_view& text) {
+  int value = 0;
+  if (text.empty() || text.front() == '-') return std::nullopt;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+}  // namespace
+
+std::optional<FrameRange> parse_frame_range(std::string_view text) {
+  const auto number_after = [&](char sign, int otherwise) -> std::optional<int> {
+    if (text.empty() || text.front() != sign) return otherwise;
+    text.remove_prefix(1);
+    return take_number(text);
+  };
+  const auto first = take_number(text);
+  if (!first) return std::nullopt;
+  const auto last = number_after('-', *first);
+  const auto step = number_after('x', 1);
+  if (!last || !step || !text.empty() || *last < *first || *step < 1) return std::nullopt;
+  return FrameRange{*first, *last, *step};
+}
+
+namespace {
+
+constexpr int gap = 4;          ///< pixels
+constexpr float paper = 0.05f;  ///< linear grey
+
+/// Means of a plane over pixels [x0, x1) x [y0, y1).
+float mean(const std::vector<float>& plane, int width, int x0, int x1, int y0, int y1) {
+  double sum = 0;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      sum +=
+          static_cast<double>(plane[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                    static_cast<std::size_t>(x)]);
+    }
+  }
+  return static_cast<float>(sum / ((x1 - x0) * (y1 - y0)));
+}
+
+}  // namespace
+
+ContactSheet::ContactSheet(int frames, int width, int height)
+    : columns_(static_cast<int>(std::ceil(std::sqrt(frames)))) {
+  const int rows = (frames + columns_ - 1) / columns_;
+  const int most = limits::max_image_side / std::max(columns_, rows) - gap;
+  width_ = std::clamp(std::min(width, defaults::contact_sheet_width), 1, std::max(1, most));
+  height_ = std::clamp(static_cast<int>(std::lround(double(width_) * height / width)), 1,
+                       std::max(1, most));
+  image_.width = columns_ * (width_ + gap) + gap;
+  image_.height = rows * (height_ + gap) + gap;
+  for (const char* channel : {"R", "G", "B"}) image_.add(channel).assign(image_.pixels(), paper);
+}
+
+void ContactSheet::add(int index, const Image& displayed) {
+  const int left = gap + index % columns_ * (width_ + gap);
+  const int top = gap + index / columns_ * (height_ + gap);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const std::vector<float>& plane = displayed.channels[channel];
+    for (int y = 0; y < height_; ++y) {
+      const int y0 = y * displayed.height / height_;
+      const int y1 = std::max(y0 + 1, (y + 1) * displayed.height / height_);
+      for (int x = 0; x < width_; ++x) {
+        const int x0 = x * displayed.width / width_;
+        const int x1 = std::max(x0 + 1, (x + 1) * displayed.width / width_);
+        image_.channels[channel]
+                       [static_cast<std::size_t>(top + y) * static_cast<std::size_t>(image_.width) +
+                        static_cast<std::size_t>(left + x)] =
+            mean(plane, displayed.width, x0, x1, y0, y1);
+      }
+    }
+  }
+}
+
+}  // namespace photile::walk

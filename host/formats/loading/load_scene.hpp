@@ -1,0 +1,39 @@
+// A scene file with its options becomes a scene that knows where in the file each light comes from.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "files/scene_files.hpp"
+#include "loading/luminaires.hpp"
+#include "photile/scene.hpp"
+#include "reading/area_lights.hpp"
+
+namespace photile::loading {
+
+/// A scene with the source of each of its lights.
+struct SourcedScene {
+  Scene scene;
+  std::vector<reading::LightSource> sources;
+  std::vector<PlacedLuminaires> luminaires;  ///< of each entry of the list of luminaires
+};
+
+/// load_scene, which keeps no sources. Errors: the same.
+SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options);
+
+// Which way is up in a scene file: OBJ files do not say it, and some glTF files have it wrong.
+
+/// The rotation after which `up` ("x" to "-z", "" = "y") points along y. With "z", as CAD programs
+/// have it, x stays and the file's y becomes -z, north. Errors: UsageError for another word.
+glm::dmat3 turn_upright(const std::string& up);
+
+/// Warns where the triangles look as if z pointed up: the scene is at most as high along z as along
+/// y, at least as high as a room (or, of small models, as half their width), and has twice as much
+/// surface that faces along z as along y, or one plane along z twice as large as any along y, or
+/// both a little less. A guess: an empty room 4 x 3 m wide and 2.8 m high is the same box as one 4
+/// x 2.8 m wide and 3 m high, so nothing is turned.
+void warn_of_other_up(const Scene& scene, files::Warnings& warnings);
+
+}  // namespace photile::loading

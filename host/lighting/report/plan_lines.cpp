@@ -1,0 +1,295 @@
+#include "report/plan_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "trace/ray_query.hpp"
+
+namespace photile::report {
+
+namespace {
+
+/// Four neighbouring middles, counter-clockwise from the lowest column and row.
+struct Square {
+  std::array<glm::dvec2, 4> place;
+  std::array<double, 4> value;
+
+  /// Where the level crosses the side from corner i to the next.
+  glm::dvec2 crossing(std::size_t i, double level) const {
+    const std::size_t j = (i + 1) % 4;
+    const double share = (level - value[i]) / (value[j] - value[i]);
+    return place[i] + share * (place[j] - place[i]);
+  }
+};
+
+void add_segments(const Square& square, double level, std::vector<Segment>& segments) {
+  std::vector<std::size_t> crossed;  // sides, ascending
+  double mean = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::isnan(square.value[i])) return;
+    if ((square.value[i] >= level) != (square.value[(i + 1) % 4] >= level)) crossed.push_back(i);
+    mean += square.value[i] / 4;
+  }
+  const auto join = [&](std::size_t a, std::size_t b) {
+    segments.push_back({square.crossing(crossed[a], level), square.crossing(crossed[b], level)});
+  };
+  if (crossed.size() == 2) join(0, 1);
+  if (crossed.size() < 4) return;
+  // Sides 0 and 1 meet in corner 1: cut it off where it differs from the middle.
+  const bool corner_1_alone = (square.value[1] >= level) != (mean >= level);
+  join(0, corner_1_alone ? 1 : 3);
+  join(corner_1_alone ? 2 : 1, corner_1_alone ? 3 : 2);
+}
+
+/// Calls work(square) for each square of four middles.
+template <class Work>
+void for_each_square(std::span<const double> values, int columns, int rows, const Work& work) {
+  for (int row = 0; row + 1 < rows; ++row) {
+    for (int column = 0; column + 1 < columns; ++column) {
+      Square square;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const int x = column + (i == 1 || i == 2 ? 1 : 0), y = row + (i >= 2 ? 1 : 0);
+        square.place[i] = {x + 0.5, y + 0.5};
+        square.value[i] = values[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                                 static_cast<std::size_t>(x)];
+      }
+      work(square);
+    }
+  }
+}
+
+/// A corner of a polygon over which values are linear.
+struct ValuedCorner {
+  glm::dvec2 place;
+  double value;
+};
+
+/// The part of a convex polygon where sign x (value - level) >= 0 (Sutherland and Hodgman, 1974).
+std::vector<ValuedCorner> clipped(const std::vector<ValuedCorner>& corners, double level,
+                                  double sign) {
+  std::vector<ValuedCorner> kept;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const ValuedCorner &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    const bool a_in = sign * (a.value - level) >= 0, b_in = sign * (b.value - level) >= 0;
+    if (a_in) kept.push_back(a);
+    if (a_in != b_in) {
+      const double share = (level - a.value) / (b.value - a.value);
+      kept.push_back({a.place + share * (b.place - a.place), level});
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Segment> isoline(std::span<const double> values, int columns, int rows, double level) {
+  std::vector<Segment> segments;
+  for_each_square(values, columns, rows,
+                  [&](const Square& square) { add_segments(square, level, segments); });
+  return segments;
+}
+
+std::vector<Polygon> isoband(std::span<const double> values, int columns, int rows, double low,
+                             double high) {
+  std::vector<Polygon> polygons;
+  for_each_square(values, columns, rows, [&](const Square& square) {
+    ValuedCorner middle{glm::dvec2(0.0), 0};
+    for (std::size_t i = 0; i < 4; ++i) {
+      middle.place += 0.25 * square.place[i];
+      middle.value += 0.25 * square.value[i];
+    }
+    if (std::isnan(middle.value)) return;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t j = (i + 1) % 4;
+      const auto part = clipped(
+          clipped({{square.place[i], square.value[i]}, {square.place[j], square.value[j]}, middle},
+                  low, 1),
+          high, -1);
+      if (part.size() < 3) continue;
+      Polygon& polygon = polygons.emplace_back();
+      for (const ValuedCorner& corner : part) polygon.push_back(corner.place);
+    }
+  });
+  return polygons;
+}
+
+namespace {
+
+constexpr double shown_around = 1.0;  ///< metres
+/// The longest cuts of a detailed scene are drawn: the rest are ornaments of less than a pixel.
+constexpr std::size_t most_walls = 20'000;
+constexpr int looks_along = 300;  ///< that find furniture, along the longer side
+
+/// The plane in the scene's coordinates, with positions in cells.
+class Frame {
+ public:
+  explicit Frame(const measuring::PlaneLayout& layout)
+      : corner_(layout.origin),
+        u_(layout.u),
+        v_(layout.v),
+        cells_(layout.columns, layout.rows),
+        beyond_(shown_around / glm::length(u_), shown_around / glm::length(v_)) {}
+
+  glm::dvec3 normal() const { return glm::normalize(glm::cross(u_, v_)); }
+  double height_of(const glm::dvec3& point) const { return glm::dot(point - corner_, normal()); }
+  glm::dvec2 cells_of(const glm::dvec3& point) const {
+    const glm::dvec3 from = point - corner_;
+    return glm::dvec2(glm::dot(from, u_) / glm::dot(u_, u_),
+                      glm::dot(from, v_) / glm::dot(v_, v_)) *
+           cells_;
+  }
+  glm::dvec3 point_at(const glm::dvec2& cells) const {
+    return corner_ + cells.x / cells_.x * u_ + cells.y / cells_.y * v_;
+  }
+  glm::dvec2 low() const { return -beyond_ * cells_; }
+  glm::dvec2 high() const { return (1.0 + beyond_) * cells_; }
+  bool shows(const glm::dvec2& cells) const {
+    return glm::all(glm::greaterThanEqual(cells, low())) &&
+           glm::all(glm::lessThanEqual(cells, high()));
+  }
+
+ private:
+  glm::dvec3 corner_, u_, v_;
+  glm::dvec2 cells_, beyond_;
+};
+
+/// The part of a segment that is shown (Liang and Barsky, "A new concept and method for line
+/// clipping", 1984).
+std::optional<Segment> clipped(const Segment& segment, const Frame& frame) {
+  double begin = 0, end = 1;
+  const glm::dvec2 along = segment[1] - segment[0];
+  for (int axis = 0; axis < 2; ++axis) {
+    const double to_low = frame.low()[axis] - segment[0][axis];
+    const double to_high = frame.high()[axis] - segment[0][axis];
+    if (along[axis] == 0) {
+      if (to_low > 0 || to_high < 0) return std::nullopt;
+      continue;
+    }
+    const double at_low = to_low / along[axis], at_high = to_high / along[axis];
+    begin = std::max(begin, std::min(at_low, at_high));
+    end = std::min(end, std::max(at_low, at_high));
+  }
+  if (begin >= end) return std::nullopt;
+  return Segment{segment[0] + begin * along, segment[0] + end * along};
+}
+
+/// Where the plane cuts a triangle.
+std::optional<Segment> cut(const std::array<glm::vec3, 3>& corners, const Frame& frame) {
+  std::array<glm::dvec3, 2> ends;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < 3 && found < 2; ++i) {
+    const glm::dvec3 a(corners[i]), b(corners[(i + 1) % 3]);
+    const double above_a = frame.height_of(a), above_b = frame.height_of(b);
+    if ((above_a > 0) == (above_b > 0)) continue;
+    ends[found++] = a + above_a / (above_a - above_b) * (b - a);
+  }
+  if (found < 2) return std::nullopt;
+  return clipped({frame.cells_of(ends[0]), frame.cells_of(ends[1])}, frame);
+}
+
+std::vector<Segment> walls_of(const Scene& scene, const Frame& frame) {
+  std::vector<Segment> walls;
+  for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
+    if (const auto segment = cut(scene.corners(triangle), frame)) walls.push_back(*segment);
+  }
+  if (walls.size() <= most_walls) return walls;
+  const auto is_longer = [](const Segment& a, const Segment& b) {
+    return glm::distance(a[0], a[1]) > glm::distance(b[0], b[1]);
+  };
+  std::nth_element(walls.begin(), walls.begin() + most_walls, walls.end(), is_longer);
+  walls.resize(most_walls);
+  return walls;
+}
+
+glm::dvec3 point_of(const Scene& scene, const trace::TriangleHit& hit) {
+  const auto corners = scene.corners(hit.triangle);
+  const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+  return (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
+         v * glm::dvec3(corners[2]);
+}
+
+/// Metres from the plane to what lies below, at the middles of columns x rows.
+std::vector<double> depths_below(const RayScene& rays, const Frame& frame, int columns, int rows) {
+  const trace::FlushDenormals flush_denormals;
+  const glm::dvec3 down = -frame.normal();
+  const glm::dvec2 extent = frame.high() - frame.low();
+  std::vector<double> depths;
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const glm::dvec2 place =
+          frame.low() + extent * glm::dvec2((x + 0.5) / columns, (y + 0.5) / rows);
+      const auto hit = trace::intersect(rays, glm::vec3(frame.point_at(place)), glm::vec3(down));
+      depths.push_back(hit ? -frame.height_of(point_of(rays.scene(), *hit))
+                           : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return depths;
+}
+
+std::vector<Segment> furniture_of(const RayScene& rays, const measuring::PlaneLayout& layout,
+                                  const Frame& frame) {
+  const glm::dvec2 metres(glm::length(layout.u) + 2 * shown_around,
+                          glm::length(layout.v) + 2 * shown_around);
+  const double step = std::max(metres.x, metres.y) / looks_along;
+  const int columns = std::max(2, static_cast<int>(std::lround(metres.x / step)));
+  const int rows = std::max(2, static_cast<int>(std::lround(metres.y / step)));
+  const std::vector<double> depths = depths_below(rays, frame, columns, rows);
+  std::vector<double> known;
+  std::copy_if(depths.begin(), depths.end(), std::back_inserter(known),
+               [](double depth) { return !std::isnan(depth); });
+  if (known.empty()) return {};
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  const double to_floor = *middle;  // most of a floor is free
+  std::vector<Segment> outlines;
+  for (const double share : {0.2, 0.5, 0.8}) {
+    for (const Segment& segment : isoline(depths, columns, rows, share * to_floor)) {
+      const auto in_cells = [&](const glm::dvec2& place) {
+        return frame.low() + (frame.high() - frame.low()) * place / glm::dvec2(columns, rows);
+      };
+      outlines.push_back({in_cells(segment[0]), in_cells(segment[1])});
+    }
+  }
+  return outlines;
+}
+
+}  // namespace
+
+std::optional<glm::dvec3> place_of(const Scene& scene, const Light& light) {
+  if (light.is_distant()) return std::nullopt;
+  if (light.kind != LightKind::area) return glm::dvec3(light.position);
+  glm::dvec3 sum(0.0);
+  double total = 0;
+  for (const std::uint32_t triangle : light.triangles) {
+    const auto corners = scene.corners(triangle);
+    const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
+    const double area = glm::length(glm::cross(b - a, c - a));
+    sum += area * (a + b + c) / 3.0;
+    total += area;
+  }
+  if (!(total > 0)) return std::nullopt;
+  return sum / total;
+}
+
+PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLayout& in_file) {
+  constexpr double least_cosine = 0.999;
+  const Scene& scene = rays.scene();
+  const measuring::PlaneLayout layout = measuring::in_scene(scene, in_file);
+  if (layout.normal().y < least_cosine) return {};
+  const Frame frame(layout);
+  PlanSurroundings around{
+      shown_around, walls_of(scene, frame), furniture_of(rays, layout, frame), {}};
+  for (std::size_t light = 0; light < scene.lights.size(); ++light) {
+    const auto place = place_of(scene, scene.lights[light]);
+    if (!place || !frame.shows(frame.cells_of(*place))) continue;
+    around.lamps.push_back({light + 1, frame.cells_of(*place)});
+  }
+  return around;
+}
+
+}  // namespace photile::report

@@ -1,0 +1,84 @@
+// Measurements and glare ratings as text for people and programs (lines, CSV, JSON), and numbers as
+// people read them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "glare/measure_glare.hpp"
+#include "glare/ugr_table.hpp"
+#include "measuring/measurement.hpp"
+
+namespace photile::report {
+
+/// A line for each observer under a heading, and one that names the highest rating of each kind.
+std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all);
+
+/// A line for each observer: name, position, direction, illuminance and background with their
+/// standard errors, ratings. Fields of what is not known are empty.
+std::string glare_csv(std::span<const glare::ObserverGlare> all);
+
+/// The ratings with the luminaires and the sources of pictures.
+nlohmann::ordered_json glare_json(std::span<const glare::ObserverGlare> all);
+
+/// A UGR table as data sheets have it: rooms in rows, five reflectances crosswise and endwise.
+std::vector<std::string> ugr_table_lines(const glare::UgrTable& table);
+std::string ugr_table_csv(const glare::UgrTable& table);
+nlohmann::ordered_json ugr_table_json(const glare::UgrTable& table);
+
+/// A value with so many digits that count; large ones are whole numbers in place of powers of ten:
+/// "12500", not "1.25e+04".
+inline std::string number_text(double value, int digits) {
+  const double size = std::abs(value);
+  if (size >= std::pow(10.0, digits) - 0.5 && size < 1e9) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+/// A value with so many digits as its standard error leaves meaning, which is given with one:
+/// "230 +-30". Without an error, four digits.
+inline std::string text_with_error(double value, double error) {
+  if (!(error > 0) || !std::isfinite(error)) return number_text(value, 4);
+  const double unit = std::pow(10.0, std::floor(std::log10(error)));
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(error))));
+  return fmt::format("{:.{}f} +-{:.{}f}", unit * std::round(value / unit), decimals,
+                     unit * std::round(error / unit), decimals);
+}
+
+/// A vector, and a value with its standard error, as JSON has them.
+inline nlohmann::ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+inline nlohmann::ordered_json measured_json(const Measured& measured) {
+  return {{"value", measured.value}, {"standard_error", measured.standard_error}};
+}
+
+/// A field as RFC 4180 has it: quoted where it must be.
+inline std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
+/// A line for each sensor, with a heading: grid, point (from 0), x, y, z, dx, dy, dz, lux,
+/// standard_error; with several lights also `lux <light>` and `standard_error <light>` of each.
+std::string measurement_csv(const measuring::Measurement& measurement,
+                            const std::string& unit = "lux");
+
+/// Array of grids, each with `name`, `points`, `plane` (where it is one), `statistics` and
+/// `sensors`.
+nlohmann::ordered_json measurement_json(const measuring::Measurement& measurement);
+
+/// A line for each grid and light, with a heading: Em, Emin, Emax, Uo, Ud with standard errors.
+std::vector<std::string> measurement_lines(const measuring::Measurement& measurement,
+                                           const std::string& unit = "lux");
+
+}  // namespace photile::report

@@ -1,0 +1,37 @@
+// What a screen shows: the sRGB transfer curve, exact in both pieces (IEC 61966-2-1), tone-mapped
+// texels, and PNG files.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "common/files.hpp"
+#include "photile/image.hpp"
+
+namespace photile::image {
+
+double srgb_from_linear(double linear);   ///< [0,1] to [0,1]
+double linear_from_srgb(double encoded);  ///< [0,1] to [0,1]
+
+/// Nearest 8-bit code value of a linear value; NaN and negative values give 0, more than 1 gives
+/// 255.
+std::uint8_t srgb8_from_linear(float linear);
+
+/// The texels of `tone_map` with this exposure, in stops: in one go, for windows that show many
+/// pictures. Errors: as there.
+///   rgb   scene-referred, row 0 at the top
+std::vector<std::uint8_t> tone_mapped_texels(std::span<const glm::vec3> rgb, double exposure,
+                                             DisplayView view);
+
+/// 8-bit texels of display-referred R, G, B, which the picture must have: 3 bytes a pixel, row 0 at
+/// the top. Shared among all cores.
+std::vector<std::uint8_t> srgb8_texels(const Image& display_referred);
+
+/// Encodes rows x width x channels texels (3: RGB, 4: RGB and an alpha that colours are not
+/// multiplied with) and writes them to a file that the caller commits.
+/// Errors: those of OutputFile::fail.
+void encode_png(OutputFile& output, int width, int height, std::span<const std::uint8_t> texels);
+
+}  // namespace photile::image

@@ -1,0 +1,32 @@
+// Questions about a scene: which positions it can hold, which glass encloses nothing, and its hash.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "common/content_hash.hpp"
+#include "photile/limits.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::scene {
+
+/// Per material: edges of its triangles that no other triangle of solid glass touches, so that the
+/// glass ends in the open there. 0 for all but solid glass. Solids may consist of several meshes
+/// and materials, whose corners need not be welded, nor meet: an edge is touched where its middle
+/// is, to a millionth of the scene's size.
+std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene);
+
+/// Neither NaN, infinite nor beyond limits::max_coordinate.
+inline bool within_limit(const glm::dvec3& position) {
+  constexpr double most = limits::max_coordinate;
+  return std::abs(position.x) <= most && std::abs(position.y) <= most &&
+         std::abs(position.z) <= most;
+}
+
+/// Adds everything that light depends on: geometry, materials, texels, lights with their groups,
+/// and the unit; not cameras and names of files.
+void add_scene(const Scene& scene, ContentHash& hash);
+
+}  // namespace photile::scene

@@ -1,0 +1,99 @@
+// Selection of a light to sample from a point of a surface: what is near and faces it is chosen
+// more often.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "photile/photons.hpp"
+#include "photile/scene.hpp"
+#include "trace/random_stream.hpp"
+
+namespace photile::trace {
+
+/// How likely light samples from a point choose each cluster of the lights. Empty: as from
+/// everywhere, by the power of lights alone.
+struct SelectionProbabilities {
+  std::vector<double> up_to;  ///< of the clusters up to and with this one; the last is their sum
+
+  double of(std::size_t cluster) const {
+    return (up_to[cluster] - (cluster == 0 ? 0.0 : up_to[cluster - 1])) / up_to.back();
+  }
+};
+
+/// The probabilities of light samples from everywhere.
+inline const SelectionProbabilities by_power_alone;
+
+/// Lights cut into clusters: an area light may be many small lights of a room. A cluster's weight
+/// at a point is what it would send there if nothing stood between, at most, as in light trees
+/// (Conty Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting",
+/// 2018); half of the samples go by the power of lights all the same, since much may stand between.
+/// Clusters are few enough to weigh them all.
+class LightClusters {
+ public:
+  /// Errors: none; there are no clusters where there are too many lights to weigh each.
+  ///   shares   of the lights, summing to 1: what looks from everywhere go by
+  LightClusters(const Scene& scene, std::span<const double> shares, const BoundingSphere& bounds);
+
+  /// The selection probabilities of light samples from a point of a surface; empty where there are
+  /// no clusters.
+  ///   normal   unit, to the side from which is looked
+  void weigh(const glm::vec3& position, const glm::vec3& normal,
+             SelectionProbabilities& probabilities) const;
+
+  /// What is chosen: a light, and one of its triangles by their area.
+  struct Choice {
+    std::uint32_t light;
+    std::uint32_t cluster;
+    std::uint32_t triangle;  ///< into Light::triangles, where the light can be cut; else `none`
+  };
+  /// By probabilities that are not empty.
+  ///   choice, place   blocks as LightSampler::sample takes them
+  Choice choose(const SelectionProbabilities& probabilities, const RandomBlock& choice,
+                const RandomBlock& place) const;
+
+  /// That a light is, if it cannot be cut; else `none`.
+  std::uint32_t whole(std::uint32_t light) const { return whole_[light]; }
+  /// The cluster of a triangle of a light that can be cut.
+  std::uint32_t cluster_of(std::uint32_t triangle) const { return of_triangle_[triangle]; }
+  /// The area of one side of a cluster of such a light, square metres.
+  double area(std::uint32_t cluster) const {
+    return triangles_[clusters_[cluster].last - 1].area_up_to - area_before(clusters_[cluster]);
+  }
+
+ private:
+  struct Cluster {
+    std::uint32_t light;
+    std::uint32_t first = 0, last = 0;  ///< of `triangles_`; none of lights that cannot be cut
+    bool is_far = false;                ///< beyond the scene
+    float share;
+    glm::vec3 center{0.0f};  ///< of a sphere that holds it, metres
+    float radius = 0;
+    glm::vec3 axis{0.0f};  ///< of a cone that holds the normals of what shines
+    float cone_cosine = -1, cone_sine = 0;
+  };
+  struct Triangle {
+    std::uint32_t number;  ///< into Light::triangles
+    double area_up_to;     ///< of those of the light up to and with this one, square metres
+  };
+
+  void add_area_light(const Scene& scene, Cluster cluster);
+  void enclose(const Scene& scene, Cluster& cluster) const;
+  void sum_areas(const Scene& scene, const Cluster& cluster);
+  bool cut(const Scene& scene, std::size_t cluster);
+  double area_before(const Cluster& cluster) const;
+  float weight(const Cluster& cluster, const glm::vec3& position, const glm::vec3& normal) const;
+
+  std::vector<Cluster> clusters_;
+  std::vector<Triangle> triangles_;         ///< of area lights without textures, by cluster
+  std::vector<std::uint32_t> whole_;        ///< per light: its cluster, if it cannot be cut
+  std::vector<std::uint32_t> of_triangle_;  ///< clusters of those of the scene
+  float far_;                               ///< 1 / squared radius of the scene, 1/m2
+};
+
+/// Share of each light, summing to 1 up to rounding; above 0 unless `quota` is `power`.
+std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota quota);
+
+}  // namespace photile::trace

@@ -1,0 +1,62 @@
+// A photon's path from its light to its end, and the photons of many paths sorted by sided
+// triangle.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "photile/photons.hpp"
+#include "trace/light_emitter.hpp"
+#include "trace/ray_scene.hpp"
+
+namespace photile::trace {
+
+/// Photons of one light in the order path, bounce. Arrays as in Photons.
+struct PhotonRun {
+  std::vector<glm::vec3> position;
+  std::vector<glm::vec3> flux;
+  std::vector<glm::vec3> incoming;  ///< empty unless `keep_incoming`
+  std::vector<std::uint32_t> sided_triangle;
+
+  std::size_t size() const { return position.size(); }
+};
+
+/// What a run of paths of one light left.
+struct PathRecord {
+  PhotonRun photons;
+  PhotonRun caustics;   ///< empty unless PhotonTracerParameters::keep_caustics
+  double escaped = 0;   ///< luminance that left the scene
+  double absorbed = 0;  ///< luminance that surfaces, or the bound on path length, took
+};
+
+/// What all paths of one light share.
+struct PathSetup {
+  const RayScene::Impl* rays;
+  const PhotonTracerParameters* parameters;
+  const LightEmitter* emitter;
+  std::uint32_t light;
+  std::uint64_t paths;  ///< that share the light's flux 1
+  bool keep_incoming;
+};
+
+/// Traces path number `path` and appends what it leaves to `record`. Emitted luminance equals
+/// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
+/// absorption.
+void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
+
+/// Photons of lights of one layer.
+struct LayerRun {
+  PhotonRun* photons;
+  std::uint16_t layer;
+};
+
+/// Photons in the order of their sided triangles, those of one triangle in the order of the runs.
+/// The runs are emptied on the way: beside them only the result exists, one array after the other.
+///   tell_layers   fill Photons::light
+Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
+                       std::size_t sided_triangle_count);
+
+}  // namespace photile::trace

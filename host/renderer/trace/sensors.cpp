@@ -1,0 +1,134 @@
+#include "trace/sensors.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "photile/errors.hpp"
+#include "trace/eye_path.hpp"
+#include "trace/hit_batch.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
+  constexpr double reach = 1e-3;  // metres
+  const Scene& scene = rays.scene();
+  EyeRecord record;
+  std::vector<HitPlace> places;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const Sensor& sensor = sensors[i];
+    const glm::vec3 down(-sensor.normal);
+    const auto hit = intersect(rays, glm::vec3(sensor.position + reach * sensor.normal), down);
+    const auto point = hit ? std::optional(surface_hit(scene, *hit, down)) : std::nullopt;
+    if (!point || glm::length(glm::dvec3(point->position) - sensor.position) > reach ||
+        material_of(scene, *point).interaction != Interaction::opaque) {
+      throw InputError(fmt::format(
+          "{}: no opaque surface within {} m of the sensor at ({}, {}, {})", scene.source.string(),
+          reach, sensor.position.x, sensor.position.y, sensor.position.z));
+    }
+    append_hit(impl_of(rays), *point,
+               {glm::vec3(sensor.position), down, glm::vec3(1.0f), static_cast<std::uint32_t>(i)},
+               record);
+    places.push_back({0, static_cast<std::uint32_t>(i)});
+  }
+  return hits_at({&record, 1}, places);
+}
+
+namespace {
+
+/// All rays of a row's sensor.
+class Gatherer {
+ public:
+  Gatherer(const RayScene& rays, const LightSampler& lamps, const EyeSetup& setup,
+           const Photometer& photometer, std::uint32_t pixel)
+      : rays_(rays), lamps_(lamps), setup_(setup), photometer_(photometer), pixel_(pixel) {}
+
+  void trace(EyeRecord& record, std::vector<SeenEmission>& lamps) {
+    const PrimaryHitParameters& film = *setup_.parameters;
+    const auto number = [&](int sample) {
+      return std::uint64_t{pixel_} * static_cast<std::uint64_t>(film.samples_per_pixel) +
+             static_cast<std::uint64_t>(sample);
+    };
+    const RandomBlock scramble =
+        RandomStream(film.seed, number(0), 0).block(Purpose::sensor_direction, 0);
+    // One number for all choices of lights: each is looked at as often as its chance says.
+    const double shift =
+        RandomStream(film.seed, number(0), 0).block(Purpose::sensor_light, 2).uniform_double(0);
+    for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
+      const RandomStream random(film.seed, number(sample), 0);
+      follow(random, sobol_point(static_cast<std::uint32_t>(sample), scramble), record);
+      look_at_lamp(random, (sample + shift) / film.samples_per_pixel, lamps);
+    }
+  }
+
+ private:
+  glm::vec3 weight() const {
+    return glm::vec3(1.0f / static_cast<float>(setup_.parameters->samples_per_pixel));
+  }
+
+  void follow(const RandomStream& random, const glm::dvec2& spread, EyeRecord& record) const {
+    const RandomBlock own = random.block(Purpose::sensor_direction, 1);
+    const glm::vec3 direction = photometer_.sample(spread, own.uniform(0), own.uniform(1));
+    const float density = photometer_.density(direction);
+    if (!(density > 0.0f)) return;
+    const LightTechnique looking{lamps_, density, false, by_power_alone, !photometer_.sees_lamps()};
+    follow_eye_ray(setup_, {photometer_.origin(), direction, weight(), pixel_}, random, record,
+                   &looking);
+  }
+
+  void look_at_lamp(const RandomStream& random, double choice,
+                    std::vector<SeenEmission>& lamps) const {
+    const auto lamp = lamps_.sample(photometer_.origin(), RandomBlock::of(choice),
+                                    random.block(Purpose::sensor_light, 1));
+    if (!lamp || !(photometer_.sees_lamps() || lamp->distant)) return;
+    const float density = photometer_.density(lamp->direction);
+    if (!(density > 0.0f)) return;
+    glm::vec3 arrives = density * weight() * lamp->received *
+                        transmittance(rays_, photometer_.origin(), lamp->target);
+    if (arrives == glm::vec3(0.0f)) return;
+    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density);
+    lamps.push_back({pixel_, lamp->layer, arrives});
+  }
+
+  const RayScene& rays_;
+  const LightSampler& lamps_;
+  const EyeSetup& setup_;
+  const Photometer& photometer_;
+  std::uint32_t pixel_;
+};
+
+}  // namespace
+
+PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
+                            SensorResponse response, const LightSampler& lamps,
+                            const PrimaryHitParameters& film, int first_row, int last_row,
+                            std::span<const std::uint32_t> map_of) {
+  const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
+  const DistantLights distant(rays.scene());
+  const EyeSetup setup{.rays = &impl_of(rays),
+                       .parameters = &film,
+                       .emitted_radiance = &radiance,
+                       .distant = &distant};
+  const auto count = static_cast<std::size_t>(last_row - first_row);
+  std::vector<EyeRecord> rows(count);
+  std::vector<std::vector<SeenEmission>> seen(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const FlushDenormals flush_denormals;
+    const auto pixel = static_cast<std::uint32_t>(first_row) + static_cast<std::uint32_t>(i);
+    const Photometer photometer(sensors[pixel], sensors[pixel].response.value_or(response));
+    Gatherer(rays, lamps, setup, photometer, pixel).trace(rows[i], seen[i]);
+  });
+  PrimaryHitBatch batch = batch_of(rays, std::move(rows), map_of);
+  for (const auto& row : seen) {
+    batch.emission.insert(batch.emission.end(), row.begin(), row.end());
+  }
+  return batch;
+}
+
+}  // namespace photile::trace
