@@ -90,10 +90,9 @@ LAYER_CASES = (
     ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))
 # Beyond the tests of the folder itself.
 FURTHER_TESTS = {
-    "groups": (("maps", "grid_contents"), ("estimate", "patches_vs_oracle"),
+    "groups": (("maps", "grid_contents"), ("estimate", "estimates_vs_oracle"),
                ("estimate", "neighbours_vs_oracle")),
-    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "plate_irradiance"),
-                ("estimate", "clipped_surfaces")),
+    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "clipped_discs")),
     "trace": (("reference", "path_light"), ("render", "direct_rays"), ("cache", "irradiance_gather"),
               ("cache", "gathered_nodes"), ("measuring", "gather"),
               ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
