@@ -3,13 +3,15 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
 #include <limits>
 #include <numbers>
 #include <random>
 
-#include "cube_faces.hpp"
 #include "pictures/textures.hpp"
 #include "scene_files.hpp"
 
@@ -231,7 +233,36 @@ TEST_CASE("texts of suns and skies are checked", "[sun]") {
   }
 }
 
-// Cube maps against OpenGL's table of their faces and against integrals in closed form.
+// Cube maps against OpenGL's table of their faces, flipped as EXT_lights_image_based asks, and against
+// integrals in closed form.
+
+/// OpenGL 4.6, table 8.19: the direction of a place of a face, s and t from 0 to 1, t from the
+/// first row of texels on.
+glm::dvec3 opengl_direction(std::size_t face, double s, double t) {
+  const double sc = 2 * s - 1, tc = 2 * t - 1;
+  const std::array<glm::dvec3, 6> directions{
+      {{1, -tc, -sc}, {-1, -tc, sc}, {sc, 1, tc}, {sc, -1, -tc}, {sc, -tc, 1}, {-sc, -tc, -1}}};
+  return glm::normalize(directions[face]);
+}
+
+/// Direction of the middle of a texel: "each saved image must be flipped about its vertical axis".
+glm::dvec3 texel_direction(std::size_t face, int column, int row, int side) {
+  return opengl_direction(face, 1 - (column + 0.5) / side, (row + 0.5) / side);
+}
+
+/// A cube whose texels hold `radiance` of their directions.
+pictures::CubeMap cube_of(int side, const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
+  pictures::CubeMap cube;
+  for (std::size_t face = 0; face < 6; ++face) {
+    cube[face] = {side, side, {}};
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        cube[face].texels.push_back(radiance(texel_direction(face, column, row, side)));
+      }
+    }
+  }
+  return cube;
+}
 
 TEST_CASE("each texel of a cube map lies where OpenGL has it, flipped") {
   constexpr int side = 5;

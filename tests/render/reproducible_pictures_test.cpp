@@ -125,7 +125,7 @@ TEST_CASE("a cancelled rendering stops with Interrupted") {
 
 // Pictures within a small part of the device's memory: the same bits.
 
-RenderParameters small_parameters() { return small_picture(20'000, 48, 36); }
+RenderParameters tiny_parameters() { return small_picture(20'000, 48, 36); }
 
 Device limited_device(std::uint64_t bytes) {
   DeviceOptions options;
@@ -157,7 +157,7 @@ RenderResult render_by_all_maps(const Scene& scene, Device& device,
 TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has the same bits",
           "[slow]") {
   const MapMode maps = GENERATE(MapMode::triangle, MapMode::automatic);
-  RenderParameters parameters = small_parameters();
+  RenderParameters parameters = tiny_parameters();
   parameters.maps = maps;
   Device device;
   const RenderResult expected = render_by_all_maps(room(), device, parameters);
@@ -182,7 +182,7 @@ TEST_CASE("maps that keep normals give the same bits within an eighth of the mem
   for (std::size_t i = first; i < scene.vertices.size(); ++i) {
     scene.vertices[i] += glm::vec3(1.9f, 1.5f, 1.6f);
   }
-  RenderParameters parameters = small_parameters();
+  RenderParameters parameters = tiny_parameters();
   parameters.maps = MapMode::patch;
   Device device;
   const RenderResult expected = render_by_all_maps(scene, device, parameters);
@@ -197,7 +197,7 @@ TEST_CASE("a picture of one light within a tenth of the memory that it takes has
   // Coloured walls, since sums of equal numbers hardly depend on their order.
   const Scene box = test::closed_box(test::diffuse({0.7f, 0.5f, 0.3f}), 5);
   const Camera camera = Camera::look_at({0.1, 0.1, 0.2}, {1, 0.9, 0.6}, {0, 0, 1}, 1.2);
-  const RenderParameters parameters = small_parameters();
+  const RenderParameters parameters = tiny_parameters();
   Device device;
   const LightLayers expected = render(box, camera, device, parameters).layers;
   Device small = limited_device(device.peak_allocated_bytes() / 10);
@@ -207,7 +207,7 @@ TEST_CASE("a picture of one light within a tenth of the memory that it takes has
 TEST_CASE("a memory too small for the triangles alone is refused with the remedy") {
   Device small = limited_device(2'000);
   CHECK_THROWS_MATCHES(
-      render(room(), test::room_camera(), small, small_parameters()), DeviceMemoryError,
+      render(room(), test::room_camera(), small, tiny_parameters()), DeviceMemoryError,
       Catch::Predicate<DeviceMemoryError>(
           [](const DeviceMemoryError& error) {
             return std::string(error.what()).find("memory limit") != std::string::npos;
