@@ -2,7 +2,7 @@
 // of each specialisation (one light or several, diffuse or glossy) with its bytes per photon.
 #include <fmt/format.h>
 
-#include "estimate/plane_sample.hpp"
+#include "estimate/device_test.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photons.hpp"
 #include "support/bench_record.hpp"

@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "device/context.hpp"
-#include "estimate/plane_sample.hpp"
+#include "estimate/device_test.hpp"
 #include "photile/estimator.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "estimate/tuning.hpp"
+#include "estimate/specialisation.hpp"
 #include "photile/estimator.hpp"
 #include "support/bench_record.hpp"
 #include "support/estimate_check.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cache/irradiance_gather.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/neighbour_choice.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "render/path_estimate.hpp"
 #include "support/bench_record.hpp"
 #include "support/gathering_photons.hpp"
@@ -105,8 +105,8 @@ Truth by_paths(const RayScene& rays, const PrimaryHits& points, std::span<const 
   return truth;
 }
 
-/// relMSE as bench/tools/picture_error.py has it, with and without the worst 5%, less the noise of the
-/// paths; and the ratio of the means.
+/// relMSE as bench/tools/picture_error.py has it, with and without the worst 5%, less the noise of
+/// the paths; and the ratio of the means.
 nlohmann::json errors_of(const std::vector<double>& lux, const Truth& truth) {
   const auto count = static_cast<double>(lux.size());
   const double mean = std::accumulate(truth.lux.begin(), truth.lux.end(), 0.0) / count;

@@ -25,7 +25,7 @@
 #include "support/workload.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
-#include "view/viewpoint.hpp"
+#include "view/navigation.hpp"
 
 namespace {
 

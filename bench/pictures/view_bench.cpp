@@ -11,8 +11,8 @@
 #include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
 #include "trace/ray_query.hpp"
-#include "view/display.hpp"
-#include "view/viewpoint.hpp"
+#include "view/frame.hpp"
+#include "view/navigation.hpp"
 
 namespace {
 

@@ -1,4 +1,5 @@
-"""Copies of glTF scenes that Radiance can have, too: diffuse, without textures and lamps without size."""
+"""Copies of glTF scenes that Radiance can have, too: diffuse, without textures and lamps without size. Lamps that emit
+by a picture emit evenly, as much in all."""
 
 import json
 import shutil
@@ -7,6 +8,7 @@ import numpy as np
 
 from tools.gltf_meshes import matrix_of, read_accessor
 
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # of Rec.709 primaries
 TEXTURED = [0.4, 0.4, 0.4, 1]  # in place of textures
 SHINY = [0.5, 0.5, 0.5, 1]  # in place of metals
 
@@ -42,7 +44,28 @@ def write_plain_gltf(source, folder):
         shutil.copy(source.parent / buffer["uri"], folder)
     target = folder / source.name
     target.write_text(json.dumps(file), encoding="utf-8")
+    make_lamps_even(file, target)
+    target.write_text(json.dumps(file), encoding="utf-8")
     return target
+
+
+def make_lamps_even(file, gltf):
+    """Gives lamps whose node tells their lumens the even radiance that these come from; `gltf` is the plain file."""
+    areas = {}
+    for material, corners in surfaces(gltf):
+        edges = corners[:, 1:] - corners[:, :1]
+        area = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum()
+        areas[material["name"]] = areas.get(material["name"], 0) + area
+    for node in file["nodes"]:
+        lumen = node.get("extras", {}).get("photile_lumens")
+        if lumen is None:
+            continue
+        for primitive in file["meshes"][node["mesh"]]["primitives"]:
+            material = file["materials"][primitive["material"]]
+            luminance = np.dot(LUMINANCE, material.get("emissiveFactor", (0, 0, 0)))
+            if luminance > 0:
+                strength = lumen / (np.pi * areas[material["name"]]) / luminance
+                material["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
 
 
 def surfaces(gltf):

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "maps/build_steps.hpp"
-#include "maps/prefix_sum.hpp"
 #include "structures/structure.hpp"
 
 namespace photile::structures {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "maps/grid_cells.hpp"
+#include "maps/map_tiling.hpp"
 #include "structures/halving.hpp"
 #include "structures/structure.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "maps/entry_defines.hpp"
+#include "maps/map_page.hpp"
 
 namespace photile::structures {
 namespace {

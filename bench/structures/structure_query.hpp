@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include "device/launch_pace.hpp"
+#include "device/launch.hpp"
 #include "estimate/query.hpp"
 #include "structures/structure.hpp"
 

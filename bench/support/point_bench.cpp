@@ -152,7 +152,7 @@ class PointBench {
         .estimate(hits_);
   }
 
-  /// Of the k-th photon of each query, or of the search.
+  /// The squared radius of the k-th photon of each query, or of the search.
   std::vector<float> squared_radii(Subject& subject, int k, double radius) const {
     if (subject.maps) {
       return Estimator(*subject.maps, Scene(), {.neighbours = k, .area = AreaMode::disc})

@@ -454,7 +454,7 @@ inline constexpr std::uint32_t max_dense_lights = 8;
 struct SceneNeeds {
   bool glossy = false;       ///< some opaque material has a specular lobe or a normal map
   bool normal_maps = false;  ///< some opaque material has a normal map
-  /// Some opaque surface without a normal map has vertex normals that differ from its triangles'.
+  /// Some opaque surface has a normal map, or vertex normals that differ from its triangles'.
   bool smooth_shading = false;
   bool textures = false;        ///< some material has a texture
   bool specular_paths = false;  ///< some material is a mirror or glass

@@ -40,17 +40,23 @@ class GltfDocument:
 
     # Materials
 
-    def matte(self, name, rgb, texture=None):
-        """A Lambertian surface; `rgb` is its linear albedo, times the texture where it has one."""
-        pbr = {"baseColorFactor": [*rounded(rgb), 1], "metallicFactor": 0, "roughnessFactor": 1}
+    def matte(self, name, rgb, texture=None, normals=None, bumps=1.0):
+        """A Lambertian surface; `rgb` is its linear albedo, times the texture where it has one. `normals` is a normal
+        map, and `bumps` scales it."""
+        return self._surface(name, rgb, 1, texture, normals, bumps, {"KHR_materials_specular": {"specularFactor": 0}})
+
+    def glossy(self, name, rgb, roughness, texture=None, normals=None, bumps=1.0):
+        """A dielectric of index 1.5 over a Lambertian base; `roughness` as glTF has it."""
+        return self._surface(name, rgb, roughness, texture, normals, bumps, {})
+
+    def _surface(self, name, rgb, roughness, texture, normals, bumps, extensions):
+        pbr = {"baseColorFactor": [*rounded(rgb), 1], "metallicFactor": 0, "roughnessFactor": roughness}
         if texture is not None:
             pbr["baseColorTexture"] = {"index": self._texture(texture)}
-        return self._material(name, pbr, {"KHR_materials_specular": {"specularFactor": 0}})
-
-    def glossy(self, name, rgb, roughness):
-        """A dielectric of index 1.5 over a Lambertian base; `roughness` as glTF has it."""
-        return self._material(name, {"baseColorFactor": [*rounded(rgb), 1], "metallicFactor": 0,
-                                     "roughnessFactor": roughness}, {})
+        index = self._material(name, pbr, extensions)
+        if normals is not None:
+            self.json["materials"][index]["normalTexture"] = {"index": self._texture(normals), "scale": bumps}
+        return index
 
     def metal(self, name, rgb, roughness):
         """A metal that reflects `rgb`; a perfect mirror at roughness 0."""
@@ -69,16 +75,21 @@ class GltfDocument:
                                      "metallicFactor": 0, "roughnessFactor": 0},
                               {"KHR_materials_transmission": {"transmissionFactor": 1}})
 
-    def lamp(self, name, lumen, area, rgb):
-        """A black surface whose front emits `lumen` in all over `area` square metres."""
+    def lamp(self, name, lumen, area, rgb, picture=None, mean=1.0):
+        """A black surface whose front emits `lumen` in all over `area` square metres.
+
+        `picture` is a texture of its radiance, and `mean` the mean luminance of the texels over that area.
+        """
         radiance = lumen / (math.pi * area)  # cd/m2 of luminance, for a Lambertian emitter
         colour = [c / max(rgb) for c in rgb]
         index = self._material(
             name, {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 1},
             {"KHR_materials_specular": {"specularFactor": 0},
              "KHR_materials_emissive_strength":
-                 {"emissiveStrength": round(radiance / luminance(colour), 3)}})
+                 {"emissiveStrength": round(radiance / luminance(colour) / mean, 3)}})
         self.json["materials"][index]["emissiveFactor"] = rounded(colour)
+        if picture is not None:
+            self.json["materials"][index]["emissiveTexture"] = {"index": self._texture(picture)}
         return index
 
     def _material(self, name, pbr, extensions):
@@ -90,12 +101,12 @@ class GltfDocument:
         return len(self.json["materials"]) - 1
 
     def _texture(self, uri):
-        images = self.json.setdefault("images", [])
+        images, textures = self.json.setdefault("images", []), self.json.setdefault("textures", [])
         self.json.setdefault("samplers", [{"wrapS": 10497, "wrapT": 10497}])
-        images.append({"uri": uri})
-        textures = self.json.setdefault("textures", [])
-        textures.append({"source": len(images) - 1, "sampler": 0})
-        return len(textures) - 1
+        if {"uri": uri} not in images:
+            images.append({"uri": uri})
+            textures.append({"source": len(images) - 1, "sampler": 0})
+        return images.index({"uri": uri})
 
     # Nodes
 
@@ -105,8 +116,7 @@ class GltfDocument:
         for material, shape in parts:
             attributes = {"POSITION": self._accessor(shape.positions, "VEC3", FLOAT),
                           "NORMAL": self._accessor(shape.normals, "VEC3", FLOAT)}
-            pbr = self.json["materials"][material]["pbrMetallicRoughness"]
-            if "baseColorTexture" in pbr:
+            if "Texture" in json.dumps(self.json["materials"][material]):
                 attributes["TEXCOORD_0"] = self._accessor(shape.uvs, "VEC2", FLOAT)
             indices = [(i,) for t in shape.triangles for i in t]
             primitives.append({"attributes": attributes, "material": material,
@@ -114,14 +124,17 @@ class GltfDocument:
         self.json["meshes"].append({"name": name, "primitives": primitives})
         return len(self.json["meshes"]) - 1
 
-    def place(self, name, mesh, at=(0, 0, 0), turn=0.0):
-        """A node that shows a mesh, moved, and turned by `turn` degrees about y."""
+    def place(self, name, mesh, at=(0, 0, 0), turn=0.0, lumen=None):
+        """A node that shows a mesh, moved, and turned by `turn` degrees about y. `lumen` is the flux of all its lamps
+        together, to the digit where a texture leaves it to roundings."""
         half = math.radians(turn) / 2
         node = {"name": name, "mesh": mesh}
         if any(at):
             node["translation"] = rounded(at)
         if turn:
             node["rotation"] = rounded([0, math.sin(half), 0, math.cos(half)], 9)
+        if lumen is not None:
+            node["extras"] = {"photile_lumens": lumen}
         self._node(node)
 
     def thing(self, name, *parts):

@@ -231,3 +231,168 @@ def sphere(radius, segments=24, rings=12):
                for i in range(rings + 1)]
     profile[0], profile[-1] = (0.0, -radius), (0.0, radius)
     return lathe(profile, segments)
+
+
+def smoothed(shape, crease_degrees=40.0):
+    """The same triangles, with the mean normal of those that meet at a corner and bend by less than a crease."""
+    facing, at_corner = [], {}
+    for triangle in shape.triangles:
+        a, b, c = (shape.positions[i] for i in triangle)
+        facing.append(cross(_subtract(b, a), _subtract(c, a)))  # as long as twice its area
+        for corner in (a, b, c):
+            at_corner.setdefault(corner, []).append(len(facing) - 1)
+    limit = math.cos(math.radians(crease_degrees))
+    units = [normalised(n) for n in facing]
+    result, known = Shape(), {}
+    for triangle, own in zip(shape.triangles, units):
+        corners = []
+        for i in triangle:
+            position, total = shape.positions[i], [0.0, 0.0, 0.0]
+            for other in at_corner[position]:
+                if sum(p * q for p, q in zip(own, units[other])) >= limit:
+                    total = [t + c for t, c in zip(total, facing[other])]
+            vertex = (position, tuple(round(c, 5) for c in normalised(total)), shape.uvs[i])
+            if vertex not in known:
+                known[vertex] = result.vertex(*vertex)
+            corners.append(known[vertex])
+        result.triangles.append(tuple(corners))
+    return result
+
+
+def grained(shape, axis="x", scale=1.0, offset=0.0):
+    """The same shape with texture coordinates in metres times `scale` and u along an axis, as wood is cut."""
+    along = "xyz".index(axis)
+    result = Shape().add(shape)
+    for i, (position, normal) in enumerate(zip(shape.positions, shape.normals)):
+        facing = max((a for a in range(3) if a != along), key=lambda a: abs(normal[a]))
+        across = 3 - along - facing
+        result.uvs[i] = (position[along] * scale + offset, position[across] * scale + offset * 0.37)
+    return result
+
+
+def grid(points, uv_scale=1.0, closed=False):
+    """Quads between rows of points. Seen from the front, rows run to the right and follow each other upwards.
+
+    `closed` joins the last column to the first. Texture coordinates are columns and rows, from 0 to `uv_scale`.
+    """
+    shape = Shape()
+    rows, columns = len(points) - 1, len(points[0]) - (0 if closed else 1)
+
+    def corner(r, c):
+        return points[r][c % len(points[r])], (c / columns * uv_scale, r / rows * uv_scale)
+
+    for r in range(rows):
+        for c in range(columns):
+            quad = [corner(r, c), corner(r, c + 1), corner(r + 1, c + 1), corner(r + 1, c)]
+            for triangle in ((0, 1, 2), (0, 2, 3)):
+                three = [quad[i] for i in triangle]
+                if len({p for p, _ in three}) < 3:
+                    continue  # of a row or column that runs together
+                first = len(shape.positions)
+                for position, uv in three:
+                    shape.vertex(position, (0.0, 1.0, 0.0), uv)
+                shape.triangles.append((first, first + 1, first + 2))
+    return shape
+
+
+def rounded_box(size, bottom_centre=(0.0, 0.0, 0.0), radius=0.03, steps=(1, 1, 1), arc=2, warp=None,
+                uv_scale=1.0):
+    """A box whose edges are arcs of `radius`, in `steps` along each axis between them.
+
+    `warp` moves a point: it gets and returns coordinates from the centre of the box.
+    """
+    half = [s / 2 for s in size]
+    centre = (bottom_centre[0], bottom_centre[1] + half[1], bottom_centre[2])
+    ticks = []
+    for h, count in zip(half, steps):
+        inner = h - radius
+        corner = [radius * math.tan(math.pi / 4 * i / arc) for i in range(1, arc + 1)]
+        middle = [inner * (2 * i / count - 1) for i in range(count + 1)]
+        middle[-1] = inner
+        ticks.append([-inner - c for c in reversed(corner)] + middle + [inner + c for c in corner])
+
+    def moved(point):
+        base = [max(-(h - radius), min(h - radius, p)) for p, h in zip(point, half)]
+        offset = [p - b for p, b in zip(point, base)]
+        length = math.sqrt(sum(o * o for o in offset))
+        found = tuple(b + o * radius / length for b, o in zip(base, offset))
+        found = warp(found) if warp else found
+        return tuple(c + f for c, f in zip(centre, found))
+
+    shape = Shape()
+    for axis in range(3):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        for sign in (1, -1):
+            points = []
+            for b in ticks[j]:
+                row = []
+                for a in ticks[i] if sign > 0 else reversed(ticks[i]):
+                    p = [0.0] * 3
+                    p[axis], p[i], p[j] = sign * ticks[axis][-1], a, b
+                    row.append(moved(p))
+                points.append(row)
+            shape.add(grid(points))
+    shape = smoothed(shape, 60)
+    for n, (p, normal) in enumerate(zip(shape.positions, shape.normals)):
+        facing = max(range(3), key=lambda a: abs(normal[a]))
+        a, b = [p[k] for k in range(3) if k != facing]
+        shape.uvs[n] = (a * uv_scale, b * uv_scale)
+    return shape
+
+
+def _along(path):
+    """Directions at the points of a path, and two more that are carried along it without a turn."""
+    tangents = []
+    for i in range(len(path)):
+        before, after = path[max(i - 1, 0)], path[min(i + 1, len(path) - 1)]
+        tangents.append(normalised(_subtract(after, before)))
+    hint = (0.0, 0.0, 1.0) if abs(tangents[0][2]) < 0.9 else (1.0, 0.0, 0.0)
+    frames = []
+    for t in tangents:
+        side = normalised(cross(hint, t))
+        hint = cross(t, side)
+        frames.append((side, hint))
+    return frames
+
+
+def tube(path, radius, segments=8):
+    """A closed round rod along points; `radius` is one number, or one for each of them."""
+    radii = radius if isinstance(radius, (list, tuple)) else [radius] * len(path)
+    rings = []
+    for point, r, (side, up) in zip(path, radii, _along(path)):
+        ring = []
+        for s in range(segments):
+            c, sn = math.cos(2 * math.pi * s / segments), math.sin(2 * math.pi * s / segments)
+            ring.append(tuple(p + r * (c * a + sn * b) for p, a, b in zip(point, side, up)))
+        rings.append(ring)
+    rings = [[tuple(path[0])] * segments, *rings, [tuple(path[-1])] * segments]
+    return smoothed(grid(rings, closed=True), 50)
+
+
+def moulding(profile, path, up=(0.0, 1.0, 0.0), closed=True):
+    """A bar of constant section along a path of right angles, mitred at its corners.
+
+    The profile is a polygon of (to the left of the path, along `up`), counter-clockwise, that can be seen whole from
+    its first point. The path lies at right angles to `up`.
+    """
+    def left(a, b):
+        return normalised(cross(up, _subtract(b, a)))
+
+    count = len(path)
+    sections = []
+    for i, point in enumerate(path):
+        sides = []
+        if closed or i > 0:
+            sides.append(left(path[i - 1], point))
+        if closed or i < count - 1:
+            sides.append(left(point, path[(i + 1) % count]))
+        mitre = [sum(c) for c in zip(*sides)] if sides[0] != sides[-1] else sides[0]
+        sections.append([tuple(p + a * m + b * u for p, m, u in zip(point, mitre, up)) for a, b in profile])
+    if closed:
+        sections.append(sections[0])
+    # Rows run around the profile, so that columns are steps of the path.
+    around = [[section[k % len(profile)] for section in sections] for k in range(len(profile) + 1)]
+    shape = grid([list(reversed(row)) for row in around])
+    if not closed:
+        shape.polygon(sections[0][:1] + sections[0][:0:-1]).polygon(sections[-1])
+    return smoothed(shape, 35)

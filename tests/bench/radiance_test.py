@@ -51,8 +51,8 @@ class Scene(unittest.TestCase):
             gltf = write_plain_gltf(ROOT / "scenes/living-room/living-room.gltf", pathlib.Path(folder))
             write_radiance_scene(gltf, pathlib.Path(folder) / "scene.rad")
             text, copy = (pathlib.Path(folder) / "scene.rad").read_text(), json.loads(gltf.read_text())
-        self.assertLess(text.count(" polygon "), 9206)
-        self.assertAlmostEqual(light_flux(text), 6000 + 3200 + 1050 + 400 + 400 + 470, delta=20)
+        self.assertLess(text.count(" polygon "), 62368)
+        self.assertAlmostEqual(light_flux(text), 1200 + 1600 + 1050 + 400 + 400 + 470, delta=20)
         self.assertNotIn("Texture", json.dumps(copy["materials"]))
         self.assertNotIn("KHR_lights_punctual", json.dumps(copy))
 

@@ -9,10 +9,12 @@ import math
 import pathlib
 import sys
 import unittest
+import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 try:
-    from kernels import report_kernels, report_lights, report_scale, report_tables, report_targets
+    from kernels import (report_kernels, report_lights, report_plots, report_scale, report_tables,
+                         report_targets)
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
@@ -68,6 +70,14 @@ class Knn(unittest.TestCase):
                 {"structure": "uniform-grid", "k": 50, "queries": 1000, "seconds": timing(0.5)}]
         lines = report_tables.knn_table(rows).splitlines()
         self.assertEqual(lines[-1], "| uniform-grid | 500 (500-500) | 20 |")
+
+    def test_a_structure_that_no_style_names_is_drawn_beside_the_others(self):
+        rows = [{"structure": name, "photons": 10, "queries": 1, "seconds": timing(1)}
+                for name in ("my-list", "uniform-grid")]
+        axis = unittest.mock.Mock()
+        report_plots.draw_times(axis, rows)
+        self.assertEqual([call.kwargs["label"] for call in axis.plot.call_args_list],
+                         ["uniform-grid", "my-list"])
 
     def test_traced_photons_count_as_a_million_within_a_twentieth(self):
         self.assertTrue(report_tables.near_target(960_000))

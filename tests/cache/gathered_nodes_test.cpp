@@ -11,7 +11,7 @@
 #include <string>
 
 #include "cache/node_sources.hpp"
-#include "estimate/reflected_radiance.hpp"
+#include "estimate/light_at_points.hpp"
 #include "gathering.hpp"
 #include "photile/light_maps.hpp"
 #include "test_scenes.hpp"

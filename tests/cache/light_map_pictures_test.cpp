@@ -14,9 +14,9 @@
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "render/first_picture.hpp"
 #include "render/picture_in_parts.hpp"
 #include "render/pictures.hpp"
+#include "render/quality.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 

@@ -1,7 +1,9 @@
 // Smooth shading from nodes that gather, beside closed forms and paths.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -158,6 +160,20 @@ TEST_CASE(
 TEST_CASE("Nodes show a smooth sphere and cylinder in a room as paths do") {
   CHECK(rms_beside_paths(in_room(sphere), some_of(sphere, 5), 4'000) < 0.02);
   CHECK(rms_beside_paths(in_room(cylinder), some_of(cylinder, 1), 6'000) < 0.02);
+}
+
+TEST_CASE("Nodes show a floor with a normal map as paths do") {
+  Scene scene = in_room(sphere);
+  constexpr std::array<std::uint8_t, 4> tilted{160, 110, 249, 255};  // by 16 degrees
+  scene.textures.emplace_back("tilted", 1, 1, std::vector<std::array<std::uint8_t, 4>>{tilted});
+  scene.corner_uv.assign(scene.triangle_count(),
+                         {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)});
+  scene.materials[0].normal_texture = 0;  // of the room
+  std::vector<Sensor> sensors;
+  for (const double x : {-1.3, -0.9, -0.4, 0.3, 0.8, 1.2}) {
+    for (const double y : {-1.1, -0.5, 0.2, 0.7, 1.3}) sensors.push_back({{x, y, 0}, {0, 0, 1}});
+  }
+  CHECK(rms_beside_paths(scene, sensors, 4'000) < 0.03);
 }
 
 TEST_CASE("Many lights are shaded as smoothly") {

@@ -91,7 +91,7 @@ std::size_t count_wrong(const Cloud& cloud, const CloudNeighbours& found, double
   return wrong;
 }
 
-/// Of grids: as usual, and one for all.
+/// Photons of a cell of the grids: as usual, and one cell for all.
 constexpr std::array cells{defaults::photons_per_cell, 1e12f};
 
 void check_neighbours(const Cloud& cloud, double radius, std::initializer_list<int> ks,

@@ -12,8 +12,6 @@
 
 #include "child_process.hpp"
 #include "device/cache_folder.hpp"
-#include "device/cache_key.hpp"
-#include "device/checked_file.hpp"
 #include "device/kernel_store.hpp"
 #include "file_bytes.hpp"
 #include "probe_output.hpp"

@@ -9,7 +9,6 @@
 #include "command/command_line.hpp"
 #include "device/embedded_files.hpp"
 #include "device/launch.hpp"
-#include "device/launch_pace.hpp"
 #include "device/program_source.hpp"
 #include "photile/errors.hpp"
 #include "source_folder.hpp"

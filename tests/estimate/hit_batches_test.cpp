@@ -1,10 +1,10 @@
 // Hits in batches of any size.
-#include "estimate/hit_batches.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <vector>
 
+#include "estimate/hit_buffers.hpp"
 #include "neighbour_comparison.hpp"
 #include "photon_sets.hpp"
 #include "structures/structure.hpp"

@@ -14,8 +14,7 @@
 
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
-#include "estimate/tuning.hpp"
-#include "maps/entry_defines.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"

@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 
 #include "estimate/specialisation.hpp"
-#include "estimate/tuning.hpp"
 #include "estimates_comparison.hpp"
 #include "neighbour_comparison.hpp"
 #include "oracle/clipped_area.hpp"

@@ -3,9 +3,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "estimate/device_test.hpp"
 #include "estimate/photon_estimate.hpp"
-#include "estimate/plane_sample.hpp"
-#include "maps/entry_defines.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"

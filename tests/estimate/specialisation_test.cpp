@@ -4,8 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "estimate/plane_sample.hpp"
-#include "estimate/tuning.hpp"
+#include "estimate/device_test.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::test {

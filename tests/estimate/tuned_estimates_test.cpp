@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "estimate/specialisation.hpp"
-#include "estimate/tuning.hpp"
 #include "estimates_comparison.hpp"
 #include "photile/errors.hpp"
 #include "photon_sets.hpp"

@@ -7,9 +7,9 @@
 #include <random>
 #include <set>
 
+#include "maps/build_steps.hpp"
+#include "maps/map_shapes.hpp"
 #include "maps/map_store.hpp"
-#include "maps/photon_crowding.hpp"
-#include "maps/prefix_sum.hpp"
 #include "photile/errors.hpp"
 #include "photile/photon_maps.hpp"
 #include "photon_sets.hpp"

@@ -5,14 +5,12 @@
 #include <random>
 #include <vector>
 
-#include "maps/map_numbers.hpp"
+#include "maps/candidate_maps.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "maps/map_tiling.hpp"
-#include "maps/page_queue.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/resident_maps.hpp"
-#include "maps/residents.hpp"
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/photon_maps.hpp"

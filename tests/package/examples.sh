@@ -19,6 +19,8 @@ within() {
 rm -rf "$scratch/installed" "$scratch/out"
 mkdir -p "$scratch/out"
 "$cmake" --install "$build" --prefix "$scratch/installed" > "$scratch/out/install.log"
+! grep -q estimate_by_list "$scratch/installed/bin/photile" ||
+  fail "the command has the kernels of what grids are compared with"
 for header in "$source"/include/photile/*.hpp; do
   name=$(basename "$header")
   [ "$name" = photile.hpp ] || grep -q "\"photile/$name\"" "$source/include/photile/photile.hpp" ||

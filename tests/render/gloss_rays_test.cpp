@@ -1,12 +1,13 @@
 // Reflections by lobes.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <glm/glm.hpp>
 #include <numbers>
-#include <tbb/global_control.h>
 
-#include "cache/reflection_noise.hpp"
+#include "cache/surface_cache.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "picture_in_parts.hpp"

@@ -14,9 +14,8 @@
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 #include "pictures.hpp"
+#include "render/film.hpp"
 #include "render/pass_count.hpp"
-#include "render/pass_schedule.hpp"
-#include "render/pooled_estimates.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 

@@ -1,4 +1,6 @@
 // The errors that a picture states, and what is done about them.
+#include "render/refinement.hpp"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -7,8 +9,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/renderer.hpp"
-#include "render/refinement.hpp"
-#include "render/sample_errors.hpp"
+#include "render/film.hpp"
 #include "render/setting.hpp"
 
 namespace photile::test {

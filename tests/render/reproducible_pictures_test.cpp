@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "device/context.hpp"
-#include "estimate/for_each_device.hpp"
 #include "estimate/load_balance.hpp"
 #include "instanced_scenes.hpp"
 #include "neighbour_comparison.hpp"

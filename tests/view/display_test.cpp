@@ -1,17 +1,17 @@
 // From layers and powers to what the screen shows.
-#include "view/display.hpp"
+#include "image/display.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "image/display.hpp"
 #include "image/glare.hpp"
 #include "photile/errors.hpp"
 #include "report/palette.hpp"
 #include "report/tables.hpp"
 #include "test_scenes.hpp"
 #include "two_lights.hpp"
+#include "view/frame.hpp"
 
 namespace photile::test {
 

@@ -1,7 +1,7 @@
 // How large frames are while the viewer moves.
-#include "view/frame_size.hpp"
-
 #include <catch2/catch.hpp>
+
+#include "view/frame_worker.hpp"
 
 namespace photile::test {
 

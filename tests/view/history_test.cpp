@@ -1,10 +1,9 @@
 // Changes of lamps, taken back and made again.
-#include "view/history.hpp"
-
 #include <catch2/catch.hpp>
 
 #include "two_lights.hpp"
 #include "view/light_board.hpp"
+#include "view/settings_history.hpp"
 
 namespace photile::test {
 namespace {

@@ -12,7 +12,7 @@
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
-#include "view/scene_loader.hpp"
+#include "view/luminaire_session.hpp"
 #include "view/settings_history.hpp"
 
 namespace photile::test {

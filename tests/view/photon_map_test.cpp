@@ -1,4 +1,6 @@
 // The photon map of a picked triangle, and how it is drawn.
+#include "view/photon_map.hpp"
+
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -6,8 +8,6 @@
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "test_scenes.hpp"
-#include "view/photon_map_overlay.hpp"
-#include "view/photon_map_view.hpp"
 
 namespace photile::test {
 

@@ -1,8 +1,8 @@
 // Walking, turning and orbiting.
-#include "view/viewpoint.hpp"
-
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
+
+#include "view/navigation.hpp"
 
 namespace photile::test {
 

@@ -41,7 +41,7 @@ glm::vec3 value_of(const Estimates& values, std::uint32_t node, std::size_t laye
   return light;
 }
 
-/// Of a node: what it holds of any layer.
+/// What a node holds of any layer.
 std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
                                     std::size_t nodes) {
   const std::size_t lights = values.irradiance.size() / nodes;
@@ -141,7 +141,7 @@ bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
   return true;
 }
 
-/// Of a texel of the rectangle.
+/// The point of a texel of the rectangle.
 glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
   const cache::Chart& lattice = maps_.charts()[placed.chart];
   const glm::uvec2 within(std::clamp(x, border, placed.cells.x + border) - border,

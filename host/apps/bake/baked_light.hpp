@@ -54,7 +54,8 @@ class BakedLight {
 
   /// Sided triangles that are baked, ascending.
   std::span<const std::uint32_t> sides() const { return sides_; }
-  /// Of a baked triangle's corners: (0, 0) is the top left corner of the picture.
+  /// Texture coordinates of a baked triangle's corners: (0, 0) is the top left corner of the
+  /// picture.
   std::array<glm::vec2, 3> corners(std::uint32_t sided_triangle) const;
 
   /// Irradiance of a layer at power 1: width x height, row 0 at the top; 0 where no chart lies.

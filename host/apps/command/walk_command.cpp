@@ -29,7 +29,7 @@
 #include "photile/progress.hpp"
 #include "photile/renderer.hpp"
 #include "reading/camera_path.hpp"
-#include "view/display.hpp"
+#include "view/frame.hpp"
 #include "walk/frames.hpp"
 
 namespace photile::app {

@@ -1,25 +1,34 @@
-// A finished picture of the walkthrough, before its lights are mixed.
+// A finished picture of the walkthrough, and what the screen shows of it at the settings of the
+// lights.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "measuring/measurement.hpp"
 #include "photile/camera.hpp"
+#include "photile/defaults.hpp"
+#include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
-#include "view/photon_map_view.hpp"
+#include "report/false_colour.hpp"
 
 namespace photile::view {
+
+struct InspectablePhotons;  // photon_map.hpp
 
 /// What the noise of an estimate depends on.
 struct EstimateNoise {
   /// Photons of one estimate, as many as equal weights would need for its noise; 0 = not known.
   double photons = 0;
-  /// Of each layer's lights; of a pooled layer, those of its lights over their powers together.
+  /// Paths of each layer's lights; of a mixed layer, those of its lights over their powers
+  /// together.
   std::vector<double> paths;
 
   static EstimateNoise of(const Scene& scene, const RenderParameters& parameters);
@@ -42,5 +51,56 @@ struct Frame {
   double seconds = 0;        ///< that it took
   RunStatistics statistics;  ///< of its stages
 };
+
+enum class DisplayMode {
+  picture,      ///< tone mapped
+  illuminance,  ///< of the surface seen, in false colour
+  glare         ///< the picture, its unwanted reflections marked
+};
+
+struct DisplaySettings {
+  DisplayMode mode = DisplayMode::picture;
+  double exposure = 0;  ///< stops that the picture is scaled by
+  /// The exposure follows a sky that is moved: from noon to dusk it loses a thousandfold.
+  bool adapts = true;
+  DisplayView view = ToneMapping{}.view;  ///< of the picture
+  report::FalseColour false_colour;
+  double glare_limit = defaults::glare_limit;  ///< as image::find_glare takes it
+  bool photon_map = false;                     ///< of the clicked triangle, over any of the modes
+};
+
+/// sRGB texels of a frame.
+struct DisplayedFrame {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< row 0 at the top
+};
+
+/// Mixes and colours a frame: the picture is what `photile render -o FILE.png` gives at that
+/// exposure and view. Errors: UsageError for an unknown palette.
+DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings);
+
+/// Stops by which `render -o FILE.png` scales this picture of its own accord.
+double automatic_stops(const Frame& frame, const LightMix& mix);
+
+/// Illuminance of the surface that each pixel sees, lux.
+std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix);
+
+/// Power x tint of each layer: what quick frames are mixed by.
+std::vector<glm::vec3> scales_of(const LightMix& mix);
+
+/// What one light gives to a pixel.
+struct LightReading {
+  Measured luminance;    ///< cd/m2 or W/(m2 sr)
+  Measured illuminance;  ///< lux
+};
+
+/// Per light of the mix, at a pixel of the frame. Standard errors are those of photons that fall
+/// independently of each other: 1 / sqrt(n) of a reading by n photons, where the photons of an
+/// estimate are shared out as the lights' readings and paths have them. What an estimate blurs is
+/// not in them. Errors: none; pixels outside, and all of a quick frame, read 0.
+std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, int x, int y);
+
+/// The readings of all lights together.
+LightReading sum_of(std::span<const LightReading> readings);
 
 }  // namespace photile::view

@@ -1,6 +1,7 @@
 #include "view/frame_worker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <tuple>
 #include <utility>
@@ -8,11 +9,29 @@
 #include "photile/errors.hpp"
 
 namespace photile::view {
+
+void FrameSize::record(double pixels, double seconds) {
+  const double latest = seconds / pixels;
+  constexpr double weight = 0.3;  // of the newest frame: steady, and adapted in a few frames
+  seconds_per_pixel_ =
+      seconds_per_pixel_ > 0 ? (1 - weight) * seconds_per_pixel_ + weight * latest : latest;
+}
+
+std::pair<int, int> FrameSize::fit(int width, int height) const {
+  if (seconds_per_pixel_ <= 0) return {width, height};
+  const double pixels = static_cast<double>(width) * height;
+  const double scale = std::clamp(std::sqrt(budget_ / (seconds_per_pixel_ * pixels)), 1.0 / 8, 1.0);
+  const auto scaled = [&](int length) {
+    return std::max(1, static_cast<int>(std::lround(length * scale)));
+  };
+  return {scaled(width), scaled(height)};
+}
+
 namespace {
 
 /// Seconds that the first picture of a scene may take to have light everywhere.
 constexpr double patience = 10;
-/// Of a viewer at rest: seconds of valuing nodes for each second of drawing.
+/// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
@@ -101,8 +120,12 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   const bool whole = shown && !lacking_ && !request_.moving;
   const bool draws = !request_.powers.empty() && maps_->renderer->draws();
   const int first = draws && !request_.moving ? first_samples : 1;
-  task = {request_, maps_, std::min(refines ? more_samples * done_samples_ : first, most_samples_),
-          version_, draws && !whole, shown};
+  task = {request_,
+          maps_,
+          std::min(refines ? more_samples * done_samples_ : first, most_samples_),
+          version_,
+          draws && !whole,
+          shown};
   return true;
 }
 

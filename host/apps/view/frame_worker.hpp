@@ -1,4 +1,4 @@
-// Frames of the walkthrough, rendered on a thread of their own.
+// Frames of the walkthrough, rendered on a thread of their own, as large as the wanted rate allows.
 #pragma once
 
 #include <condition_variable>
@@ -8,13 +8,30 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "view/frame.hpp"
-#include "view/frame_size.hpp"
 #include "view/photon_worker.hpp"
 
 namespace photile::view {
+
+/// Learns from each frame what a pixel costs.
+class FrameSize {
+ public:
+  explicit FrameSize(double frames_per_second) : budget_(1 / frames_per_second) {}
+
+  /// A frame of this many pixels took so long.
+  void record(double pixels, double seconds);
+
+  /// Width and height in the window's proportions, at most the window and at least an eighth of it;
+  /// the whole before anything was recorded.
+  std::pair<int, int> fit(int width, int height) const;
+
+ private:
+  double budget_;                 ///< seconds
+  double seconds_per_pixel_ = 0;  ///< smoothed; 0 = unknown
+};
 
 /// What is to be seen.
 struct FrameRequest {
@@ -27,7 +44,7 @@ struct FrameRequest {
   /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
   /// moves and until no node is lacking. Empty: frames with layers are wanted.
   std::vector<glm::vec3> powers = {};
-  /// Of the layers of frames that have some; null = each light for itself.
+  /// How the layers of frames that have some are mixed; null = each light for itself.
   std::shared_ptr<const LightPooling> pooling = nullptr;
 };
 
@@ -42,7 +59,7 @@ class FrameWorker {
 
   void show(const FrameRequest& request);
   void use(std::shared_ptr<MapGeneration> maps);
-  /// The same with what is to be seen: of maps of another scene, which has other powers.
+  /// Takes maps of another scene, which has other powers, with what is to be seen.
   void use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request);
 
   /// Ends the work. Returns the newest maps, which nobody uses any longer; null: there are none.

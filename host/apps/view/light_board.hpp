@@ -38,7 +38,7 @@ class LightBoard {
   std::vector<LightControl>& controls() { return controls_; }
   const std::vector<LightControl>& controls() const { return controls_; }
 
-  /// Of the sky, where there is one.
+  /// The moment of the sky, where there is one.
   struct Daylight {
     SkyMoment moment;
     bool on = true;
@@ -51,7 +51,7 @@ class LightBoard {
   /// A colour that a light cannot have (it has none of a primary) leaves it as it was: see
   /// `refused`.
   LightMix mix() const;
-  /// The same with the lights of the sky as the scene has them.
+  /// The mix with the lights of the sky as the scene has them.
   LightMix lamps_mix() const;
 
   /// How frames' layers are made of the scene's: the patches of the sky are one, at the powers of

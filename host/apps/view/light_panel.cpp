@@ -1,3 +1,4 @@
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -8,9 +9,10 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "view/panel_parts.hpp"
+#include "view/panels.hpp"
 
 namespace photile::view {
+
 namespace {
 
 const char* word_of(PowerUnit unit) { return unit == PowerUnit::lumen ? "lm" : "W"; }
@@ -87,7 +89,7 @@ bool draw_light(LightControl& control) {
   ImGui::SameLine();
   ImGui::TextUnformatted(fitting(control.name, ImGui::GetContentRegionAvail().x).c_str());
   if (ImGui::IsItemHovered()) tell_light(control);
-  // Of a lamp that is off in the scene, the slider still has to reach somewhere.
+  // The slider of a lamp that is off in the scene still has to reach somewhere.
   const double most = control.scene_power > 0 ? 4 * control.scene_power : 1000;
   const double least = 0;
   const std::string format = fmt::format("%.4g {}", word_of(control.unit));
@@ -109,7 +111,7 @@ bool draw_lights(PanelState& state) {
   if (!ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen)) return false;
   const float rows = 2 * static_cast<float>(state.lights.controls().size());
   const float height = rows * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
-  // Of a window of 600 pixels, the rest of the panel leaves so much.
+  // The rest of the panel leaves so much of a window of 600 pixels.
   constexpr float most = 0.35f;
   ImGui::BeginChild("lights", ImVec2(0, std::min(height, most * ImGui::GetIO().DisplaySize.y)));
   for (LightControl& control : state.lights.controls()) changed |= draw_light(control);
@@ -156,6 +158,47 @@ bool draw_moods(PanelState& state, PanelEvents& events) {
     name.clear();
   }
   return changed;
+}
+
+// Day and hour of the sky.
+
+bool draw_daylight(PanelState& state) {
+  const MovingSky* const sky = state.lights.sky();
+  if (!sky || !ImGui::CollapsingHeader("Daylight", ImGuiTreeNodeFlags_DefaultOpen)) return false;
+  LightBoard::Daylight& daylight = state.lights.daylight();
+  bool changed = ImGui::Checkbox("##sky", &daylight.on);
+  ImGui::SameLine();
+  ImGui::TextUnformatted(text_of(daylight.moment).c_str());
+  ImGui::SameLine();
+  ImGui::Checkbox("adapt", &state.display.adapts);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the exposure follows the hour");
+  constexpr double first = 0, last = 24 - 1.0 / 60;
+  double hour = daylight.moment.hour;
+  if (ImGui::SliderScalar("hour", ImGuiDataType_Double, &hour, &first, &last, "%.2f",
+                          ImGuiSliderFlags_AlwaysClamp)) {
+    daylight.moment.hour = hour;
+    changed = true;
+  }
+  int day = daylight.moment.day;
+  if (ImGui::SliderInt("day", &day, 1, 365, "%d", ImGuiSliderFlags_AlwaysClamp)) {
+    daylight.moment.day = day;
+    changed = true;
+  }
+  ImGui::TextWrapped("%s", sky->text(daylight.moment).c_str());
+  return changed;
+}
+
+bool take_sky_keys(SkyMoment& moment) {
+  const auto pressed = [](int later, int earlier) {
+    return static_cast<int>(ImGui::IsKeyPressed(later, true)) -
+           static_cast<int>(ImGui::IsKeyPressed(earlier, true));
+  };
+  const bool shift = ImGui::GetIO().KeyShift;
+  const int steps = pressed(GLFW_KEY_RIGHT, GLFW_KEY_LEFT);
+  const int days = pressed(GLFW_KEY_PAGE_DOWN, GLFW_KEY_PAGE_UP);
+  moment.add_hours(steps * (shift ? 1 : 0.25));
+  moment.add_days(days * (shift ? 30 : 1));
+  return steps != 0 || days != 0;
 }
 
 }  // namespace photile::view

@@ -13,7 +13,7 @@
 namespace photile::view {
 
 /// Entries of the file, and where their lamps are: an edit moves these at once, the scene follows
-/// when it is loaded again (scene_loader.hpp). Without a display, so that tests can edit.
+/// when it is loaded again (luminaire_session.hpp). Without a display, so that tests can edit.
 class LuminaireEditor {
  public:
   ///   file     that `save` writes; it may not exist yet
@@ -41,7 +41,8 @@ class LuminaireEditor {
 
   /// Photometric files in the list's folder, by name, and those that entries have.
   std::vector<std::string> photometric_files() const;
-  /// Of lamps to be placed: that of the newest entry, else the first there is; "" = none.
+  /// The photometric file of lamps to be placed: that of the newest entry, else the first there is;
+  /// "" = none.
   std::string next_file() const;
   void set_next_file(const std::string& name) { next_file_ = name; }
 
@@ -68,7 +69,7 @@ class LuminaireEditor {
   void set_lumens(double lumens);
   void set_array(int columns, int rows, const glm::dvec2& spacing);
 
-  /// Of the selected entry, in the file's world.
+  /// The position of the selected entry, in the file's world.
   glm::dvec3 position() const;
 
  private:

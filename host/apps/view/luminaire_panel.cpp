@@ -6,12 +6,12 @@
 #include <array>
 
 #include "photile/limits.hpp"
-#include "view/panel_parts.hpp"
+#include "view/panels.hpp"
 
 namespace photile::view {
 namespace {
 
-/// As imgui takes it: a step of the slider for each pixel.
+/// The speed of a slider as imgui takes it: a step of the slider for each pixel.
 constexpr float metres_per_pixel = 0.01f, degrees_per_pixel = 0.5f;
 constexpr int most_in_a_row = 100;  ///< that the panel sets
 

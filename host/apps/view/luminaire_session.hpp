@@ -1,16 +1,93 @@
-// Luminaires that are edited in the window: their file, the hands on them, and the scene with them.
+// Luminaires that are edited in the window: their file, the hands on them (mouse, keys, outlines),
+// and the scene that is loaded again with them.
 #pragma once
 
+#include <condition_variable>
+#include <exception>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "loading/load_scene.hpp"
+#include "photile/camera.hpp"
 #include "photile/progress.hpp"
-#include "view/luminaire_tool.hpp"
-#include "view/scene_loader.hpp"
+#include "view/luminaire_editor.hpp"
+#include "view/photon_map.hpp"
 
 namespace photile::view {
+
+class SceneLoader {
+ public:
+  ///   options   with the file of luminaires
+  SceneLoader(std::filesystem::path scene, SceneLoadOptions options);
+  ~SceneLoader();
+
+  /// Loads it with these entries (LuminaireList::text); what was asked for before is given up.
+  void load(const std::string& luminaires);
+
+  struct Loaded {
+    std::string luminaires;
+    std::shared_ptr<const loading::SourcedScene> scene;
+  };
+  /// The newest scene that is loaded, once.
+  std::optional<Loaded> take();
+  /// Why the newest list cannot be loaded, or null; each is told once.
+  std::exception_ptr take_error();
+  bool busy() const;
+
+ private:
+  void work(const std::stop_token& stop);
+
+  const std::filesystem::path scene_;
+  SceneLoadOptions options_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::optional<std::string> wanted_;
+  bool loading_ = false;
+  std::optional<Loaded> loaded_;
+  std::exception_ptr error_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+class LuminaireTool {
+ public:
+  /// The editor is kept as a reference.
+  explicit LuminaireTool(LuminaireEditor& editor) : editor_(editor) {}
+
+  LuminaireEditor& editor() { return editor_; }
+
+  /// Whether the next click places lamps.
+  bool& placing() { return placing_; }
+
+  /// Delete, Ctrl+D, R, P and Escape.
+  void take_keys();
+
+  /// Moves selected lamps that the left button holds. Before the navigation takes the mouse:
+  /// returns whether it is not to.
+  ///   camera   of the picture that fills the window
+  bool drag(const Camera& camera);
+  bool dragging() const { return held_.has_value(); }
+
+  /// A click on what a picture shows: places, or selects. Returns whether it was for lamps.
+  ///   direction   of the ray through the place, unit
+  ///   surface     that it meets, or none
+  /// Errors: those of LuminaireEditor::place.
+  bool click(const Camera& camera, const glm::dvec3& direction,
+             const std::optional<PhotonInspector::Place>& surface);
+
+  /// Outlines of all openings, the selected ones in colour.
+  void draw(const Camera& camera) const;
+
+ private:
+  LuminaireEditor& editor_;
+  bool placing_ = false;
+  std::optional<glm::dvec3> held_;  ///< direction to where the pointer holds them
+};
 
 /// What becomes of unsaved changes.
 enum class Closing { undecided, save, discard, stay };
@@ -38,7 +115,7 @@ class LuminaireSession {
   ///   message   is told why there is none
   std::shared_ptr<const Scene> take_scene(std::string& message);
 
-  /// As LuminaireTool, but that `message` is told of errors.
+  /// Takes a click as LuminaireTool does, but `message` gets the errors.
   bool click(const Camera& camera, const glm::dvec3& direction,
              const std::optional<PhotonInspector::Place>& surface, std::string& message);
 

@@ -1,9 +1,31 @@
-// Keys and mouse to motion.
+// Where the viewer stands and looks, and how keys and mouse move it.
 #pragma once
 
-#include "view/viewpoint.hpp"
+#include "photile/camera.hpp"
 
 namespace photile::view {
+
+/// A camera that walks, turns and orbits. Up is +y, as in glTF; what the first camera has of roll
+/// stays.
+class Viewpoint {
+ public:
+  explicit Viewpoint(const Camera& start) : camera_(start) {}
+
+  const Camera& camera() const { return camera_; }
+
+  /// Metres along the heading, which is level however the head is tilted, to the right, and up.
+  void walk(double forward, double right, double up);
+
+  /// Turns the head: radians to the right and upwards, no farther than nearly straight up or down.
+  void turn(double right, double upwards);
+
+  /// Turns likewise around the point `distance` metres ahead, which stays where it is in the
+  /// picture: the viewer moves to the left when it turns to the right.
+  void orbit(double right, double upwards, double distance);
+
+ private:
+  Camera camera_;
+};
 
 /// Walks with W A S D, E and Q (up, down), looks around with the left button, orbits with the
 /// right, and goes ahead with the wheel. Input that the panels take is not for it.

@@ -1,4 +1,4 @@
-// Photon maps that get better in the background.
+// Photon maps that get better in the background, for the window's thread to take.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@
 
 #include "photile/renderer.hpp"
 #include "view/frame.hpp"
-#include "view/photon_map_view.hpp"
+#include "view/photon_map.hpp"
 
 namespace photile::view {
 
@@ -24,7 +24,8 @@ struct MapGeneration {
   std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
-  /// Of a first picture: shown where the light maps of this one have no node yet; null = none.
+  /// The maps of a first picture, shown where the light maps of this one have no node yet; null =
+  /// none.
   std::shared_ptr<MapGeneration> coarser;
   std::uint64_t emitted_photons = 0;
   bool whole = false;              ///< of all photons that were asked for
@@ -40,7 +41,7 @@ struct WorkProgress {
 };
 
 /// Traces photons and builds maps on a thread of its own: first those of a first picture
-/// (render/first_picture.hpp), so that there is something to see at once, then, when that was
+/// (render/quality.hpp), so that there is something to see at once, then, when that was
 /// shown, those that `render` builds from the same parameters.
 class PhotonWorker {
  public:
@@ -75,6 +76,31 @@ class PhotonWorker {
   mutable std::mutex mutex_;
   std::exception_ptr error_;
   std::jthread thread_;  // last: it uses all of the above
+};
+
+class PhotonFeed {
+ public:
+  ///   light_map_bytes   that nodes may take; 0 = no bound
+  PhotonFeed(PhotonWorker::OpenDevices open_devices, std::uint64_t light_map_bytes)
+      : open_devices_(std::move(open_devices)), light_map_bytes_(light_map_bytes) {}
+
+  /// Ends what it is at, and traces this scene, which maps hold from then on. As PhotonWorker.
+  void trace(std::shared_ptr<const Scene> scene, const RenderParameters& parameters,
+             std::optional<PreparedPhotons> prepared, KeepPhotons keep);
+  void stop() { worker_.reset(); }
+
+  /// The newest maps, once whenever there is something new in them.
+  std::shared_ptr<MapGeneration> take();
+
+  WorkProgress progress() const { return worker_ ? worker_->progress() : WorkProgress(); }
+  std::exception_ptr take_error() { return worker_ ? worker_->take_error() : nullptr; }
+
+ private:
+  const PhotonWorker::OpenDevices open_devices_;
+  const std::uint64_t light_map_bytes_;
+  std::mutex mutex_;
+  std::shared_ptr<MapGeneration> delivered_;
+  std::optional<PhotonWorker> worker_;  // last: it delivers
 };
 
 }  // namespace photile::view

@@ -7,8 +7,8 @@
 #include "measuring/requirements.hpp"
 #include "photile/errors.hpp"
 #include "report/tables.hpp"
-#include "view/panel_parts.hpp"
-#include "view/photon_map_overlay.hpp"
+#include "view/panels.hpp"
+#include "view/photon_map.hpp"
 
 namespace photile::view {
 namespace {

@@ -11,19 +11,18 @@
 #include <utility>
 
 #include "photile/errors.hpp"
-#include "view/display.hpp"
+#include "view/frame.hpp"
 #include "view/frame_worker.hpp"
 #include "view/light_board.hpp"
 #include "view/luminaire_session.hpp"
 #include "view/moods.hpp"
 #include "view/navigation.hpp"
-#include "view/panel_parts.hpp"
-#include "view/photon_feed.hpp"
-#include "view/photon_map_overlay.hpp"
+#include "view/panels.hpp"
+#include "view/photon_map.hpp"
+#include "view/photon_worker.hpp"
 #include "view/point_worker.hpp"
 #include "view/settings_history.hpp"
 #include "view/snapshots.hpp"
-#include "view/viewpoint.hpp"
 #include "view/window.hpp"
 
 namespace photile::view {
@@ -188,7 +187,7 @@ class Viewer {
     }
   }
 
-  /// Those of the sky and of luminaires.
+  /// Takes the keys of the sky and of luminaires.
   void take_edit_keys() {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput) return;
@@ -364,7 +363,7 @@ class Viewer {
   std::optional<double> last_motion_;  ///< GLFW's clock, seconds
   bool was_moving_ = false, had_reflections_ = false, clicked_ = false, picked_ = false;
   int asked_width_ = 0, asked_height_ = 0;
-  /// Of a sky that hours move: that frames were asked for with.
+  /// The moment that frames were requested with, of a sky that hours move.
   SkyMoment shown_moment_;
   std::shared_ptr<const LightPooling> pooling_;
   bool sky_moved_ = false;

@@ -30,7 +30,7 @@ class Window {
 
   void set_title(const std::string& title);
 
-  /// Of the picture area, in pixels.
+  /// The size of the picture area, in pixels.
   int width() const;
   int height() const;
 

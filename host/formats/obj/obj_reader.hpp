@@ -31,7 +31,7 @@ struct ObjFile {
   std::vector<std::string> material_names;  ///< as usemtl names them
 };
 
-/// Reads `text`, without the material libraries that it names (obj_reader.hpp). Errors:
+/// Reads `text`, without the material libraries that it names (read_obj_libraries). Errors:
 /// InputError naming the face with an impossible vertex index.
 ObjFile read_obj(std::string& text, reading::ImportContext& context);
 

@@ -1,5 +1,3 @@
-#include "cache/chart_growth.hpp"
-
 #include <tsl/robin_map.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cache/charts.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 

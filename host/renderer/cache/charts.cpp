@@ -8,9 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "cache/chart_growth.hpp"
-
 namespace photile::cache {
+
 namespace {
 
 /// Tiles of the coarsest level of a scene: 4 bytes each, whether they are filled or not.

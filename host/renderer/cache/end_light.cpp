@@ -8,8 +8,8 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/ray_query.hpp"
 
@@ -150,7 +150,8 @@ bool EndLight::is_open(const NodeBlend& cell) const {
   return state == open_cell;
 }
 
-/// Of ends that have no estimates of their own. Ends that none of their nodes sees get one.
+/// Finds the nodes of ends that have no estimates of their own. Ends that none of their nodes sees
+/// get one.
 void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   light.nodes.resize(has_own.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/batch_sums.hpp"
+#include "cache/gathered_irradiance.hpp"
 #include "cache/node_sight.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/estimator.hpp"
@@ -84,7 +84,7 @@ class EndLight {
   /// Metres, from node to node: as wide as the estimates that value them.
   double spacing() const { return parameters_.spacing; }
 
-  /// Of the light maps; `forget` empties them.
+  /// Bytes of the light maps; `forget` empties them.
   std::uint64_t bytes() const;
   void forget() { maps_.reset(); }
 
@@ -121,7 +121,7 @@ class EndLight {
   };
   const LightMapParameters parameters_;
   std::optional<Maps> maps_;  ///< made when the first ray ends
-  Costs costs_;  ///< without nodes
+  Costs costs_;               ///< without nodes
 };
 
 }  // namespace photile::cache

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "cache/irradiance_filter.hpp"
-#include "cache/weighted_points.hpp"
 #include "estimate/map_order.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"

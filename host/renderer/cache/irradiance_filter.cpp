@@ -1,8 +1,76 @@
 #include "cache/irradiance_filter.hpp"
 
-#include "cache/weighted_points.hpp"
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <utility>
+
+#include "estimate/light_at_points.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::cache {
+
+namespace {
+
+using Total = GatheredIrradiance::Total;
+
+/// The square of the difference in tolerated errors.
+double squared_difference(const Total& a, const Total& b, const NoiseTolerance& tolerated) {
+  const double difference = a.luminance - b.luminance;
+  if (difference == 0) return 0;
+  const double variance = a.error * a.error + b.error * b.error;
+  return difference * difference / (tolerated.errors * tolerated.errors * variance);
+}
+
+/// How much errors that are too different leave.
+double likeness_of_errors(const Total& a, const Total& b, const NoiseTolerance& tolerated) {
+  const auto [calm, noisy] = a.error < b.error ? std::pair(a, b) : std::pair(b, a);
+  if (!(tolerated.ratio * calm.error < noisy.error)) return 1;
+  if (!(calm.error < tolerated.known * calm.luminance)) return 1;
+  const double part = tolerated.ratio * calm.error / noisy.error;
+  return part * part;
+}
+
+}  // namespace
+
+void KnownLight::read(const GatheredIrradiance& irradiance, std::size_t point) {
+  for (const std::uint16_t layer : lit_) layers_[layer] = {};
+  lit_.clear();
+  irradiance_ = &irradiance;
+  point_ = point;
+  estimate::for_each_estimate(
+      irradiance.mean, point, layers_.size(), [&](std::size_t layer, std::size_t i) {
+        layers_[layer] = {luminance(glm::dvec3(irradiance.mean.irradiance[i])),
+                          irradiance.error(i)};
+        lit_.push_back(static_cast<std::uint16_t>(layer));
+      });
+  all_ = at_powers(layer_powers_);
+}
+
+void Likeness::compare(const KnownLight& a, const KnownLight& b, const NoiseTolerance& tolerated) {
+  for (const std::uint16_t layer : parted_) different_[layer] = 0;
+  parted_.clear();
+  const double errors = likeness_of_errors(a.all(), b.all(), tolerated);
+  for (const KnownLight* place : {&a, &b}) {
+    for (const std::uint16_t layer : place->lit()) {
+      const double squared = squared_difference(a.of_layer(layer), b.of_layer(layer), tolerated);
+      if (squared <= defaults::parting_difference || different_[layer] > 0) continue;
+      // Beyond the least number it would be no difference any more.
+      different_[layer] = std::max(errors * std::exp(-squared), std::numeric_limits<double>::min());
+      parted_.push_back(layer);
+    }
+  }
+  double squared = 0;
+  if (parted_.empty()) {
+    squared = squared_difference(a.all(), b.all(), tolerated);
+  } else if (parted_.size() < layer_powers_.size()) {
+    others_powers_.assign(layer_powers_.begin(), layer_powers_.end());
+    for (const std::uint16_t layer : parted_) others_powers_[layer] = 0;
+    squared =
+        squared_difference(a.at_powers(others_powers_), b.at_powers(others_powers_), tolerated);
+  }
+  of_others_ = errors * std::exp(-squared);
+}
 
 GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
                                      std::span<const double> layer_powers,

@@ -1,14 +1,233 @@
-// Takes noise from irradiance at points that see much the same.
+// Takes noise from irradiance at points that see much the same: whether the light of two points may
+// be the same but for noise, and means with weights of each layer.
 #pragma once
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cache/gathered_irradiance.hpp"
-#include "cache/likeness.hpp"
+#include "estimate/light_at_points.hpp"
+#include "photile/defaults.hpp"
 
 namespace photile::cache {
+
+/// What may be noise.
+struct NoiseTolerance {
+  /// Differences of so many standard errors count less by e.
+  double errors = defaults::tolerated_errors;
+  /// Where one standard error is larger than this many times the other, the two count less, by the
+  /// square of what is more: they do not see the same light.
+  double ratio = std::numeric_limits<double>::infinity();
+  /// But only where the smaller error is at most this share of the light it is of: a point that few
+  /// rays brought light to, or none, does not know its error.
+  double known = defaults::known_error;
+};
+
+/// The light of one point with its standard errors: of each layer, and of all at their powers.
+class KnownLight {
+ public:
+  explicit KnownLight(std::span<const double> layer_powers)
+      : layer_powers_(layer_powers), layers_(layer_powers.size()) {}
+
+  /// Keeps a reference until the next call.
+  void read(const GatheredIrradiance& irradiance, std::size_t point);
+
+  const GatheredIrradiance::Total& all() const { return all_; }
+  const GatheredIrradiance::Total& of_layer(std::size_t layer) const { return layers_[layer]; }
+  /// The light of all layers together at these powers.
+  GatheredIrradiance::Total at_powers(std::span<const double> layer_powers) const {
+    return irradiance_->total(point_, layer_powers);
+  }
+  std::span<const std::uint16_t> lit() const { return lit_; }  ///< layers that the point has
+
+ private:
+  std::span<const double> layer_powers_;
+  const GatheredIrradiance* irradiance_ = nullptr;
+  std::size_t point_ = 0;
+  std::vector<GatheredIrradiance::Total> layers_;  ///< at power 1
+  GatheredIrradiance::Total all_;
+  std::vector<std::uint16_t> lit_;
+};
+
+/// How alike the layers of two places are, in [0, 1]. One light's border is no reason to part the
+/// others: a layer whose own difference exceeds its noise is judged by itself; all others together,
+/// for what many lamps show is surer than what one does.
+class Likeness {
+ public:
+  explicit Likeness(std::span<const double> layer_powers)
+      : layer_powers_(layer_powers), different_(layer_powers.size()) {}
+
+  void compare(const KnownLight& a, const KnownLight& b, const NoiseTolerance& tolerated);
+
+  double of_layer(std::size_t layer) const {
+    return different_[layer] > 0 ? different_[layer] : of_others_;
+  }
+  /// The weight of layers that neither point has.
+  double of_others() const { return of_others_; }
+
+ private:
+  std::span<const double> layer_powers_;
+  std::vector<double> different_, others_powers_;
+  std::vector<std::uint16_t> parted_;
+  double of_others_ = 1;
+};
+
+/// Weighted means of points, written one after another.
+class WeightedPoints {
+ public:
+  /// `to` is empty.
+  ///   like   batches, and form, of all points
+  WeightedPoints(std::size_t lights, const GatheredIrradiance& like, GatheredIrradiance& to)
+      : to_(to),
+        sparse_(!like.mean.first.empty()),
+        shared_(!like.shared_variance.empty()),
+        batches_(static_cast<std::size_t>(like.batches)),
+        sums_(lights),
+        batch_(lights * batches_, 0.0) {
+    to_.batches = like.batches;
+    if (sparse_) to_.mean.first.push_back(0);
+  }
+
+  /// Adds a point to the mean.
+  ///   weight_of   of a layer, by its number
+  ///   of_none     weight that it would give to a layer that no point so far has
+  template <class Weight>
+  void add(const GatheredIrradiance& from, std::size_t point, double of_none,
+           const Weight& weight_of) {
+    estimate::for_each_estimate(from.mean, point, sums_.size(),
+                                [&](std::size_t layer, std::size_t) { light(layer); });
+    smooth_ = smooth_ || !from.mean.by_normal.empty();
+    for (const std::uint16_t layer : lit_) {
+      sums_[layer].weight = weight_of(layer);
+      sums_[layer].weights += sums_[layer].weight;
+    }
+    estimate::for_each_estimate(
+        from.mean, point, sums_.size(), [&](std::size_t layer, std::size_t i) {
+          Sums& sums = sums_[layer];
+          sums.irradiance += sums.weight * glm::dvec3(from.mean.irradiance[i]);
+          if (smooth_) sums.by_normal += sums.weight * glm::dvec4(from.mean.by_normal[i]);
+          for (std::size_t b = 0; b < batches_; ++b) {
+            batch_[layer * batches_ + b] += sums.weight * double{from.batch[i * batches_ + b]};
+          }
+          // Photons of caustics may be the same at all points: errors add up.
+          if (shared_) sums.error += sums.weight * std::sqrt(double{from.shared_variance[i]});
+        });
+    of_none_ += of_none;
+  }
+
+  void end_point() {
+    std::sort(lit_.begin(), lit_.end());
+    for (const std::uint16_t layer : lit_) write(layer);
+    if (sparse_) to_.mean.first.push_back(to_.mean.irradiance.size());
+    lit_.clear();
+    of_none_ = 0;
+  }
+
+ private:
+  void light(std::size_t layer) {
+    if (sums_[layer].is_lit) return;
+    sums_[layer].is_lit = true;
+    sums_[layer].weights = of_none_;
+    lit_.push_back(static_cast<std::uint16_t>(layer));
+  }
+
+  /// The sums of one layer, weighted.
+  struct Sums {
+    glm::dvec3 irradiance{0.0};
+    glm::dvec4 by_normal{0.0};
+    double error = 0;  ///< that all batches share
+    double weights = 0;
+    double weight = 0;  ///< of the point that is being added
+    bool is_lit = false;
+  };
+
+  void write(std::uint16_t layer) {
+    Sums& sums = sums_[layer];
+    to_.mean.irradiance.emplace_back(sums.irradiance / sums.weights);
+    if (smooth_) to_.mean.by_normal.emplace_back(sums.by_normal / sums.weights);
+    if (sparse_) to_.mean.light.push_back(layer);
+    for (std::size_t b = 0; b < batches_; ++b) {
+      double& sum = batch_[layer * batches_ + b];
+      to_.batch.push_back(static_cast<float>(sum / sums.weights));
+      sum = 0;
+    }
+    if (shared_) {
+      const double error = sums.error / sums.weights;
+      to_.shared_variance.push_back(static_cast<float>(error * error));
+    }
+    sums = {};
+  }
+
+  GatheredIrradiance& to_;
+  bool sparse_, shared_;
+  bool smooth_ = false;  ///< once a point tells light by the normal, as all do that have light
+  std::size_t batches_;
+  std::vector<Sums> sums_;     ///< per layer
+  std::vector<double> batch_;  ///< [layer][batch], weighted
+  std::vector<std::uint16_t> lit_;
+  double of_none_ = 0;
+};
+
+/// A place and those around it, of which it becomes the mean.
+class MeanOfPlaces {
+ public:
+  MeanOfPlaces(std::span<const double> layer_powers, const GatheredIrradiance& like,
+               GatheredIrradiance& to)
+      : sums_(layer_powers.size(), like, to),
+        own_(layer_powers),
+        other_(layer_powers),
+        likeness_(layer_powers) {}
+
+  void add_own(const GatheredIrradiance& from, std::size_t point) {
+    own_.read(from, point);
+    sums_.add(from, point, 1.0, [](std::size_t) { return 1.0; });
+  }
+  /// One that may have the same light; as heavy as so many.
+  void add_other(const GatheredIrradiance& from, std::size_t point, const NoiseTolerance& tolerated,
+                 double weight = 1) {
+    other_.read(from, point);
+    likeness_.compare(own_, other_, tolerated);
+    sums_.add(from, point, weight * likeness_.of_others(),
+              [&](std::size_t layer) { return weight * likeness_.of_layer(layer); });
+  }
+  void end_place() { sums_.end_point(); }
+
+ private:
+  WeightedPoints sums_;
+  KnownLight own_, other_;
+  Likeness likeness_;
+};
+
+/// Means that add(i, mean) makes of each of so many places; `like` has their batches and form.
+template <class Add>
+GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
+                            std::span<const double> layer_powers, const Add& add) {
+  // Large enough to make a task's cost vanish, small enough to share work.
+  constexpr std::size_t per_task = 256;
+  std::vector<GatheredIrradiance> parts((count + per_task - 1) / per_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    MeanOfPlaces mean(layer_powers, like, parts[part]);
+    const std::size_t last = std::min(count, (part + 1) * per_task);
+    for (std::size_t i = part * per_task; i < last; ++i) {
+      add(i, mean);
+      mean.end_place();
+    }
+  });
+  GatheredIrradiance all;
+  all.batches = like.batches;
+  if (!like.mean.first.empty()) all.mean.first.push_back(0);
+  for (GatheredIrradiance& part : parts) all.append(std::move(part));
+  return all;
+}
 
 /// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to
 /// to[first[i] .. first[i + 1]). Who links says what one surface is.

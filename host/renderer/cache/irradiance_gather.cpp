@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "cache/batch_sums.hpp"
+#include "cache/gathered_irradiance.hpp"
 #include "common/byte_stream.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/neighbour_choice.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "photile/communicator.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -48,7 +48,7 @@ struct RunLight {
   double caustic_relative_variance;
   std::span<const double> layer_powers;
 
-  /// Of the run's point i, which is `point` of all.
+  /// Adds the indirect light of point i of the run, which is `point` of all.
   void add_indirect(std::size_t i, BatchSums& sums) const {
     if (!traced) return;
     ends.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
@@ -246,7 +246,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
       layer_powers_(estimate::layer_powers(rays.scene())),
       ends_(rays, photons, of_nodes, ends) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
-  check_range("looks at lamps from a point", parameters.looks, 0, limits::max_direct_rays);
+  check_range("light samples from a point", parameters.looks, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, 64);
 }
 

@@ -85,7 +85,7 @@ class IrradianceGather {
   /// What rays find where they end.
   EndLight& ends() { return ends_; }
 
-  /// Of the light maps where rays end; `forget` empties them.
+  /// Bytes of the light maps where rays end; `forget` empties them.
   std::uint64_t bytes() const { return ends_.bytes(); }
   void forget() { ends_.forget(); }
 
@@ -101,7 +101,7 @@ class IrradianceGather {
   const Costs& costs() const { return costs_; }
 
  private:
-  /// Of this process's points, in as many rounds as so many points take.
+  /// Gathers at this process's points, in as many rounds as so many points take.
   GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
                            int rays, int looks, std::size_t most, const Progress& progress);
 

@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "cache/charts.hpp"
-#include "cache/turned_light.hpp"
+#include "cache/node_mix.hpp"
 #include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
 #include "trace/eye_path.hpp"
@@ -27,9 +27,10 @@ namespace {
 constexpr int packet_side = 4, block_side = 32;
 static_assert(packet_side * packet_side == trace::coherent_rays);
 
-/// Of valuing a place, before it is known: by photons, and by rays at it and around it.
+/// Seconds of valuing a position, before they are known: by photons, and by rays at it and around
+/// it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
-/// Of valuing places until it is asked whether somebody waits for the frame.
+/// Seconds of valuing positions until it is asked whether somebody waits for the frame.
 constexpr double seconds_of_batch = 0.03;
 
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread

@@ -58,7 +58,7 @@ constexpr int number_bits = 48;
 
 std::uint64_t number_of(const NodePlace& node) { return hash_of(node) >> (64 - number_bits); }
 
-/// Of the coarsest level that has the node, its distance from one place to the next.
+/// The distance, at the coarsest level that has the node, from one place to the next.
 std::uint32_t step_of(const NodePlace& node, int levels) {
   const std::uint32_t coarsest = 1u << (levels - 1);
   std::uint32_t step = 1;

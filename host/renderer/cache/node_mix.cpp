@@ -10,6 +10,7 @@
 #include "photile/scene.hpp"
 
 namespace photile::cache {
+
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
@@ -30,7 +31,7 @@ class Sum {
     std::memcpy(&values, &value, sizeof values);
     sum_.four += power.four * values.four;
   }
-  /// Of the last value, which has no next one.
+  /// Adds the last value, which has no next one.
   void add_last(const glm::vec3& value, const Four& power) {
     sum_.four += power.four * Four{{value.x, value.y, value.z, 0.0f}}.four;
   }
@@ -82,7 +83,7 @@ constexpr auto dense_mixes(std::index_sequence<less_one...>) {
   return std::array<MixDense, sizeof...(less_one)>{mix_dense<less_one + 1>...};
 }
 
-/// The same of light by the normal, which is in proportion to the luminance of the lights.
+/// Mixes light by the normal, which is in proportion to the luminance of the lights.
 ///   layer   of value i
 template <class Layer>
 glm::vec4 summed_by_normal(const Estimates& values, std::size_t first, std::size_t last,

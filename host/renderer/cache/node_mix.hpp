@@ -1,12 +1,15 @@
-// The light of all lights together at the nodes of light maps.
+// The light of all lights together at the nodes of light maps, and that of a plane turned from the
+// surface that it lies on.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
 #include "photile/estimator.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::cache {
 
@@ -26,7 +29,7 @@ class NodeMix {
 
   /// Per node; the fourth is nothing.
   std::span<const glm::vec4> light() const { return light_; }
-  /// Likewise, luminance by the normal as Estimates has it; empty where nodes do not tell it.
+  /// Per node the luminance by the normal, as Estimates has it; empty where nodes do not tell it.
   std::span<const glm::vec4> by_normal() const { return by_normal_; }
   std::span<const glm::vec3> powers() const { return powers_; }
 
@@ -34,5 +37,14 @@ class NodeMix {
   std::vector<glm::vec3> powers_;
   std::vector<glm::vec4> light_, by_normal_;
 };
+
+/// Irradiance of a plane of unit normal n, in the colour of that of the surface.
+///   by_normal   as Estimates has it
+inline glm::vec3 turned(const glm::vec3& irradiance, const glm::vec4& by_normal,
+                        const glm::vec3& normal) {
+  const auto light = static_cast<float>(luminance(glm::dvec3(irradiance)));
+  if (!(light > 0.0f)) return glm::vec3(0.0f);
+  return std::max(0.0f, glm::dot(glm::vec3(by_normal), normal) + by_normal.w) / light * irradiance;
+}
 
 }  // namespace photile::cache

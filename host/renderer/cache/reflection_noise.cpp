@@ -1,5 +1,3 @@
-#include "cache/reflection_noise.hpp"
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -8,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "cache/surface_cache.hpp"
 #include "photile/defaults.hpp"
 #include "photile/scene.hpp"
 #include "trace/hit_batch.hpp"

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "cache/charts.hpp"
-#include "cache/turned_light.hpp"
-#include "estimate/estimate_writer.hpp"
+#include "cache/node_mix.hpp"
+#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/reflected_radiance.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -22,6 +21,7 @@
 #include "trace/surface.hpp"
 
 namespace photile::cache {
+
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
@@ -94,6 +94,10 @@ double least_spacing(const Scene& scene, const Photons& photons, double reach) {
   return reach > distance ? 0 : std::max(distance / 16, near_photons(photons));
 }
 
+const Material& material_of(const Scene& scene, std::uint32_t sided_triangle) {
+  return scene.materials[scene.triangle_material[triangle_of(sided_triangle)]];
+}
+
 /// Writes the light of hits, or its errors, one after another, from nodes, from ends of rays or
 /// from their own estimates.
 class Blend {
@@ -112,7 +116,7 @@ class Blend {
         alone_(alone),
         place_(place) {}
 
-  /// Of hits [first, last).
+  /// The estimates of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
     Estimates estimates;
     estimate::EstimateWriter writer(needs_, estimates);
@@ -148,8 +152,8 @@ class Blend {
     glm::vec4 by_normal{0.0f};
   };
 
-  /// Irradiance is that of the surface; what is reflected goes by the shading normal, in the colour
-  /// of the irradiance.
+  /// Irradiance is that of the surface; what is reflected goes by the shading normal, or by that of
+  /// a normal map, in the colour of the irradiance.
   ///   layers   of none
   void add_smoothly(std::size_t hit, std::vector<ByNormal>& layers,
                     estimate::EstimateWriter& writer) const {
@@ -168,7 +172,9 @@ class Blend {
       light.by_normal += weight * nodes_.by_normal[value];
     });
     const glm::vec3 normal =
-        trace::shading_normal(scene_, hits_.sided_triangle[hit], hits_.position[hit]);
+        material_of(scene_, hits_.sided_triangle[hit]).normal_texture != none
+            ? hits_.lobe[hit].normal
+            : trace::shading_normal(scene_, hits_.sided_triangle[hit], hits_.position[hit]);
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for_each_corner([&](ByNormal& light, std::size_t layer, std::size_t, float) {
       if (light.irradiance == glm::vec3(0.0f)) return;
@@ -379,10 +385,9 @@ PhotonBlotches SurfaceCache::blotches() const {
 }
 
 bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {
-  const Material& material =
-      scene_.materials[scene_.triangle_material[triangle_of(hits.sided_triangle[hit])]];
   const bool has_lobe = !hits.lobe.empty() && hits.lobe[hit].f90 > 0.0f;
-  return !has_lobe && material.normal_texture == none;
+  const bool mapped = material_of(scene_, hits.sided_triangle[hit]).normal_texture != none;
+  return !has_lobe && (!mapped || ends_ != nullptr);
 }
 
 }  // namespace photile::cache

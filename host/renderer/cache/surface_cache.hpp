@@ -1,5 +1,5 @@
 // The cache on surfaces: light read between samples where those serve, and asked for where they do
-// not.
+// not; and which reflections need no light gathered at nodes.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,6 @@
 
 #include "cache/end_light.hpp"
 #include "cache/node_sight.hpp"
-#include "cache/reflection_noise.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
@@ -17,6 +16,23 @@
 #include "photile/statistics.hpp"
 
 namespace photile::cache {
+
+/// What photon estimates show of their noise.
+struct PhotonBlotches {
+  double width;  ///< metres, over which estimates err alike
+  double noise;  ///< relative
+};
+
+/// Whether the light that lobes reflect may be that of photon estimates: where they would add
+/// little noise to the pixel, for they err alike within blotches and apart between them, and a
+/// pixel sees many of them in a rough or curved surface, or weighs them little. Depends on the hits
+/// of a pixel alone; so the same number of a pixel's samples must be there.
+///   seen        hits of the pixels themselves
+///   reflected   those that lobes reflect
+///   runs        of the samples of a pixel, as PrimaryHitParameters has them
+/// Returns 1 or 0 for each of `reflected`.
+std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
+                                        int runs, const PhotonBlotches& blotches);
 
 /// A sum of squared relative standard errors.
 struct ErrorSum {
@@ -49,9 +65,9 @@ struct HitReading {
 class SurfaceCache : public estimate::LightAtPoints {
  public:
   /// References are kept.
-  ///   elsewhere   answers for points that no node serves: those with a specular lobe or a normal
-  ///               map, which ask where light comes from. What a point gets from it does not depend
-  ///               on the points beside it.
+  ///   elsewhere   answers for points that no node serves: those with a specular lobe, and those
+  ///               with a normal map where photons value nodes, which ask where light comes from.
+  ///               What a point gets from it does not depend on the points beside it.
   ///   source      values nodes
   ///   ends        where rays value nodes, the light that they find where they end, which is read
   ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
@@ -59,7 +75,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
                estimate::LightAtPoints& elsewhere, NodeSource& source, EndLight* ends);
 
-  /// Of points in any order.
+  /// The light at points in any order.
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
 
   /// Standard errors of what `at` found at these hits, in the same form. Nodes around a hit
@@ -68,7 +84,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   ///   of_nodes    as GatheredNodes::errors
   Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes);
 
-  /// Of the light that photons alone say.
+  /// The noise of the light that photons alone give.
   PhotonBlotches blotches() const;
 
   LightMaps& maps() { return maps_; }
@@ -78,13 +94,13 @@ class SurfaceCache : public estimate::LightAtPoints {
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
-  /// Of all light at hits read so far; zeros where photons value nodes.
+  /// The errors of all light at hits read so far; zeros where photons value nodes.
   const ErrorSum& errors_read() const { return errors_read_; }
   TimeTaken fill_time() const { return fill_time_; }
 
  private:
-  /// Whether the light of a hit can be read: it has no specular lobe and no normal map, which ask
-  /// where light comes from.
+  /// Whether the light of a hit can be read: it has no specular lobe, which asks where light comes
+  /// from, nor a normal map, unless nodes tell how their light depends on the normal.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
   /// Values what the hits read.

@@ -1,5 +1,5 @@
 // Where photile may keep files between runs, and where it may keep them during one; warnings of
-// trouble there, which never stops a run.
+// trouble there, which never stops a run; and the results of device tests, which are kept there.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "photile/device.hpp"
 
 namespace photile::device {
 
@@ -27,5 +29,15 @@ std::string folder_problem(const std::filesystem::path& folder);
 
 /// Writes "photile: warning: <line>" to the standard error stream.
 void warn(const std::string& line);
+
+/// What DeviceInfo::test_result says of a device that has passed.
+inline constexpr const char* passed = "passed";
+
+/// The result of the last test of this device with this driver and these kernels; "" where none is
+/// kept.
+std::string kept_test_result(const DeviceInfo& device);
+
+/// Keeps a result. Nothing where no folder can be written, which is a warning.
+void keep_test_result(const DeviceInfo& device, const std::string& result);
 
 }  // namespace photile::device

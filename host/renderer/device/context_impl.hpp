@@ -10,7 +10,7 @@
 
 #include "device/context.hpp"
 #include "device/device_list.hpp"
-#include "device/kernel_times.hpp"
+#include "device/kernel.hpp"
 #include "device/opencl.hpp"
 #include "device/program_library.hpp"
 #include "device/transfers.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/ascii_text.hpp"
-#include "device/test_results.hpp"
+#include "device/cache_folder.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {

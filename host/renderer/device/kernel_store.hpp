@@ -1,15 +1,57 @@
-// Compiled kernels on disk, one checked file per program.
+// Compiled kernels on disk: their identity, 128 bits over everything that may change their code,
+// and one checked file per program.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "device/cache_key.hpp"
+#include "photile/device.hpp"
 
 namespace photile::device {
+
+struct CacheKey {
+  std::array<unsigned char, 16> bytes{};
+  std::string hex() const;  ///< 32 digits
+  friend bool operator==(const CacheKey&, const CacheKey&) = default;
+};
+
+/// XXH3-128 of `text`, in the canonical (big-endian) form.
+CacheKey hash(std::string_view text);
+
+/// Key of the program `source` built with `options` on `device`: platform name and version, device
+/// name, vendor, device and driver versions, options and source; on PoCL also the POCL_* variables,
+/// several of which change the code that it generates.
+CacheKey program_key(const DeviceInfo& device, std::string_view options, std::string_view source);
+
+// A file that is either whole and of the expected key, or not used at all.
+//
+//   offset  bytes  content
+//        0      8  magic "PHOTILEC"
+//        8      4  format version, host byte order
+//       12      4  zero
+//       16     16  key
+//       32      8  length of the payload
+//       40     16  XXH3-128 of bytes 0..39 and the payload
+//       56      -  payload
+
+inline constexpr std::size_t checked_file_header_bytes = 56;
+
+struct CheckedRead {
+  std::optional<std::string> payload;  ///< set only when every check passed
+  std::string problem;                 ///< why not; empty where there is no such file
+};
+
+/// Reads and verifies. Never throws on account of the file.
+CheckedRead read_checked_file(const std::filesystem::path& file, const CacheKey& key);
+
+/// Writes to a temporary name in the same folder, syncs, renames: a reader sees the old file or the
+/// whole new one. Returns "" or what went wrong; the temporary file is gone then.
+std::string write_checked_file(const std::filesystem::path& file, const CacheKey& key,
+                               std::string_view payload);
 
 class KernelStore {
  public:

@@ -1,21 +1,38 @@
-// PoCL's compiled kernels, kept between runs as one checked file per program.
+// PoCL's compiled kernels: the folder in which PoCL keeps them while this process runs, and what
+// photile keeps of them between runs.
 //
-// Asking PoCL for a program's binary makes it compile an extra version, so photile keeps PoCL's own
-// files instead: before a build, the verified files of that program are put into the work folder;
-// when a context closes, what PoCL added is packed and published under photile's cache folder. A
-// process that dies publishes nothing.
+// PoCL (3.1) ends the process on a truncated shared object, a damaged program.bc or a folder that
+// it cannot write, and two processes may be writing one folder at a time, so that no check of a
+// shared folder holds. Every process therefore gets a fresh folder of its own, into which only
+// verified files are put (PoclCache), and which goes when the process ends. A killed process's
+// folder goes when the next one starts.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
-#include "device/cache_key.hpp"
 #include "device/kernel_store.hpp"
 
 namespace photile::device {
+
+/// Creates the folder and names it to PoCL by POCL_CACHE_DIR. Call before the first OpenCL call; a
+/// second call does nothing. Where the user set POCL_CACHE_DIR to a folder that can be written, it
+/// is left alone. Errors: DeviceError when no folder can be written at all.
+void prepare_pocl_work_folder();
+
+/// The prepared folder; none where the user's own POCL_CACHE_DIR is in force.
+std::optional<std::filesystem::path> pocl_work_folder();
+
+// PoCL's compiled kernels, kept between runs as one checked file per program.
+//
+// Asking PoCL for a program's binary makes it compile an extra version, so photile keeps PoCL's own
+// files instead: before a build, the verified files of that program are put into the work folder;
+// when a context closes, what PoCL added is packed and published under photile's cache folder. A
+// process that dies publishes nothing.
 
 /// One per work folder, shared by the contexts of a process. Thread-safe.
 class PoclCache {

@@ -1,13 +1,35 @@
-// Building one OpenCL program.
+// Building one OpenCL program, the names of its kernels' arguments, and a dump of what was
+// compiled.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "device/opencl.hpp"
 #include "photile/device.hpp"
 
 namespace photile::device {
+
+/// The names of a kernel's arguments, in their order; none where the runtime does not tell them.
+std::optional<std::vector<std::string>> argument_names(cl_kernel kernel);
+
+/// The names of the arguments of each kernel of a program, by its name.
+using ArgumentNames = std::map<std::string, std::vector<std::string>>;
+std::optional<ArgumentNames> argument_names(cl_program program);
+
+struct NamedBinary {
+  ArgumentNames arguments;
+  std::string binary;
+};
+
+/// Names and binary as one text: a line for the format, one for each kernel, an empty one, the
+/// binary.
+std::string joined(const NamedBinary& program);
+/// What `joined` made; none of any other text.
+std::optional<NamedBinary> split(std::string_view text);
 
 /// Where programs are built.
 struct BuildTarget {
@@ -30,5 +52,14 @@ ProgramHandle build_from_binary(const BuildTarget& target, const std::string& bi
 
 /// The program's binary; none where the runtime has none to give.
 std::optional<std::string> program_binary(cl_program program);
+
+/// Environment variable that names a folder. Each program that is built or loaded is written there:
+/// NAME.cl, its source with all includes in place; NAME.options, the options of the compiler; and
+/// NAME.bin, the binary, where the runtime gives one.
+inline constexpr const char* dump_folder_variable = "PHOTILE_DUMP_KERNELS";
+
+/// Writes a program where the variable is set; NAME is that of the kernel file and a number that
+/// differs for other options. Errors: OutputError.
+void dump_program(const std::string& file, const std::string& options, cl_program program);
 
 }  // namespace photile::device

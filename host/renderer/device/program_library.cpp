@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "device/cache_folder.hpp"
-#include "device/kernel_dump.hpp"
-#include "device/pocl_work_folder.hpp"
+#include "device/pocl_cache.hpp"
+#include "device/program.hpp"
 #include "device/program_source.hpp"
 #include "photile/statistics.hpp"
 

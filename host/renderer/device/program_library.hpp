@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "device/argument_names.hpp"
 #include "device/context.hpp"
 #include "device/kernel_store.hpp"
 #include "device/pocl_cache.hpp"

@@ -1,22 +1,133 @@
-#include "photile/device.hpp"
+#include "estimate/device_test.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <random>
 #include <utility>
 #include <vector>
 
-#include "device/test_results.hpp"
-#include "estimate/plane_sample.hpp"
+#include "device/cache_folder.hpp"
+#include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/scene.hpp"
+#include "photile/scene_builder.hpp"
+
+namespace photile::estimate {
+
+namespace {
+
+/// Uniform in [0, 1). Not std::uniform_real_distribution, which differs between libraries.
+float uniform(std::mt19937_64& random) { return static_cast<float>(random() >> 40) * 0x1p-24f; }
+
+/// A picture of one normal, that of the surface.
+Texture flat_normal_map() { return Texture("flat", 1, 1, {{128, 128, 255, 255}}); }
+
+/// The unit square as two triangles, with a material and lights as needed.
+Scene unit_square(const SceneNeeds& needs) {
+  SceneBuilder builder("plane");
+  Material material;
+  material.diffuse = glm::vec3(0.5f);
+  if (needs.glossy) {
+    material.specular = glm::vec3(0.04f);
+    material.roughness = 0.3f;
+  }
+  if (needs.normal_maps) material.normal_texture = builder.add(flat_normal_map());
+  Light light;
+  light.kind = LightKind::point;
+  light.power = 1;
+  for (std::uint32_t i = 0; i < needs.light_count; ++i) builder.add(light);
+  constexpr std::array<glm::vec3, 4> vertices{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+  constexpr std::array<glm::uvec3, 2> triangles{{{0, 1, 2}, {0, 2, 3}}};
+  constexpr std::array<glm::vec2, 4> uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  builder.add(MeshArrays{
+      .vertices = vertices, .triangles = triangles, .uv = uv, .material = builder.add(material)});
+  return std::move(builder).build();
+}
+
+/// The sided triangle of unit_square that a point lies on, seen from above.
+std::uint32_t front_at(const glm::vec3& point) {
+  return point.x > point.y ? sided(0, 0) : sided(1, 1);
+}
+
+Photons random_photons(const SceneNeeds& needs, std::size_t count, std::mt19937_64& random) {
+  Photons photons;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = uniform(random), y = uniform(random);
+    photons.position.emplace_back(x, y, 0.0f);
+    photons.flux.emplace_back(1.0f / static_cast<float>(count));
+    photons.sided_triangle.push_back(front_at(photons.position.back()));
+    if (needs.light_count > 1) {
+      photons.light.push_back(static_cast<std::uint16_t>(random() % needs.light_count));
+    }
+    if (needs.glossy) {
+      const float tilt_x = uniform(random) - 0.5f, tilt_y = uniform(random) - 0.5f;
+      photons.incoming.push_back(glm::normalize(glm::vec3(tilt_x, tilt_y, 1.0f)));
+    }
+  }
+  return sort_by_sided_triangle(std::move(photons), 4);
+}
+
+/// Every second bit of a Morton code.
+std::uint32_t every_second_bit(std::uint32_t code) {
+  std::uint32_t bits = 0;
+  for (int bit = 0; bit < 16; ++bit) bits |= (code >> (2 * bit) & 1u) << bit;
+  return bits;
+}
+
+PrimaryHits grid_of_hits(const Scene& scene, const SceneNeeds& needs, int per_side,
+                         std::mt19937_64& random) {
+  PrimaryHits hits;
+  const auto side = static_cast<std::uint32_t>(per_side);
+  std::uint32_t padded = 1;
+  while (padded < side) padded *= 2;
+  for (std::uint32_t code = 0; code < padded * padded; ++code) {
+    const std::uint32_t column = every_second_bit(code), row = every_second_bit(code >> 1);
+    if (column >= side || row >= side) continue;
+    const float x = (static_cast<float>(column) + uniform(random)) / static_cast<float>(side);
+    const float y = (static_cast<float>(row) + uniform(random)) / static_cast<float>(side);
+    hits.position.emplace_back(x, y, 0.0f);
+  }
+  std::stable_partition(hits.position.begin(), hits.position.end(),
+                        [](const glm::vec3& point) { return front_at(point) == sided(0, 0); });
+  const Material& material = scene.materials.front();
+  for (const glm::vec3& position : hits.position) {
+    hits.sided_triangle.push_back(front_at(position));
+    hits.pixel.push_back(0);
+    hits.throughput.emplace_back(1.0f);
+    hits.diffuse_albedo.push_back(material.diffuse);
+    if (!needs.glossy) continue;
+    hits.outgoing.emplace_back(0.6f, 0.0f, 0.8f);
+    hits.lobe.push_back({material.specular, material.roughness, {0, 0, 1}});
+    if (needs.normal_maps) hits.lobe.back().smooth_normal = {0, 0, 1};
+  }
+  return hits;
+}
+
+}  // namespace
+
+PlaneSample make_plane_sample(const SceneNeeds& needs, int neighbours,
+                              const PlaneSampleSize& size) {
+  std::mt19937_64 random(1);
+  PlaneSample sample;
+  sample.scene = unit_square(needs);
+  sample.photons = random_photons(needs, size.photons, random);
+  sample.hits = grid_of_hits(sample.scene, needs, size.hits_per_side, random);
+  sample.radius =
+      2 * std::sqrt(neighbours / (glm::pi<double>() * static_cast<double>(size.photons)));
+  return sample;
+}
+
+}  // namespace photile::estimate
 
 namespace photile {
+
 namespace {
 
 constexpr int neighbours = 50;

@@ -1,4 +1,5 @@
-// Estimates of a batch of hits on the device, and their way to the host.
+// Estimates of a batch of hits: how the kernels keep the sums of a hit (kernels/estimate/sums.clh),
+// the estimates on the device, and their way to the host.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +8,41 @@
 #include <span>
 
 #include "device/context.hpp"
-#include "estimate/light_sums.hpp"
 #include "photile/estimator.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::estimate {
+
+/// Bytes of the largest buffer, and of all, for one hit.
+struct EstimateBytes {
+  std::uint64_t largest = 0, together = 0;
+};
+
+/// Where the estimates of a hit lie. Kernels are compiled with its symbols and buffers are made in
+/// its sizes: both must come from one object, or kernels write beyond the buffers.
+struct LightSums {
+  std::uint32_t lights = 1;
+  bool many_lights = false;
+  bool glossy = false;
+  /// Estimates that a hit has room for: one per light, or with many lights min(k, lights) slots.
+  std::uint32_t per_hit = 1;
+  /// Many lights: positions of the hash table that finds a light's slot. Half of them stay empty,
+  /// unless each light has its own.
+  std::uint32_t table = 0;
+
+  LightSums() = default;
+  /// Kernels may be given any k up to `neighbours`.
+  LightSums(const SceneNeeds& needs, std::uint32_t neighbours);
+
+  /// The symbols of sums.clh.
+  void set_defines(device::Defines& defines) const;
+  /// Bytes of the hash table.
+  std::size_t table_bytes() const;
+  /// Bytes of the arrays that a work-item keeps in private memory.
+  std::size_t private_bytes() const;
+  /// Bytes that EstimateBuffers has for a hit.
+  EstimateBytes bytes_per_hit() const;
+};
 
 /// Kept from batch to batch and from call to call: new memory, which the operating system must
 /// clear first, takes as long as a good part of the estimates that are written to it. Released

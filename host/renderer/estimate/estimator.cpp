@@ -8,12 +8,10 @@
 
 #include "common/value_range.hpp"
 #include "estimate/estimate_buffers.hpp"
-#include "estimate/hit_batches.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/query.hpp"
-#include "estimate/surface_buffers.hpp"
-#include "estimate/tuning.hpp"
+#include "estimate/specialisation.hpp"
 #include "geometry/radius_range.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
@@ -259,6 +257,18 @@ NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
       hits.size(), impl_->needs(output, output + sizeof(float)),
       [&](std::size_t first, std::size_t count) { impl_->nearest(hits, first, count, result); });
   return result;
+}
+
+std::string_view name_of(DensityKernel kernel) {
+  switch (kernel) {
+    case DensityKernel::constant:
+      return "constant";
+    case DensityKernel::cone:
+      return "cone";
+    case DensityKernel::epanechnikov:
+      return "epanechnikov";
+  }
+  return "unknown";
 }
 
 }  // namespace photile

@@ -1,9 +1,8 @@
 #include <algorithm>
 
-#include "device/launch_pace.hpp"
+#include "device/launch.hpp"
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
-#include "estimate/tuning.hpp"
 
 namespace photile::estimate {
 namespace {

@@ -1,5 +1,7 @@
 #include "estimate/hit_buffers.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <cstring>
 #include <span>
 #include <vector>
@@ -7,6 +9,28 @@
 #include "trace/opaque_bsdf.hpp"
 
 namespace photile::estimate {
+
+SurfaceBuffers::SurfaceBuffers(const maps::MapStore& store, const Scene& scene,
+                               const SurfaceIndex& surface)
+    : index(surface), centroid(scene.triangle_count()) {
+  tbb::parallel_for(std::size_t{0}, centroid.size(), [&](std::size_t t) {
+    const auto corners = scene.corners(static_cast<std::uint32_t>(t));
+    centroid[t] = (corners[0] + corners[1] + corners[2]) / 3.0f;
+  });
+  device::Context& context = device::context_of(*store.device);
+  const std::vector<std::uint8_t> lit = lit_sheets(surface, store.landed);
+  std::vector<PhotileSurfaceLeaf> marked = surface.leaves;
+  const auto mark = [&](std::uint32_t& sheet) {
+    if ((sheet & PHOTILE_SHEET_UNLIT) == 0 && lit[sheet] == 0) sheet |= PHOTILE_SHEET_UNLIT;
+  };
+  for (PhotileSurfaceLeaf& leaf : marked) {
+    for (std::uint32_t& sheet : leaf.front_sheet) mark(sheet);
+    for (std::uint32_t& sheet : leaf.back_sheet) mark(sheet);
+  }
+  nodes = context.upload(std::span(surface.nodes), "surface tree");
+  leaves = context.upload(std::span<const PhotileSurfaceLeaf>(marked), "surface pieces");
+}
+
 namespace {
 
 static_assert(sizeof(PhotileHit) == 4 * 4, "PhotileHit must have no padding");
@@ -97,6 +121,16 @@ void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t 
   std::vector<PhotileHitLobe> lobes(count);
   for (std::size_t i = 0; i < count; ++i) lobes[i] = hit_lobe(hits, first + i, needs.normal_maps);
   put(context, buffers.lobes, lobes, "reflections at hits");
+}
+
+std::size_t plan_hit_batch(const HitBatchNeeds& needs, std::uint64_t largest_buffer,
+                           std::uint64_t memory) {
+  constexpr std::uint64_t comfortable = 1u << 20;
+  // Kernels index outputs in 32 bits; in bytes, so that no index of any type comes near.
+  const std::uint64_t buffer = std::min<std::uint64_t>(largest_buffer, 0xFFFF'FFFFu);
+  const std::uint64_t most =
+      std::min(buffer / needs.largest_bytes_per_hit, memory / 4 / needs.bytes_per_hit);
+  return std::clamp<std::uint64_t>(most, 1, comfortable);
 }
 
 }  // namespace photile::estimate

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "estimate/for_each_device.hpp"
+#include "estimate/load_balance.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/neighbour_choice.hpp"
 #include "geometry/radix_sort.hpp"

@@ -62,7 +62,7 @@ class PhotonEstimate : public LightAtPoints {
   /// Positions of points by their maps, and by position on each map; empty where they are in the
   /// order of their maps.
   std::vector<std::uint32_t> order_of(const PrimaryHits& points) const;
-  /// Of points in the order of their maps, by the k of each level or by their own.
+  /// The light at points in the order of their maps, by the k of each level or by their own.
   Estimates estimate(const PrimaryHits& points);
   Estimates estimate(Level& level, const PrimaryHits& points);
   /// Takes photons that their points do not see out of the estimates.

@@ -9,7 +9,6 @@
 #include "device/launch.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
-#include "estimate/surface_buffers.hpp"
 #include "maps/map_store.hpp"
 #include "photile/device/constants.h"
 #include "photile/device/query.h"
@@ -53,7 +52,7 @@ struct QueryParameters {
   DensityKernel kernel = DensityKernel::constant;  ///< what photons count
 };
 
-/// Of the store's grids, or as MapStore::make_query has it.
+/// The query of the store's grids, or as MapStore::make_query has it.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters);
 
 /// Sets CLIPPED and DENSITY_KERNEL.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "estimate/reflected_radiance.hpp"
+#include "estimate/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
 #include "trace/ray_query.hpp"

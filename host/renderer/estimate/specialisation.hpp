@@ -1,15 +1,25 @@
-// Which variant of the estimate kernels a scene and a tuning need.
+// The tunings that there are, and which variant of the estimate kernels a scene and a tuning need.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "device/context.hpp"
-#include "estimate/light_sums.hpp"
+#include "estimate/estimate_buffers.hpp"
 #include "photile/estimator.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::estimate {
+
+inline constexpr std::array vector_widths = {1, 4, 8, 16};
+inline constexpr std::array lane_widths = {16, 32, 64};  ///< of EstimateStrategy::lanes
+inline constexpr int max_hits_per_item = 64;
+inline constexpr int max_work_group_size = 256;
+
+/// "" for a tuning that kernels exist for, else what is wrong with it.
+std::string tuning_problem(const EstimateTuning& tuning);
 
 /// Private memory that the work-items of a group may use together. PoCL keeps a whole group's
 /// private arrays on the stack of the thread that runs it, 8 MiB with the usual limit and less on

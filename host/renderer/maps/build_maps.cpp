@@ -15,12 +15,9 @@
 
 #include "maps/build_steps.hpp"
 #include "maps/candidate_maps.hpp"
-#include "maps/entry_defines.hpp"
-#include "maps/map_numbers.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
-#include "maps/page_queue.hpp"
-#include "maps/photon_crowding.hpp"
 #include "maps/photon_pages.hpp"
 
 namespace photile::maps {
@@ -225,7 +222,7 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   build.corners = context.upload(std::span<const float>(plan.surfaces.corners), "triangle corners");
   build.shapes =
       context.upload(std::span<const PhotileMapShape>(plan.surfaces.shapes), "map shapes");
-  build.crowding = context.upload(std::span<const float>(plan.crowding), "photon crowding");
+  build.crowding = context.upload(std::span<const float>(plan.crowding), "density ratios");
   build.map_of = context.share(std::span(std::as_const(store.map_of)), "maps of triangles");
   build.normals = upload_normals(context, store);
   build.photon_pages = photon_pages(build, plan.candidates, photons, progress);

@@ -6,8 +6,7 @@
 #include <numeric>
 #include <span>
 
-#include "maps/entry_defines.hpp"
-#include "maps/prefix_sum.hpp"
+#include "maps/map_page.hpp"
 #include "photile/device/grid.h"
 #include "photile/errors.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "device/context.hpp"
-#include "device/kernel_set.hpp"
+#include "device/launch.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "maps/map_tiling.hpp"
@@ -101,5 +101,17 @@ inline device::MemoryPages memory_pages(const MapStore& store) {
 /// other entry buffers that the scene needs are filled.
 void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
                     PhotonPages& photon_pages, const EntryGathering& gathering, MapPage& page);
+
+// Exclusive prefix sum on the device.
+
+/// Replaces `values` by their exclusive prefix sum. `kernels`: of a program that holds
+/// shared/scan.cl. With a zero appended by the caller, the last element becomes the total. Sums
+/// must stay below 2^32.
+void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values);
+
+/// The exclusive prefix sum, into another buffer of the same size.
+void exclusive_prefix_sum(const device::KernelSet& kernels,
+                          const device::Buffer<std::uint32_t>& values,
+                          device::Buffer<std::uint32_t>& scanned);
 
 }  // namespace photile::maps

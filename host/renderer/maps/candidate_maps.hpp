@@ -1,5 +1,5 @@
-// Which maps each photon may have to enter: its neighbour group, narrowed down where the group is
-// large.
+// Which maps each photon may have to enter (its neighbour group, narrowed down where the group is
+// large), and numbers for the maps that there are.
 #pragma once
 
 #include <cstdint>
@@ -34,5 +34,22 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
 
 /// The box of each pair of maps: of a triangle, or of a patch.
 std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches);
+
+/// Pairs of maps (both sides of a triangle, or of a patch) of which a photon may enter one,
+/// numbered without gaps in ascending order of their triangles or patches. What no photon comes
+/// near has no map and takes no memory.
+struct MapNumbers {
+  std::vector<std::uint32_t> pairs;   ///< per pair: its triangle; with patches, its patch
+  std::vector<std::uint32_t> map_of;  ///< per sided triangle: its map, or `none`
+
+  std::size_t map_count() const { return 2 * pairs.size(); }
+};
+
+/// Numbers the maps that are members of candidate lists, and renames the members.
+///   sided_count   sided triangles of the scene
+MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t sided_count);
+
+/// `values` of all sided triangles' or patches' maps: those of the numbered ones.
+std::vector<float> of_numbered(const MapNumbers& numbers, std::span<const float> values);
 
 }  // namespace photile::maps

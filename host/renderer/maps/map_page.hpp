@@ -1,4 +1,5 @@
-// The photons of a run of maps, and what finds them, as they lie on the device.
+// The photons of a run of maps, and what finds them, as they lie on the device; and the symbols by
+// which kernels know what the photon records of a scene hold.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include "device/context.hpp"
 #include "photile/device/constants.h"
 #include "photile/device/grid.h"
+#include "photile/scene.hpp"
 
 namespace photile::maps {
 
@@ -65,5 +67,15 @@ inline constexpr std::uint32_t most_entry_padding = 2 * entry_padding - 1;
 constexpr std::uint32_t entry_stride(std::uint32_t entries) {
   return (entries + most_entry_padding) / entry_padding * entry_padding;
 }
+
+/// Bytes of an entry's light: 0 with one light, 1 up to 256, else 2.
+std::uint32_t bytes_per_light(const SceneNeeds& needs);
+
+/// Bytes of an entry in all of its buffers, but for the normals of mixed maps: docs/kernels.md,
+/// "Records".
+std::uint32_t bytes_per_entry(const SceneNeeds& needs);
+
+/// LIGHT_BYTES and GLOSSY, each where the scene needs it.
+void set_entry_defines(device::Defines& defines, const SceneNeeds& needs);
 
 }  // namespace photile::maps

@@ -1,4 +1,4 @@
-// The boxes around the triangles that share photon maps.
+// The boxes around the triangles that share photon maps, and how unevenly photons lie on them.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 
 #include "photile/device/map_shape.h"
 #include "photile/neighbour_groups.hpp"
+#include "photile/photons.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::maps {
@@ -25,5 +26,16 @@ struct MapShapes {
 ///   angle_radians   largest angle between normals of neighbours
 MapShapes map_shapes(const Scene& scene, const Patches& patches,
                      std::span<const std::uint32_t> pairs, double angle_radians);
+
+/// Per map: the density that its photons see around them, on average over the photons, as a
+/// multiple of the mean density over the map's surface. 1 where photons are uniform or few. Cells
+/// that are to hold some photons each where the photons are must be smaller by this factor than
+/// those that hold as many on average over the surface, which is empty for a good part.
+///
+/// From counts n in bins of area A (small triangles, and parts of large ones): the sum of n (n - 1)
+/// / A is an unbiased estimate of the integral of the squared density, for n (n - 1) has the
+/// expectation (density x A)^2 when n is Poisson distributed.
+std::vector<float> photon_crowding(const Scene& scene, const Photons& photons,
+                                   const Patches& patches);
 
 }  // namespace photile::maps

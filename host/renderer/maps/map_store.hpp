@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "device/context.hpp"
-#include "maps/page_queue.hpp"
+#include "maps/map_pages.hpp"
 #include "maps/resident_maps.hpp"
 #include "photile/device/constants.h"
 #include "photile/photon_maps.hpp"

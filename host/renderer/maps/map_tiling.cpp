@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maps/grid_cells.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::maps {
+
 namespace {
 
 /// The smallest tiles must be smaller by this than what is to be cut into them.

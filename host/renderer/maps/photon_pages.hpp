@@ -9,7 +9,7 @@
 
 #include "device/context.hpp"
 #include "maps/candidate_maps.hpp"
-#include "maps/residents.hpp"
+#include "maps/resident_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
 

@@ -1,5 +1,4 @@
-#include "maps/prefix_sum.hpp"
-
+#include "maps/build_steps.hpp"
 #include "maps/map_store.hpp"
 
 namespace photile::maps {

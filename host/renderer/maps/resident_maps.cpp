@@ -1,8 +1,24 @@
 #include "maps/resident_maps.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace photile::maps {
+
+void Residents::use(std::size_t item) {
+  used_ = item;
+  if (std::erase(in_use_order_, item) == 0) load(item);
+  in_use_order_.push_back(item);
+}
+
+bool Residents::reclaim() {
+  const auto last = std::find_if(in_use_order_.rbegin(), in_use_order_.rend(),
+                                 [&](std::size_t item) { return item != used_; });
+  if (last == in_use_order_.rend()) return false;
+  unload(*last);
+  in_use_order_.erase(std::next(last).base());
+  return true;
+}
 
 std::uint64_t PageBuffers::device_bytes() const {
   std::uint64_t bytes = 0;

@@ -10,8 +10,8 @@
 #include "estimate/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/light_layers.hpp"
-#include "render/map_owners.hpp"
 #include "render/render_costs.hpp"
+#include "render/shared_photons.hpp"
 
 namespace photile {
 

@@ -1,17 +1,24 @@
 #include "render/film.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <map>
+#include <numeric>
 #include <span>
 #include <vector>
 
-#include "estimate/reflected_radiance.hpp"
+#include "estimate/light_at_points.hpp"
+#include "photile/scene.hpp"
 #include "trace/hit_batch.hpp"
 
 namespace photile {
+
 namespace {
 
 /// The sums of one pixel, with room for every light.
@@ -163,6 +170,176 @@ void raise_to_zero(LightLayers& layers) {
   };
   for (LightLayers::Layer& layer : layers.layers) raise(layer.radiance);
   for (LightLayers::Row& row : layers.rows) raise(row.radiance);
+}
+
+namespace {
+
+/// The scatter of the sums of a pixel's runs: red, green, blue, illuminance.
+struct Scatter {
+  glm::dvec4 sum{0.0}, squares{0.0};
+
+  void add(const glm::vec3& radiance, float illuminance) {
+    const glm::dvec4 value(radiance, illuminance);
+    sum += value;
+    squares += value * value;
+  }
+  /// Variance of `sum` over so many runs, those that were not added being black: of independent
+  /// runs, less what comes of their being strata of one sequence.
+  glm::dvec4 variance(double runs) const {
+    const glm::dvec4 independent =
+        glm::max(squares - sum * sum / runs, glm::dvec4(0.0)) * (runs / (runs - 1));
+    return independent / std::sqrt(runs);
+  }
+};
+
+/// Standard errors of two sources that have nothing to do with each other, as one.
+void combine(glm::vec3& radiance, float& illuminance, const glm::dvec4& variance) {
+  const glm::dvec4 own(radiance, illuminance);
+  const glm::dvec4 both = glm::sqrt(own * own + variance);
+  radiance = glm::vec3(both);
+  illuminance = static_cast<float>(both.w);
+}
+
+void add_to_layer(LightLayers::Layer& errors, const LightLayers::Layer& runs, std::size_t count) {
+  for (std::size_t pixel = 0; pixel < errors.radiance.size(); ++pixel) {
+    Scatter scatter;
+    for (std::size_t i = pixel * count; i < (pixel + 1) * count; ++i) {
+      scatter.add(runs.radiance[i], runs.illuminance[i]);
+    }
+    combine(errors.radiance[pixel], errors.illuminance[pixel],
+            scatter.variance(static_cast<double>(count)));
+  }
+}
+
+/// A row of sparse layers: of each pixel the lights that either has.
+LightLayers::Row with_scatter(const LightLayers::Row& errors, const LightLayers::Row& runs,
+                              std::size_t count) {
+  LightLayers::Row row;
+  row.first.push_back(0);
+  std::map<std::uint16_t, Scatter> scatter;
+  for (std::size_t x = 0; x + 1 < errors.first.size(); ++x) {
+    scatter.clear();
+    for (std::uint32_t i = errors.first[x]; i < errors.first[x + 1]; ++i) scatter[errors.light[i]];
+    for (std::uint32_t i = runs.first[x * count]; i < runs.first[(x + 1) * count]; ++i) {
+      scatter[runs.light[i]].add(runs.radiance[i], runs.illuminance[i]);
+    }
+    std::uint32_t next = errors.first[x];
+    for (const auto& [light, its] : scatter) {
+      const bool known = next < errors.first[x + 1] && errors.light[next] == light;
+      glm::vec3 radiance = known ? errors.radiance[next] : glm::vec3(0.0f);
+      float illuminance = known ? errors.illuminance[next] : 0.0f;
+      next += known ? 1 : 0;
+      combine(radiance, illuminance, its.variance(static_cast<double>(count)));
+      row.light.push_back(light);
+      row.radiance.push_back(radiance);
+      row.illuminance.push_back(illuminance);
+    }
+    row.first.push_back(static_cast<std::uint32_t>(row.light.size()));
+  }
+  return row;
+}
+
+}  // namespace
+
+void add_sample_errors(LightLayers& errors, const LightLayers& runs) {
+  const auto count = static_cast<std::size_t>(runs.width / errors.width);
+  if (count < 2) return;
+  if (errors.sparse()) {
+    tbb::parallel_for(std::size_t{0}, errors.rows.size(), [&](std::size_t y) {
+      errors.rows[y] = with_scatter(errors.rows[y], runs.rows[y], count);
+    });
+    return;
+  }
+  tbb::parallel_for(std::size_t{0}, errors.layers.size(), [&](std::size_t layer) {
+    add_to_layer(errors.layers[layer], runs.layers[layer], count);
+  });
+}
+
+namespace {
+
+constexpr std::size_t hits_per_task = 1024;
+
+/// The sums of one hit, with room for every layer.
+struct Sums {
+  std::vector<glm::vec3> irradiance, radiance;
+  std::vector<std::uint8_t> is_lit;
+
+  explicit Sums(std::size_t layers) : irradiance(layers), radiance(layers), is_lit(layers) {}
+
+  void clear() {
+    std::fill(irradiance.begin(), irradiance.end(), glm::vec3(0.0f));
+    std::fill(radiance.begin(), radiance.end(), glm::vec3(0.0f));
+    std::fill(is_lit.begin(), is_lit.end(), std::uint8_t{0});
+  }
+};
+
+void sum_hit(const LightPooling& pooling, const Estimates& estimates, std::size_t hit, Sums& sums) {
+  sums.clear();
+  estimate::for_each_estimate(estimates, hit, pooling.layer_of.size(),
+                              [&](std::size_t light, std::size_t i) {
+                                const std::uint32_t layer = pooling.layer_of[light];
+                                const float scale = pooling.scale[light];
+                                sums.irradiance[layer] += scale * estimates.irradiance[i];
+                                if (!estimates.radiance.empty())
+                                  sums.radiance[layer] += scale * estimates.radiance[i];
+                                sums.is_lit[layer] = 1;
+                              });
+}
+
+template <class Work>
+void for_each_hit(std::size_t hits, std::size_t layers, const Work& work) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits, hits_per_task),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      Sums sums(layers);
+                      for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
+                        work(hit, sums);
+                      }
+                    });
+}
+
+/// Where each hit's layers lie among those that any light reaches.
+void place_layers(const LightPooling& pooling, const Estimates& estimates, std::size_t hits,
+                  Estimates& result) {
+  result.first.assign(hits + 1, 0);
+  for_each_hit(hits, pooling.layers.size(), [&](std::size_t hit, Sums& sums) {
+    sum_hit(pooling, estimates, hit, sums);
+    result.first[hit + 1] = static_cast<std::uint64_t>(
+        std::count(sums.is_lit.begin(), sums.is_lit.end(), std::uint8_t{1}));
+  });
+  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+  result.light.resize(result.first.back());
+}
+
+}  // namespace
+
+Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::size_t hits) {
+  const std::size_t layers = pooling.layers.size();
+  const bool sparse = layers > max_dense_lights, glossy = !estimates.radiance.empty();
+  Estimates result;
+  if (sparse) place_layers(pooling, estimates, hits, result);
+  result.irradiance.resize(sparse ? result.light.size() : hits * layers);
+  if (glossy) result.radiance.resize(result.irradiance.size());
+  for_each_hit(hits, layers, [&](std::size_t hit, Sums& sums) {
+    sum_hit(pooling, estimates, hit, sums);
+    std::size_t next = sparse ? static_cast<std::size_t>(result.first[hit]) : hit * layers;
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      if (sparse && sums.is_lit[layer] == 0) continue;
+      if (sparse) result.light[next] = static_cast<std::uint16_t>(layer);
+      result.irradiance[next] = sums.irradiance[layer];
+      if (glossy) result.radiance[next] = sums.radiance[layer];
+      ++next;
+    }
+  });
+  return result;
+}
+
+void pool_emission(const LightPooling& pooling, PrimaryHitBatch& batch) {
+  for (SeenEmission& seen : batch.emission) {
+    const float scale = pooling.scale[seen.light];
+    seen.radiance *= scale;
+    seen.illuminance *= scale;
+    seen.light = pooling.layer_of[seen.light];
+  }
 }
 
 }  // namespace photile

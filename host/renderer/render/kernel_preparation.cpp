@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "estimate/device_test.hpp"
 #include "estimate/photon_estimate.hpp"
-#include "estimate/plane_sample.hpp"
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"

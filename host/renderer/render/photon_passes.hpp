@@ -14,9 +14,9 @@
 #include "photile/renderer.hpp"
 #include "photile/surface_index.hpp"
 #include "render/kernel_preparation.hpp"
-#include "render/map_owners.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
+#include "render/shared_photons.hpp"
 
 namespace photile {
 

@@ -5,8 +5,6 @@
 
 #include "render/exchange.hpp"
 #include "render/film.hpp"
-#include "render/pooled_estimates.hpp"
-#include "render/sample_errors.hpp"
 
 namespace photile {
 namespace {

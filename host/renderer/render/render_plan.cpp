@@ -11,7 +11,6 @@
 #include "photile/neighbour_groups.hpp"
 #include "render/exchange.hpp"
 #include "render/pass_count.hpp"
-#include "render/pass_schedule.hpp"
 #include "render/setting.hpp"
 #include "trace/random_stream.hpp"
 

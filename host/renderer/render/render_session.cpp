@@ -2,13 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/renderer.hpp"
+#include "photile/sensors.hpp"
+#include "render/hit_source.hpp"
 #include "render/picture.hpp"
 #include "render/setting.hpp"
+#include "trace/sensors.hpp"
 
 namespace photile {
+
 namespace {
 
 /// Errors: UsageError and SettingError where the passes cannot be kept, or not from these photons.
@@ -79,6 +90,138 @@ std::optional<LightMapContents> RenderSession::light_map_contents() const {
   LightMapContents contents = maps.contents();
   contents.settings = photons_.light_map_settings();
   return contents;
+}
+
+RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,
+                         std::span<Device> devices, const RenderParameters& parameters,
+                         Progress& progress) {
+  require_device(devices);
+  const auto prepared = std::make_shared<const PreparedScene>(scene);
+  const RenderPlan plan(parameters, prepared->rays,
+                        hits.dense() ? HitsAsk::pictures : HitsAsk::points, progress);
+  RenderCosts costs;
+  costs.structure = prepared->cost;
+  Picture picture(prepared->rays, plan, devices, film, plan.passes(), nullptr, costs);
+  std::optional<PhotonPasses> photons(std::in_place, prepared->rays, devices, plan, costs);
+  std::unique_ptr<PassLight> light;
+  for (int pass = 0; pass < plan.passes(); ++pass) {
+    light.reset();  // before the maps of the next pass take its room
+    light = std::make_unique<PassLight>(prepared->rays, plan,
+                                        photons->next(nullptr, nullptr, progress));
+    picture.add(hits, *light, progress);
+  }
+  const double radius = photons->radius();
+  const Stopwatch release_watch;
+  light.reset();
+  photons.reset();
+  costs.release.add(release_watch.taken());
+  return picture.finish(radius);
+}
+
+RenderResult render(const Scene& scene, const Camera& camera, std::span<Device> devices,
+                    const RenderParameters& parameters, Progress& progress) {
+  return render_hits(scene, CameraHits(camera), parameters.film, devices, parameters, progress);
+}
+
+RenderResult render(const Scene& scene, const Camera& camera, Device& device,
+                    const RenderParameters& parameters, Progress& progress) {
+  return render(scene, camera, std::span(&device, 1), parameters, progress);
+}
+
+struct SceneRenderer::Impl : RenderSession {
+  using RenderSession::RenderSession;
+};
+
+SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
+                             const RenderParameters& parameters, PreparedPhotons* prepared,
+                             const KeepPhotons& keep, Progress& progress)
+    : impl_(std::make_unique<Impl>(std::make_shared<const PreparedScene>(scene), devices,
+                                   parameters, prepared, keep, progress)) {}
+
+SceneRenderer::~SceneRenderer() = default;
+
+RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progress& progress,
+                                   const LightPooling* pooling) {
+  return impl_->render(CameraHits(camera), film, progress, pooling);
+}
+
+DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
+                               std::span<const glm::vec3> powers, const FrameFilling& filling,
+                               std::span<glm::vec3> picture, Progress& progress,
+                               SceneRenderer* coarser) {
+  return impl_->frames().draw(camera, film, powers, filling, picture, progress,
+                              coarser ? &coarser->impl_->frames() : nullptr);
+}
+
+void SceneRenderer::bound_light_maps(std::uint64_t bytes) {
+  if (draws()) impl_->frames().bound(bytes);
+}
+
+bool SceneRenderer::draws() const { return impl_->reads_light_maps(); }
+
+std::optional<LightMapContents> SceneRenderer::light_maps() const {
+  return impl_->light_map_contents();
+}
+
+RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
+                                               Progress& progress, const LightPooling* pooling) {
+  return impl_->render(ReflectedHits(camera), film, progress, pooling);
+}
+
+namespace {
+
+Film film_of(std::span<const Sensor> sensors, const GatherParameters& gathering) {
+  if (gathering.rays < 1 || gathering.rays > limits::max_samples_per_pixel) {
+    throw UsageError("rays: " + std::to_string(gathering.rays) + " is not between 1 and " +
+                     std::to_string(limits::max_samples_per_pixel));
+  }
+  if (sensors.empty() || sensors.size() > limits::max_sensors) {
+    throw UsageError("sensors: " + std::to_string(sensors.size()) + " is not between 1 and " +
+                     std::to_string(limits::max_sensors));
+  }
+  return {1, static_cast<int>(sensors.size()), gathering.rays};
+}
+
+/// What the film has gathered as illuminance is that of the surfaces seen: replaces it by the
+/// sensors' own.
+LightLayers with_own_illuminance(LightLayers layers) {
+  const auto own = [](const glm::vec3& radiance) {
+    return static_cast<float>(glm::pi<double>() * luminance(glm::dvec3(radiance)));
+  };
+  for (LightLayers::Layer& layer : layers.layers) {
+    std::transform(layer.radiance.begin(), layer.radiance.end(), layer.illuminance.begin(), own);
+  }
+  for (LightLayers::Row& row : layers.rows) {
+    std::transform(row.radiance.begin(), row.radiance.end(), row.illuminance.begin(), own);
+  }
+  return layers;
+}
+
+}  // namespace
+
+PrimaryHitBatch GatherHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
+                                  int first_row, int last_row,
+                                  std::span<const std::uint32_t> map_of) const {
+  return trace::gather_rays(rays, sensors_, response_, lamps_, film, first_row, last_row, map_of);
+}
+
+RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
+                    const GatherParameters& gathering, std::span<Device> devices,
+                    const RenderParameters& parameters, Progress& progress) {
+  RenderResult result = render_hits(scene, GatherHits(scene, sensors, gathering.response),
+                                    film_of(sensors, gathering), devices, parameters, progress);
+  result.layers = with_own_illuminance(std::move(result.layers));
+  return result;
+}
+
+PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sensors,
+                                 const GatherParameters& gathering, std::uint64_t seed,
+                                 Progress& progress) {
+  PathTracerResult result =
+      trace_paths_of_hits(scene, GatherHits(scene, sensors, gathering.response),
+                          eye_rays({.seed = seed, .film = film_of(sensors, gathering)}), progress);
+  result.layers = with_own_illuminance(std::move(result.layers));
+  return result;
 }
 
 }  // namespace photile

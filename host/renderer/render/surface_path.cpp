@@ -1,9 +1,8 @@
-#include "render/surface_path.hpp"
-
 #include <algorithm>
 #include <optional>
 
 #include "photile/defaults.hpp"
+#include "render/path_estimate.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/receiver.hpp"

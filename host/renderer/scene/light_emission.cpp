@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -111,12 +112,26 @@ EmissionCells::EmissionCells(const Scene& scene, const Light& light) : light_(&l
       weight_up_to_.push_back(sum += triangle.cell_area * std::max(bright[cell], least));
     }
   }
+  const std::size_t shares = std::bit_ceil(weight_up_to_.size());
+  for (std::size_t share = 0; share < shares; ++share) {
+    first_of_share_.push_back(first_beyond(
+        0, weight_up_to_.size(), static_cast<double>(share) / static_cast<double>(shares) * sum));
+  }
+  first_of_share_.push_back(static_cast<std::uint32_t>(weight_up_to_.size()));
+}
+
+std::uint32_t EmissionCells::first_beyond(std::size_t first, std::size_t last,
+                                          double weight) const {
+  const double* const cells = weight_up_to_.data();
+  return static_cast<std::uint32_t>(std::upper_bound(cells + first, cells + last, weight) - cells);
 }
 
 EmissionCells::Place EmissionCells::sample(double target, double u1, double u2) const {
-  const double wanted = std::min(target, 1.0 - 0x1p-53) * weight_up_to_.back();
-  const auto cell = static_cast<std::size_t>(
-      std::upper_bound(weight_up_to_.begin(), weight_up_to_.end(), wanted) - weight_up_to_.begin());
+  const double below_one = std::min(target, 1.0 - 0x1p-53);
+  const auto share = static_cast<std::size_t>(
+      below_one * static_cast<double>(first_of_share_.size() - 1));  // exact: a power of two
+  const std::size_t cell = first_beyond(first_of_share_[share], first_of_share_[share + 1],
+                                        below_one * weight_up_to_.back());
   const auto next = std::upper_bound(
       triangles_.begin(), triangles_.end(), cell,
       [](std::size_t value, const Triangle& triangle) { return value < triangle.first_cell; });

@@ -128,7 +128,7 @@ SceneNeeds needs_of(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     if (used[i]) add_needs(scene.materials[i], needs);  // glTF files carry unused materials
   }
-  needs.smooth_shading = any_smooth_shading(scene);
+  needs.smooth_shading = needs.normal_maps || any_smooth_shading(scene);
   needs.light_count = static_cast<std::uint32_t>(light_groups_of(scene).groups.size());
   return needs;
 }
