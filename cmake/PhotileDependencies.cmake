@@ -9,6 +9,7 @@ set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
 find_package(OpenEXR 3.1 REQUIRED)
 unset(CMAKE_MESSAGE_LOG_LEVEL)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(OpenImageIO 2.4 REQUIRED)
 # Debian's target names OpenCV's headers, which its package does not depend on; CMake refuses a folder
 # that does not exist.

@@ -20,6 +20,7 @@ libtbb-dev             | threads
 libglm-dev             | vectors
 libopenexr-dev         | pictures: EXR
 libpng-dev             | PNG, written
+zlib1g-dev             | packs published pages
 libopenimageio-dev     | all other pictures
 libfreetype-dev        | the letters of legends
 libtinygltf-dev        | reads glTF

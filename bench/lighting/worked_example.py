@@ -21,8 +21,8 @@ STEPS = (
     Step("What does the file hold, and which lamps?",
          "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
     Step("Render it once, a layer for each lamp.",
-         "photile render living-room.gltf --size 960x640 -o room.exr -o day.png",
-         {"day.png": "By day, every lamp on"}, ()),
+         "photile render living-room.gltf --size 960x640 -o room.exr -o dusk.png",
+         {"dusk.png": "On a summer evening, every lamp on"}, ()),
     Step("How much light is there to read and work by? Points in or just over furniture are left out.",
          "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
          "-s 600 -o report.html -o plan.svg",
@@ -30,9 +30,9 @@ STEPS = (
     Step("A mood for work after dark: the ceiling in neutral white, the floor lamp off.",
          "photile relight room.exr --light daylight=off --light floor_lamp=off "
          "--light ceiling_panel=4000K -o work.exr -o work.png", {}, ()),
-    Step("And one for the evening: the floor lamp, warm, and the ceiling off.",
+    Step("And one to sit and talk by: the floor lamp, warm, and the panel off.",
          f"photile relight room.exr {EVENING} -o evening.exr -o evening.png",
-         {"evening.png": "In the evening"}, ()),
+         {"evening.png": "Later: the floor lamp, the sconces and the picture"}, ()),
     Step("How do they differ? Red is where work is brighter, blue where the evening is.",
          "photile compare work.exr evening.exr -o moods.png",
          {"moods.png": "Work, evening, and the difference of their luminances"},

@@ -49,7 +49,7 @@ window() {
 }
 
 # A click reads the light on the table, another shows illuminance.
-window "16 of 16 samples, 0.5M" 2 "672 564" "108 506" -- \
+window "16 of 16 samples, 0.5M" 2 "407 512" "108 506" -- \
   scenes/living-room/living-room.gltf --size 960x720 --quality good
 mv "$outputs/screenshot-0001.png" "$pictures/view.png"
 mv "$outputs/screenshot-0002.png" "$pictures/view-illuminance.png"

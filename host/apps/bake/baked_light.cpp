@@ -9,8 +9,10 @@
 #include <tuple>
 
 #include "cache/charts.hpp"
+#include "cache/node_mix.hpp"
 #include "photile/errors.hpp"
 #include "trace/ray_query.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::bake {
 
@@ -23,22 +25,26 @@ constexpr std::uint32_t border = 1;
 constexpr double coarser = 1.25;
 
 /// Texels whose nodes are valued at a time: bounds the memory of their hits.
-constexpr std::size_t texels_per_fill = std::size_t{1} << 20;
+constexpr std::size_t texels_per_fill = std::size_t{1} << 16;
 
 void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t sided_triangle) {
   hits.position.push_back(position);
   hits.sided_triangle.push_back(sided_triangle);
 }
 
-/// Light of a layer at a node, at power 1.
-glm::vec3 value_of(const Estimates& values, std::uint32_t node, std::size_t layer,
-                   std::size_t layers) {
-  if (values.first.empty()) return values.irradiance[node * layers + layer];
-  glm::vec3 light(0.0f);
+/// Calls visit(value) for each estimate of a layer at a node.
+template <class Visit>
+void for_each_value(const Estimates& values, std::uint32_t node, std::size_t layer,
+                    std::size_t layers, const Visit& visit) {
+  if (values.first.empty()) return visit(node * layers + layer);
   for (std::uint64_t i = values.first[node]; i < values.first[node + 1]; ++i) {
-    if (values.light[i] == layer) light += values.irradiance[i];
+    if (values.light[i] == layer) visit(i);
   }
-  return light;
+}
+
+/// Layers of a node, where each node has them all.
+std::size_t dense_layers(const Estimates& values, std::size_t nodes) {
+  return values.first.empty() && nodes > 0 ? values.irradiance.size() / nodes : 0;
 }
 
 /// What a node holds of any layer.
@@ -50,26 +56,46 @@ std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
   return std::span(values.irradiance).subspan(first, last - first);
 }
 
+/// Light of a layer between nodes, at power 1.
 glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t layer,
                   std::size_t layers) {
   glm::vec3 light(0.0f);
   for (std::size_t i = 0; i < blend.node.size(); ++i) {
-    light += blend.weight[i] * value_of(values, blend.node[i], layer, layers);
+    for_each_value(values, blend.node[i], layer, layers,
+                   [&](std::size_t value) { light += blend.weight[i] * values.irradiance[value]; });
   }
   return light;
+}
+
+/// The same of a plane of this normal.
+glm::vec3 turned(const Estimates& values, const NodeBlend& blend, std::size_t layer,
+                 std::size_t layers, const glm::vec3& normal) {
+  glm::vec4 by_normal(0.0f);
+  for (std::size_t i = 0; i < blend.node.size(); ++i) {
+    for_each_value(values, blend.node[i], layer, layers, [&](std::size_t value) {
+      by_normal += blend.weight[i] * values.by_normal[value];
+    });
+  }
+  return cache::turned(blended(values, blend, layer, layers), by_normal, normal);
 }
 
 }  // namespace
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
                        const cache::NodeSight& sight, const BakeParameters& parameters,
-                       const Progress& progress)
+                       Progress& progress)
     : scene_(scene), maps_(maps) {
+  progress.begin("find lit surfaces", 0, "");
   choose_sides(source, parameters, progress);
+  progress.end();
   const auto most_side = static_cast<std::uint32_t>(parameters.most_side);
   texel_ = parameters.texel > 0 ? parameters.texel : maps.charts().spacing() / 2;
-  while (!place_charts(texel_, most_side)) {
-    if (parameters.texel > 0 || texel_ > 1e9) {
+  const auto fits = [&] {
+    return place_charts(texel_, most_side) &&
+           std::uint64_t{atlas_.width} * atlas_.height <= parameters.most_texels;
+  };
+  while (!fits()) {
+    if ((parameters.texel > 0 && parameters.exact) || texel_ > 1e9) {
       throw UsageError(fmt::format("texels {} m apart do not fit a picture of {} x {}; give more",
                                    texel_, most_side, most_side));
     }
@@ -141,20 +167,28 @@ bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
   return true;
 }
 
-/// The point of a texel of the rectangle.
-glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
+/// Of a texel of the rectangle: metres from the chart's origin.
+glm::dvec2 BakedLight::place(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
   const cache::Chart& lattice = maps_.charts()[placed.chart];
   const glm::uvec2 within(std::clamp(x, border, placed.cells.x + border) - border,
                           std::clamp(y, border, placed.cells.y + border) - border);
   const glm::dvec2 size = lattice.spacing * glm::dvec2(lattice.columns, lattice.rows);
-  const glm::dvec2 at = glm::dvec2(within) / glm::dvec2(placed.cells) * size;
+  return glm::dvec2(within) / glm::dvec2(placed.cells) * size;
+}
+
+glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
+  const cache::Chart& lattice = maps_.charts()[placed.chart];
+  const glm::dvec2 at = place(placed, x, y);
   return glm::vec3(lattice.origin + at.x * lattice.across + at.y * lattice.along);
 }
 
-void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, const Progress& progress) {
+/// A texel that no triangle covers has the light of the surface nearest to it, so that a lookup at
+/// an edge blends light of the surface alone.
+void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress) {
   NodeBlend nothing{};
   nothing.node.fill(none);
   blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
+  progress.begin("bake light maps", used_texels(), "texels");
   PrimaryHits hits;
   std::vector<std::size_t> texels;
   const auto value = [&] {
@@ -165,20 +199,49 @@ void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, const P
       maps_.find(hits.sided_triangle[i], hits.position[i], blend);
       sight.look(hits.sided_triangle[i], hits.position[i], blend);
     });
+    if (!maps_.values().by_normal.empty()) {
+      normal_.resize(blend_.size());
+      for (std::size_t i = 0; i < texels.size(); ++i) {
+        normal_[texels[i]] =
+            trace::shading_normal(scene_, hits.sided_triangle[i], hits.position[i]);
+      }
+    }
+    progress.advance(texels.size());
     hits = {};
     texels.clear();
   };
+  const cache::Charts& charts = maps_.charts();
   for (const Placed& placed : placed_) {
     const TexelRectangle& rectangle = placed.rectangle;
+    const std::size_t first = hits.size();
+    const std::size_t count = std::size_t{rectangle.width} * rectangle.height;
+    hits.position.resize(first + count);
+    hits.sided_triangle.resize(first + count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      const auto x = static_cast<std::uint32_t>(i % rectangle.width);
+      const auto y = static_cast<std::uint32_t>(i / rectangle.width);
+      const cache::Charts::Owner owner =
+          charts.owner(placed.chart, place(placed, x, y), 2 * texel_);
+      hits.sided_triangle[first + i] = sided(owner.where.triangle, owner.side);
+      hits.position[first + i] = trace::surface_point(scene_, owner.where, owner.side).position;
+    });
     for (std::uint32_t y = 0; y < rectangle.height; ++y) {
       for (std::uint32_t x = 0; x < rectangle.width; ++x) {
-        add(hits, point(placed, x, y), member_[placed.chart]);
         texels.push_back(std::size_t{rectangle.y + y} * atlas_.width + rectangle.x + x);
       }
     }
     if (texels.size() >= texels_per_fill) value();
   }
   value();
+  progress.end();
+}
+
+std::uint64_t BakedLight::used_texels() const {
+  std::uint64_t count = 0;
+  for (const Placed& placed : placed_) {
+    count += std::uint64_t{placed.rectangle.width} * placed.rectangle.height;
+  }
+  return count;
 }
 
 /// A lookup beside a box that stands on a floor takes a part of the texels under the box. Those
@@ -248,11 +311,22 @@ std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t sided_triangle) const
 std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
   std::vector<glm::vec3> texels(blend_.size(), glm::vec3(0.0f));
   const Estimates& values = maps_.values();
-  const std::size_t layers = values.first.empty() && maps_.statistics().nodes > 0
-                                 ? values.irradiance.size() / maps_.statistics().nodes
-                                 : 0;
+  const std::size_t layers = dense_layers(values, maps_.statistics().nodes);
   tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
-    if (blend_[i].node[0] != none) texels[i] = blended(values, blend_[i], layer, layers);
+    if (blend_[i].node[0] == none) return;
+    texels[i] = normal_.empty() ? blended(values, blend_[i], layer, layers)
+                                : turned(values, blend_[i], layer, layers, normal_[i]);
+  });
+  return texels;
+}
+
+std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nodes) const {
+  std::vector<float> texels(blend_.size(), 0.0f);
+  const std::size_t layers = dense_layers(of_nodes, maps_.statistics().nodes);
+  tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
+    if (blend_[i].node[0] == none) return;
+    const glm::vec3 error = blended(of_nodes, blend_[i], layer, layers);
+    texels[i] = static_cast<float>(luminance(glm::dvec3(error)));
   });
   return texels;
 }

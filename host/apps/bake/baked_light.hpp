@@ -31,8 +31,10 @@ struct Atlas {
 std::optional<Atlas> pack(std::span<TexelRectangle> rectangles, std::uint32_t most_side);
 
 struct BakeParameters {
-  double texel = 0;            ///< metres between texels, at most; 0 = as fine as the picture holds
-  int most_side = 4096;        ///< of the picture
+  double texel = 0;   ///< metres between texels, at most; 0 = half the coarsest nodes
+  bool exact = true;  ///< a texel that is given is not made larger where the picture is too small
+  int most_side = 4096;                           ///< of the picture
+  std::uint64_t most_texels = ~std::uint64_t{0};  ///< of the picture's area
   std::vector<double> powers;  ///< per layer, by which the brighter side of a surface is told
 };
 
@@ -44,9 +46,10 @@ class BakedLight {
  public:
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
-  ///   sight   of the light maps
+  ///   sight      of the light maps
+  ///   progress   is told of a stage
   BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source, const cache::NodeSight& sight,
-             const BakeParameters& parameters, const Progress& progress);
+             const BakeParameters& parameters, Progress& progress);
 
   std::uint32_t width() const { return atlas_.width; }
   std::uint32_t height() const { return atlas_.height; }
@@ -59,7 +62,13 @@ class BakedLight {
   std::array<glm::vec2, 3> corners(std::uint32_t sided_triangle) const;
 
   /// Irradiance of a layer at power 1: width x height, row 0 at the top; 0 where no chart lies.
+  /// Where nodes know how light depends on the normal it is that of the shading normal.
   std::vector<glm::vec3> layer(std::size_t layer) const;
+  /// Standard error of the luminance of `layer`, in the same form, from that of nodes.
+  ///   of_nodes   as GatheredNodes::errors
+  std::vector<float> errors(std::size_t layer, const Estimates& of_nodes) const;
+  /// Texels of the charts, without what lies between them.
+  std::uint64_t used_texels() const;
 
  private:
   struct Placed {
@@ -70,8 +79,9 @@ class BakedLight {
 
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
-  void fill(NodeSource& source, const cache::NodeSight& sight, const Progress& progress);
+  void fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress);
   void spread(const cache::NodeSight& sight);
+  glm::dvec2 place(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
   const Scene& scene_;
@@ -83,6 +93,7 @@ class BakedLight {
   std::vector<std::uint32_t> place_of_chart_;  ///< into placed_, or none
   std::vector<std::uint32_t> member_;          ///< per chart: a sided triangle of it
   std::vector<NodeBlend> blend_;               ///< per texel
+  std::vector<glm::vec3> normal_;              ///< per texel, where light depends on it
 };
 
 }  // namespace photile::bake

@@ -47,11 +47,9 @@ void run_bake(BakeOptions& options) {
                         progress);
   cache::SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
-  progress.begin("bake light maps", 0, "");
   const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),
                                options.baking, progress);
   bake::write_baked(options.output, scene, baked, mix);
-  progress.end();
   keep_light_maps(session.light_map_contents(), render, progress);
   progress.note(fmt::format("{}: {} x {} texels, {:.3g} cm apart", options.output, baked.width(),
                             baked.height(), 100 * baked.texel()));

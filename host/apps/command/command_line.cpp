@@ -43,6 +43,7 @@ void define(CLI::App& photile) {
   add_merge_command(photile);
   add_view_command(photile);
   add_bake_command(photile);
+  add_publish_command(photile);
   for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
     const std::string name = command->get_name();
     if (name == "render" || name == "measure" || name == "walk") continue;

@@ -178,8 +178,13 @@ void Charts::prepare(std::uint32_t index) {
 Charts::Owner Charts::owner(const NodePlace& node, int levels) const {
   const Chart& chart = charts_[node.chart];
   const glm::dvec2 finest = chart.spacing / static_cast<double>(std::uint32_t{1} << (levels - 1));
-  const glm::dvec2 place(node.x * finest.x, node.y * finest.y);
-  const std::span<const std::uint32_t> triangles = members(node.chart);
+  // A cell that surface lies in is no farther from it than the cell's diagonal.
+  return owner(node.chart, {node.x * finest.x, node.y * finest.y}, glm::length(finest));
+}
+
+Charts::Owner Charts::owner(std::uint32_t index, const glm::dvec2& place, double nearby) const {
+  const Chart& chart = charts_[index];
+  const std::span<const std::uint32_t> triangles = members(index);
   NearestPoint nearest{std::numeric_limits<double>::infinity(), 0, 0};
   std::uint32_t owner = none;
   const auto look_at = [&](std::uint32_t i) {
@@ -192,12 +197,11 @@ Charts::Owner Charts::owner(const NodePlace& node, int levels) const {
     nearest = point;
     owner = triangles[i];
   };
-  if (const geometry::BoxTree* tree = trees_[node.chart].get()) {
+  if (const geometry::BoxTree* tree = trees_[index].get()) {
     geometry::Box at;
     at.extend(glm::vec3(place, 0.0f));
-    // A cell that surface lies in is no farther from it than the cell's diagonal.
-    for (double reach = glm::length(finest);
-         owner == none || nearest.squared_distance > reach * reach; reach *= 2) {
+    for (double reach = nearby; owner == none || nearest.squared_distance > reach * reach;
+         reach *= 2) {
       // Room for boxes rounded to floats.
       const double limit = 1.01 * reach + 1e-6 * glm::length(place);
       tree->visit_within(at, static_cast<float>(limit * limit), [&](std::uint32_t i) {

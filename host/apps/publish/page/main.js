@@ -1,0 +1,398 @@
+// Puts the parts of the page together.
+
+/// Factor that brings the log-average luminance to mid grey, without lamps and black, as
+/// automatic_exposure of host/renderer/image/tone_map.cpp.
+function automaticExposure(radiance) {
+  const luminances = [];
+  for (let i = 0; i < radiance.length; i += 3) {
+    const value = luminanceOf([radiance[i], radiance[i + 1], radiance[i + 2]]);
+    if (value > 0 && Number.isFinite(value)) luminances.push(value);
+  }
+  if (luminances.length === 0) return 1;
+  const median = luminances.sort((a, b) => a - b)[Math.floor(luminances.length / 2)];
+  const counted = luminances.filter((value) => value <= 20 * median && value >= median / 20);
+  return 0.18 / Math.exp(counted.reduce((sum, value) => sum + Math.log(value), 0) / counted.length);
+}
+
+/// A first guess of the luminance of white, for the range of half floats.
+function roughWhite(renderer, weights) {
+  let sum = 0, count = 1;
+  const colour = [0, 0, 0];
+  const stride = Math.max(1, Math.floor(room.atlas.width * room.atlas.height / 4096)) | 1;
+  renderer.layers.forEach((texels, layer) => {
+    let own = 0;
+    count = 1;
+    for (let i = 0; i < texels.length; i += stride) {
+      unpack(texels[i], colour);
+      const value = luminanceOf(colour);
+      own += value;
+      if (value > 0) ++count;
+    }
+    sum += own / count * room.lights[layer].brightest * luminanceOf(weights[layer]);
+  });
+  return sum > 0 ? sum : 1;
+}
+
+class Page {
+  async open() {
+    this.canvas = find('#view');
+    this.renderer = new Renderer(this.canvas);
+    const loading = find('#loading');
+    const archive = new Archive();
+    const bar = loading.querySelector('progress');
+    const total = Object.keys(room.sections).length;
+    let done = 0;
+    const array = archive.array.bind(archive);
+    archive.array = async (...parts) => {
+      const result = await array(...parts);
+      bar.value = ++done / total;
+      return result;
+    };
+    if (room.hours) {
+      const codes = await archive.array('hours');
+      room.hours.luminances = Float64Array.from(
+          codes, (code) => (code ? 2 ** (code / room.hours.steps - room.hours.offset) : 0));
+    }
+    this.lights = new Lights();
+    if (room.hours) this.lights.hour = {date: room.hours.startDate, time: room.hours.startTime};
+    await this.renderer.load(archive);
+    this.errors = await archive.array('errors');
+    this.surfaces = new Surfaces(this.renderer.positions, this.renderer.indices);
+    this.walker = new Walker(this.surfaces);
+    this.panel = new Panel(this.lights, (what) => this.changed(what));
+    this.reading = null;
+    this.makeViews();
+    this.makeDisplay();
+    this.makeTools();
+    this.walker.stand(room.cameras[0]);
+    this.setWhite();
+    this.restore();
+    this.panel.show();
+    listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.point(x, y));
+    window.addEventListener('resize', () => this.wake());
+    window.addEventListener('hashchange', () => this.restore());
+    window.addEventListener('gamepadconnected', () => this.wake());
+    this.dirty = true;
+    this.wake();
+    loading.remove();
+    this.canvas.focus({preventScroll: true});
+  }
+
+  /// Sets the luminance of white by what is in view, with the light as it is.
+  setWhite() {
+    const weights = this.lights.weights();
+    this.renderer.unit = roughWhite(this.renderer, weights);
+    this.renderer.mix(weights);
+    const aspect = clamp(this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), 0.5, 2);
+    const radiance = this.renderer.radiance(this.walker, Math.round(128 * aspect), 128);
+    this.renderer.unit = 1 / automaticExposure(radiance);
+    this.renderer.mix(weights);
+    this.setExposure(0);
+    this.setScale();
+  }
+
+  /// Exposes for what is in view: steps of the slider from the published light.
+  adapt() {
+    this.renderer.mix(this.lights.weights());
+    this.lightIsOld = false;
+    const aspect = clamp(this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), 0.5, 2);
+    const exposure = automaticExposure(
+        this.renderer.radiance(this.walker, Math.round(96 * aspect), 96));
+    this.setExposure(clamp(Math.log2(exposure * this.renderer.unit), -12, 14));
+  }
+
+  setExposure(stops) {
+    this.stops = stops;
+    this.renderer.exposure = 2 ** stops;
+    const slider = find('#exposure');
+    if (stops < Number(slider.min)) slider.min = Math.floor(stops);
+    if (stops > Number(slider.max)) slider.max = Math.ceil(stops);
+    slider.value = stops;
+    find('#display output').textContent = `${stops >= 0 ? '+' : '−'}${Math.abs(stops).toFixed(1)} EV`;
+    this.wake();
+  }
+
+  /// False colours over three decades, to 1, 2 or 5 times a power of ten.
+  setScale() {
+    const picture = this.renderer.radiance(this.walker, 64, 48);
+    const sorted = Array.from({length: picture.length / 3}, (_, i) =>
+      luminanceOf([picture[3 * i], picture[3 * i + 1], picture[3 * i + 2]])).sort((a, b) => a - b);
+    const lux = Math.max(1e-3, sorted[Math.floor(sorted.length * 0.9)] * Math.PI * 4 * room.lux);
+    const decade = 10 ** Math.floor(Math.log10(lux));
+    const top = [1, 2, 5, 10].map((step) => step * decade).find((step) => step >= lux * 0.999);
+    this.renderer.scale = [Math.log2(top / 1000), Math.log2(top)];
+    const legend = find('#legend');
+    const stop = (i) => `rgb(${room.palette[i].join(' ')})`;
+    legend.firstElementChild.style.background = `linear-gradient(to right, ${
+        Array.from({length: 17}, (_, i) => stop(Math.min(255, i * 16))).join(', ')})`;
+    legend.lastElementChild.replaceChildren(...[1000, 100, 10, 1].map(
+        (part) => element('span', {textContent: shortNumber(top / part)})));
+    legend.lastElementChild.lastElementChild.textContent += ' lx';
+  }
+
+  changed(what) {
+    this.lightIsOld = true;
+    if (what === 'hour' || what === 'preset') this.adapt();
+    this.wake();
+    this.showReading();
+  }
+
+  wake() {
+    this.dirty = true;
+    if (this.scheduled) return;
+    this.scheduled = true;
+    this.lastTime = performance.now();
+    requestAnimationFrame((time) => this.frame(time));
+  }
+
+  frame(time) {
+    const began = performance.now();
+    this.scheduled = false;
+    const moved = this.walker.advance(clamp((time - this.lastTime) / 1000, 0, 0.1));
+    this.lastTime = time;
+    if (this.lightIsOld) {
+      this.renderer.mix(this.lights.weights());
+      this.lightIsOld = false;
+    }
+    if (moved || this.dirty) {
+      this.renderer.draw(this.walker);
+      this.placeReading();
+    }
+    this.dirty = false;
+    const pads = [...(navigator.getGamepads?.() ?? [])].some((pad) => pad?.connected);
+    if (moved || pads || this.walker.keys.size > 0 || this.walker.stick.some((part) => part !== 0)) {
+      this.scheduled = true;
+      requestAnimationFrame((next) => this.frame(next));
+    }
+    this.frameTime = performance.now() - began;
+  }
+
+  makeViews() {
+    const list = find('#bookmarks');
+    room.cameras.forEach((camera, i) => {
+      const button = element('button', {type: 'button', textContent: camera.name});
+      button.addEventListener('click', () => this.view(i));
+      list.append(button);
+    });
+  }
+
+  view(i) {
+    if (!room.cameras[i]) return;
+    this.walker.stand(room.cameras[i]);
+    this.wake();
+  }
+
+  makeDisplay() {
+    find('#exposure').addEventListener('input', (event) => this.setExposure(Number(event.target.value)));
+    find('#adapt').addEventListener('click', () => this.adapt());
+    document.querySelectorAll('[name=shown]').forEach((button) => {
+      button.addEventListener('input', () => this.setMode(Number(button.value)));
+    });
+  }
+
+  setMode(mode) {
+    this.renderer.mode = mode;
+    find(`[name=shown][value="${mode}"]`).checked = true;
+    find('#legend').hidden = mode !== 2;
+    if (mode === 2) this.setScale();
+    this.wake();
+  }
+
+  makeTools() {
+    const tools = {
+      F: ['#fly', () => {
+        this.walker.flies = !this.walker.flies;
+        find('#fly').setAttribute('aria-pressed', this.walker.flies);
+        this.wake();
+      }],
+      P: ['#picture', () => this.save()],
+      C: ['#link', () => this.share()],
+      H: ['#help', () => find('#about').showModal()],
+      X: ['#adapt', () => this.adapt()],
+      V: [null, () => this.setMode(this.renderer.mode === 2 ? 0 : 2)],
+      L: [null, () => this.point(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2, true)],
+    };
+    for (const [button, act] of Object.values(tools)) {
+      if (button && button !== '#adapt') find(button).addEventListener('click', act);
+    }
+    window.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || find('#about').open) return;
+      if (event.target.matches('input[type=text], select')) return;
+      const key = event.key.toUpperCase();
+      if (tools[key]) tools[key][1]();
+      else if (/^[1-9]$/.test(key)) this.view(Number(key) - 1);
+      else if (key === 'ESCAPE') this.forgetReading();
+    });
+    const {used, texel} = room.atlas;
+    find('#facts').textContent =
+        `${room.lights.length} light map${room.lights.length === 1 ? '' : 's'} of ${
+            shortNumber(used)} texels, ${shortNumber(100 * texel)} cm apart; ${
+            shortNumber(this.renderer.indices.length / 3)} triangles. Made by photile ${room.version}.`;
+    find('#simplified').textContent = `Simplified here: ${room.simplified.join('; ')}.`;
+  }
+
+  /// The triangle at a place of the page.
+  meet(x, y) {
+    const {forward, right, eye, angle} = this.walker;
+    const up = cross(right, forward), tangent = Math.tan(angle / 2);
+    const aspect = this.canvas.clientWidth / this.canvas.clientHeight;
+    const direction = normalized(add(forward, add(
+        scaled(right, (2 * x / this.canvas.clientWidth - 1) * tangent * aspect),
+        scaled(up, (1 - 2 * y / this.canvas.clientHeight) * tangent))));
+    const hit = this.surfaces.meet(eye, direction, (triangle, facing) => {
+      const part = this.partOf(triangle);
+      return part.interaction === 0 ? facing < 0 : part.interaction === 1;
+    });
+    return hit && {...hit, place: add(eye, scaled(direction, hit.distance))};
+  }
+
+  partOf(triangle) {
+    return room.parts.find(({first, count}) => 3 * triangle >= first && 3 * triangle < first + count);
+  }
+
+  /// Illuminance at a point of a triangle: lux, its standard error, and the part of each light.
+  illuminance({triangle, u, v}) {
+    const uv = [0, 1].map((axis) => [1 - u - v, u, v].reduce((sum, weight, i) =>
+      sum + weight * this.renderer.lightUvs[2 * this.renderer.indices[3 * triangle + i] + axis], 0) / 65535);
+    const lux = this.renderer.lightAt(uv).map((light) => luminanceOf(light) * room.lux);
+    const {width, height, block} = room.atlas;
+    const columns = Math.ceil(width / block), rows = Math.ceil(height / block);
+    const cell = Math.min(rows - 1, Math.floor(uv[1] * height / block)) * columns +
+                 Math.min(columns - 1, Math.floor(uv[0] * width / block));
+    // Lights err apart: their variances add.
+    const variance = lux.reduce((sum, value, i) => {
+      const code = this.errors[i * columns * rows + cell];
+      return sum + (value * (code ? 2 ** ((code - 255) / room.atlas.errorSteps) : 0)) ** 2;
+    }, 0);
+    return {lux: lux.reduce((sum, value) => sum + value, 0), error: Math.sqrt(variance), lights: lux};
+  }
+
+  point(x, y, middle = false) {
+    const hit = this.meet(x, y);
+    find('#cross').hidden = !middle;
+    if (!hit) {
+      this.forgetReading();
+      return;
+    }
+    this.reading = hit;
+    this.showReading();
+    this.placeReading();
+  }
+
+  showReading() {
+    if (!this.reading) return;
+    if (this.lightIsOld) {
+      this.renderer.mix(this.lights.weights());
+      this.lightIsOld = false;
+    }
+    const {lux, error, lights} = this.illuminance(this.reading);
+    const box = find('#reading');
+    const parts = lights.map((value, i) => [value, room.lights[i].patch === undefined
+                                            ? room.lights[i].name.replaceAll('_', ' ') : 'daylight']);
+    const sums = new Map();
+    for (const [value, name] of parts) sums.set(name, (sums.get(name) ?? 0) + value);
+    const most = [...sums].sort((a, b) => b[1] - a[1]).filter(([, value]) => value > 0.005 * lux).slice(0, 4);
+    box.replaceChildren(
+        element('b', {textContent: `${shortNumber(lux)} lx`}), ` ± ${shortNumber(error)}`,
+        ...(most.length > 1 ? most.map(([name, value]) => `\n${shortNumber(value)}  ${name}`) : []));
+    box.hidden = false;
+  }
+
+  placeReading() {
+    if (!this.reading) return;
+    const {forward, right, eye, angle} = this.walker;
+    const offset = subtract(this.reading.place, eye), depth = dot(offset, forward);
+    const box = find('#reading');
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    const scale = height / 2 / Math.tan(angle / 2) / Math.max(depth, 1e-6);
+    const x = width / 2 + dot(offset, right) * scale;
+    const y = height / 2 - dot(offset, cross(right, forward)) * scale;
+    box.style.visibility = depth > 0 && x > 0 && x < width && y > 0 && y < height ? '' : 'hidden';
+    box.style.left = `${x}px`;
+    box.style.top = `${y}px`;
+  }
+
+  forgetReading() {
+    this.reading = null;
+    find('#reading').hidden = true;
+    find('#cross').hidden = true;
+  }
+
+  save() {
+    this.renderer.draw(this.walker);
+    this.canvas.toBlob((blob) => {
+      const link = element('a', {href: URL.createObjectURL(blob), download: `${room.title}.png`});
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+      tell('The picture is saved.');
+    });
+  }
+
+  /// The view and the lights as the part of a link after its #.
+  get state() {
+    const short = (value) => Number(value.toPrecision(5));
+    const {eye, yaw, pitch, angle, flies} = this.walker;
+    return encodeURIComponent(JSON.stringify({
+      eye: eye.map(short), look: [yaw, pitch, angle].map(short), fly: flies ? 1 : 0, ev: short(this.stops),
+      lights: Object.fromEntries(room.lights.flatMap((light, i) => {
+        const {power, on, kelvin, tint} = this.lights.states[i];
+        const same = tint.every((part, c) => part === light.tint[c]);
+        if (light.patch !== undefined) return [];
+        if (power === light.power && on === light.power > 0 && same) return [];
+        return [[light.name, [short(power), on ? 1 : 0, kelvin || (same ? 0 : tint.map(short))]]];
+      })),
+      sky: this.lights.sky.on ? 1 : 0,
+      hour: this.lights.hour ? [this.lights.hour.date, this.lights.hour.time] : null,
+    }));
+  }
+
+  restore() {
+    if (location.hash.length < 2) return;
+    let state;
+    try {
+      state = JSON.parse(decodeURIComponent(location.hash.slice(1)));
+      const numbers = [...state.eye, ...state.look, state.ev];
+      if (numbers.length !== 7 || !numbers.every(Number.isFinite)) throw new Error('numbers');
+    } catch {
+      tell('The link is damaged: this is the room as it was published.');
+      return;
+    }
+    this.walker.eye = state.eye;
+    [this.walker.yaw, this.walker.pitch, this.walker.angle] = state.look;
+    this.walker.flies = Boolean(state.fly);
+    find('#fly').setAttribute('aria-pressed', this.walker.flies);
+    for (const [name, [power, on, colour]] of Object.entries(state.lights ?? {})) {
+      const i = room.lights.findIndex((light) => light.name === name);
+      if (i < 0 || !(power >= 0)) continue;
+      Object.assign(this.lights.states[i], {power, on: Boolean(on)});
+      if (Array.isArray(colour)) this.lights.states[i].tint = colour.slice(0, 3).map(Number);
+      else if (colour) this.lights.setKelvin(i, clamp(colour, kelvins.low, kelvins.high));
+    }
+    this.lights.sky.on = Boolean(state.sky ?? 1);
+    if (room.hours && Array.isArray(state.hour)) {
+      this.lights.hour = {date: clamp(Math.round(state.hour[0]), 0, room.hours.dates.length - 1),
+                          time: clamp(state.hour[1], 0, room.hours.times.length - 1)};
+    }
+    this.lightIsOld = true;
+    this.setExposure(clamp(state.ev, -12, 14));
+    this.panel.show();
+    this.wake();
+  }
+
+  async share() {
+    history.replaceState(null, '', `#${this.state}`);
+    try {
+      await navigator.clipboard.writeText(location.href);
+      tell('The link to this view and light is copied.');
+    } catch {
+      tell('The address of the page is now the link to this view and light.');
+    }
+  }
+}
+
+const page = new Page();
+page.open().catch((error) => {
+  const loading = document.getElementById('loading');
+  if (loading) loading.textContent = `${error.message} Try another browser, or another machine.`;
+  else throw error;
+});

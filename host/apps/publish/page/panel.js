@@ -1,0 +1,180 @@
+// The controls.
+
+const element = (name, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+};
+const find = (selector) => document.querySelector(selector);
+
+/// A dot's colour: that of the light, as bright as can be.
+function cssColour(light) {
+  const most = Math.max(...light, 1e-9);
+  const encode = (part) => Math.round(255 * (part / most) ** (1 / 2.2));
+  return `rgb(${light.map(encode).join(' ')})`;
+}
+
+class Panel {
+  ///   changed(what)   'light', 'view' or 'hour'
+  constructor(lights, changed) {
+    this.lights = lights;
+    this.changed = changed;
+    this.rows = [];
+    this.makeLights();
+    this.makePresets();
+    this.makeHours();
+    const fold = find('#fold');
+    fold.addEventListener('click', () => this.unfold(fold.getAttribute('aria-expanded') !== 'true'));
+    if (window.innerWidth <= 640) this.unfold(false);
+  }
+
+  unfold(open) {
+    find('#fold').setAttribute('aria-expanded', open);
+    find('#controls').hidden = !open;
+  }
+
+  makeLights() {
+    const section = find('#lights');
+    if (room.patches.length > 0) section.append(this.skyRow());
+    room.lights.forEach((light, i) => {
+      if (light.patch === undefined) section.append(this.lightRow(light, i));
+    });
+    section.hidden = section.childElementCount === 0;
+  }
+
+  skyRow() {
+    const {sky} = this.lights;
+    const toggle = element('input', {type: 'checkbox', className: 'switch', checked: true});
+    toggle.setAttribute('role', 'switch');
+    toggle.setAttribute('aria-label', 'Daylight on');
+    const row = element('div', {className: 'light'}, element('div', {className: 'name'},
+                        element('label', {textContent: 'Daylight'}), toggle));
+    toggle.addEventListener('input', () => {
+      sky.on = toggle.checked;
+      this.changed('light');
+    });
+    this.skyToggle = toggle;
+    return row;
+  }
+
+  lightRow(light, i) {
+    const name = light.name.replaceAll('_', ' ');
+    const slider = element('input', {type: 'range', min: 0, max: 1, step: 0.005, id: `light${i}`});
+    const power = element('output');
+    const toggle = element('input', {type: 'checkbox', className: 'switch'});
+    toggle.setAttribute('role', 'switch');
+    toggle.setAttribute('aria-label', `${name} on`);
+    const dot = element('span', {className: 'dot'});
+    const more = element('button', {type: 'button', className: 'more', title: 'Colour temperature'}, dot);
+    more.setAttribute('aria-label', `Colour temperature of ${name}`);
+    more.setAttribute('aria-expanded', false);
+    const colour = element('input', {type: 'range', min: kelvins.low, max: kelvins.high, step: kelvins.step});
+    colour.setAttribute('aria-label', `Colour temperature of ${name}, kelvin`);
+    const kelvin = element('output');
+    const colourRow = element('div', {className: 'colour', hidden: true}, colour, kelvin);
+    const label = element('label', {textContent: name, htmlFor: slider.id, title: name});
+    const row = element('div', {className: 'light'},
+                        element('div', {className: 'name'}, more, label, power, toggle), slider, colourRow);
+    const full = light.power > 0 ? light.power : 1000;
+    // A light without red or blue cannot have every temperature.
+    more.disabled = light.color.some((part) => part < 0.02);
+    const state = () => this.lights.states[i];
+    slider.addEventListener('input', () => {
+      state().power = powerOfSlider(Number(slider.value), full);
+      state().on = state().power > 0;
+      this.changed('light');
+      show();
+    });
+    toggle.addEventListener('input', () => {
+      state().on = toggle.checked;
+      if (state().on && state().power === 0) state().power = full;
+      this.changed('light');
+      show();
+    });
+    more.addEventListener('click', () => {
+      colourRow.hidden = !colourRow.hidden;
+      more.setAttribute('aria-expanded', !colourRow.hidden);
+    });
+    colour.addEventListener('input', () => {
+      this.lights.setKelvin(i, Number(colour.value));
+      this.changed('light');
+      show();
+    });
+    colour.addEventListener('dblclick', () => {
+      this.lights.setKelvin(i, 0);
+      this.changed('light');
+      show();
+    });
+    const show = () => {
+      const {on, power: now, kelvin: temperature, tint} = state();
+      slider.value = on ? sliderOfPower(now, full) : 0;
+      slider.setAttribute('aria-valuetext', `${shortNumber(on ? now : 0)} ${light.unit}`);
+      power.textContent = on ? `${shortNumber(now)} ${light.unit}` : 'off';
+      toggle.checked = on;
+      row.classList.toggle('off', !on);
+      colour.value = temperature || 4000;
+      kelvin.textContent = temperature ? `${temperature} K` : 'as made';
+      dot.style.setProperty('--light', cssColour(tint.map((part, c) => part * light.color[c])));
+    };
+    this.rows.push(show);
+    show();
+    return row;
+  }
+
+  makePresets() {
+    const section = find('#presets');
+    for (const preset of room.presets) {
+      const button = element('button', {type: 'button', textContent: preset.name});
+      button.addEventListener('click', () => {
+        this.lights.apply(preset);
+        this.show();
+        this.changed('preset');
+      });
+      section.append(button);
+    }
+    section.hidden = room.presets.length < 2;
+  }
+
+  makeHours() {
+    if (!room.hours) return;
+    const section = find('#hours'), date = find('#date'), hour = find('#hour');
+    section.hidden = false;
+    room.hours.dates.forEach((text, i) => date.append(element('option', {value: i, textContent: text})));
+    Object.assign(hour, {min: 0, max: room.hours.times.length - 1, step: 0.25});
+    const change = () => {
+      this.lights.hour = {date: Number(date.value), time: Number(hour.value)};
+      this.showHour();
+      this.changed('hour');
+    };
+    date.addEventListener('input', change);
+    hour.addEventListener('input', change);
+  }
+
+  showHour() {
+    if (!room.hours || !this.lights.hour) return;
+    const {date, time} = this.lights.hour;
+    find('#date').value = date;
+    find('#hour').value = time;
+    const {times} = room.hours, whole = Math.floor(time);
+    const hours = times[whole] + (time - whole) * ((times[whole + 1] ?? times[whole]) - times[whole]);
+    const minutes = Math.round(hours * 60);
+    const text = `${String(Math.floor(minutes / 60)).padStart(2, '0')}:${String(minutes % 60).padStart(2, '0')}`;
+    find('#hours output[for=hour]').textContent = text;
+    find('#hour').setAttribute('aria-valuetext', text);
+  }
+
+  show() {
+    this.rows.forEach((show) => show());
+    if (this.skyToggle) this.skyToggle.checked = this.lights.sky.on;
+    this.showHour();
+  }
+}
+
+let messageTimer = 0;
+function tell(text) {
+  const message = find('#message');
+  message.textContent = text;
+  message.classList.add('shown');
+  clearTimeout(messageTimer);
+  messageTimer = setTimeout(() => message.classList.remove('shown'), 3500);
+}

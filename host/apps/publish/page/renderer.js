@@ -1,0 +1,493 @@
+// Draws the room by WebGL 2.
+
+/// Layers that every WebGL 2 has in an array of textures.
+const mostLayers = 256;
+const probeSide = 128;
+
+class Renderer {
+  constructor(canvas) {
+    this.canvas = canvas;
+    const gl = canvas.getContext('webgl2', {antialias: true, alpha: false,
+                                            powerPreference: 'high-performance'});
+    if (!gl) throw new Error('This browser offers no WebGL 2.');
+    if (!gl.getExtension('EXT_color_buffer_float') &&
+        !gl.getExtension('EXT_color_buffer_half_float')) {
+      throw new Error('This graphics processor cannot draw into half floats.');
+    }
+    this.gl = gl;
+    this.exposure = 1;
+    this.mode = 0;
+    this.scale = [Math.log2(1), Math.log2(1000)];
+    this.unit = 1;  // radiance of white when the page was opened
+    this.drawCalls = 0;
+  }
+
+  async load(archive) {
+    const gl = this.gl;
+    this.roomProgram = this.program(shaderRoom);
+    this.skyProgram = this.program(shaderSky);
+    this.mixProgram = this.program(shaderMix);
+    this.emptyVertices = gl.createVertexArray();
+    this.noProbe = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, this.noProbe);
+    for (let face = 0; face < 6; ++face) {
+      gl.texImage2D(gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, 0, gl.RGBA8, 1, 1, 0, gl.RGBA,
+                    gl.UNSIGNED_BYTE, new Uint8Array(4));
+    }
+    await this.loadMesh(archive);
+    await this.loadTextures(archive);
+    await this.loadLightMaps(archive);
+    await this.loadSky(archive);
+    this.palette = this.texture(room.palette.length, 1, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE,
+                                Uint8Array.from(room.palette.flatMap((c) => [...c, 255])),
+                                gl.LINEAR);
+    if (room.parts.some((part) => part.interaction > 0) ||
+        room.materials.some((material) => material.specular.some((part) => part > 0))) {
+      this.makeProbe();
+    }
+  }
+
+  program({vertex, fragment}) {
+    const gl = this.gl;
+    const program = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+    }
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+      throw new Error(gl.getProgramInfoLog(program) ||
+                      gl.getAttachedShaders(program).map((s) => gl.getShaderInfoLog(s)).join('\n'));
+    }
+    const uniforms = {};
+    const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
+    for (let i = 0; i < count; ++i) {
+      const {name} = gl.getActiveUniform(program, i);
+      uniforms[name.replace('[0]', '')] = gl.getUniformLocation(program, name);
+    }
+    return {program, uniforms};
+  }
+
+  texture(width, height, format, layout, type, texels, filter, wrap = this.gl.CLAMP_TO_EDGE) {
+    const gl = this.gl;
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, layout, type, texels);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, wrap);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, wrap);
+    return texture;
+  }
+
+  floatTexture(width, height, numbers) {
+    const gl = this.gl;
+    return this.texture(width, height, gl.RGBA32F, gl.RGBA, gl.FLOAT, numbers, gl.NEAREST);
+  }
+
+  async loadMesh(archive) {
+    const gl = this.gl;
+    const axes = await Promise.all(['x', 'y', 'z'].map((name) => archive.array(name)));
+    const count = axes[0].length;
+    this.positions = new Float32Array(3 * count);
+    axes.forEach((axis, i) => axis.forEach((value, v) => { this.positions[3 * v + i] = value; }));
+    this.indices = await archive.array('indices');
+    this.lightUvs = await archive.array('light_uv');
+    const attributes = [
+      [this.positions, 3, gl.FLOAT, false],
+      [new Int16Array((await archive.array('normals')).buffer), 4, gl.SHORT, true],
+      [archive.has('uv') ? await archive.array('uv') : new Float32Array(2 * count), 2, gl.FLOAT,
+       false],
+      [this.lightUvs, 2, gl.UNSIGNED_SHORT, true],
+      [await archive.array('kinds'), 2, gl.UNSIGNED_SHORT, null],
+    ];
+    this.vertices = gl.createVertexArray();
+    gl.bindVertexArray(this.vertices);
+    attributes.forEach(([array, size, type, normal], location) => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, array, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(location);
+      if (normal === null) gl.vertexAttribIPointer(location, size, type, 0, 0);
+      else gl.vertexAttribPointer(location, size, type, normal, 0, 0);
+    });
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.indices, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    this.materials = this.floatTexture(3, room.materials.length, Float32Array.from(
+        room.materials.flatMap((m) => [...m.diffuse, m.alpha, ...m.specular, m.roughness, m.f90, 0,
+                                       0, 0])));
+  }
+
+  async loadTextures(archive) {
+    const gl = this.gl;
+    this.textures = [];
+    for (const [i, {width, height}] of room.textures.entries()) {
+      const texels = await archive.array(`texture${i}`, width);
+      const texture = this.texture(width, height, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE,
+                                   texels, gl.LINEAR, gl.REPEAT);
+      gl.generateMipmap(gl.TEXTURE_2D);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+      const sharp = gl.getExtension('EXT_texture_filter_anisotropic');
+      if (sharp) gl.texParameteri(gl.TEXTURE_2D, sharp.TEXTURE_MAX_ANISOTROPY_EXT, 8);
+      this.textures.push(texture);
+    }
+    this.white = this.texture(1, 1, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE,
+                              new Uint8Array([255, 255, 255, 255]), gl.NEAREST);
+  }
+
+  async loadLightMaps(archive) {
+    const gl = this.gl;
+    const {width, height} = room.atlas;
+    this.layers = [];  // texels of each light, which lux are read from
+    this.maps = [];    // arrays of textures
+    for (let first = 0; first < room.lights.length; first += mostLayers) {
+      const count = Math.min(mostLayers, room.lights.length - first);
+      const texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGB9_E5, width, height, count);
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+      for (let layer = 0; layer < count; ++layer) {
+        const texels = await archive.array(`light${first + layer}`, width);
+        this.layers.push(texels);
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+        gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, layer, width, height, 1, gl.RGB,
+                         gl.UNSIGNED_INT_5_9_9_9_REV, texels);
+      }
+      this.maps.push({texture, first, count});
+    }
+    this.light = this.texture(width, height, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, null, gl.LINEAR);
+    this.lightTarget = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.lightTarget);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.light, 0);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    this.weights = gl.createTexture();
+    this.emitters = gl.createTexture();
+  }
+
+  /// Patches of the sky have a texel each degree; a picture of surroundings is a texture.
+  async loadSky(archive) {
+    const gl = this.gl;
+    this.patchSide = [360, 180];
+    this.patchOf = null;
+    if (room.patches.length > 0) {
+      const [columns, rows] = this.patchSide;
+      this.patchOf = new Int32Array(columns * rows).fill(-1);
+      const turn = 2 * Math.PI;
+      room.patches.forEach(({bounds: [from, to, low, high]}, patch) => {
+        for (let row = 0; row < rows; ++row) {
+          const sine = Math.cos((row + 0.5) / rows * Math.PI);
+          if (sine < low || sine > high) continue;
+          for (let column = 0; column < columns; ++column) {
+            const azimuth = (column + 0.5) / columns * turn - Math.PI;  // from -z
+            const offset = (((azimuth - from) % turn) + turn) % turn;
+            if (offset <= to - from) this.patchOf[row * columns + column] = patch;
+          }
+        }
+      });
+    }
+    this.patches = this.floatTexture(1, 1, new Float32Array(4));
+    this.environment = this.white;
+    if (room.environment) {
+      const {width, height} = room.environment;
+      const texels = await archive.array('environment', width);
+      this.environment = this.texture(width, height, gl.RGB9_E5, gl.RGB,
+                                      gl.UNSIGNED_INT_5_9_9_9_REV, texels, gl.LINEAR);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.REPEAT);
+    }
+  }
+
+  /// Mixes the light maps.
+  ///   weights   of each light: what its light at power 1 is multiplied by, linear RGB
+  mix(weights) {
+    const gl = this.gl;
+    this.lit = weights;
+    const shining = weights.map((_, i) => i).filter((i) => weights[i].some((part) => part > 0));
+    const rows = shining.flatMap((i) => [
+      ...scaled(weights[i], room.lights[i].brightest / this.unit), i % mostLayers]);
+    gl.bindTexture(gl.TEXTURE_2D, this.weights);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, Math.max(1, shining.length), 1, 0, gl.RGBA,
+                  gl.FLOAT, Float32Array.from(rows.length ? rows : [0, 0, 0, 0]));
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.lightTarget);
+    gl.viewport(0, 0, room.atlas.width, room.atlas.height);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.CULL_FACE);
+    gl.clearColor(0, 0, 0, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE);
+    const {program, uniforms} = this.mixProgram;
+    gl.useProgram(program);
+    gl.bindVertexArray(this.emptyVertices);
+    this.bind(0, gl.TEXTURE_2D, this.weights, uniforms.uWeights);
+    for (const {texture, first, count} of this.maps) {
+      const from = shining.findIndex((i) => i >= first);
+      const of = shining.filter((i) => i >= first && i < first + count).length;
+      if (of === 0) continue;
+      this.bind(1, gl.TEXTURE_2D_ARRAY, texture, uniforms.uMaps);
+      gl.uniform1i(uniforms.uFirst, from);
+      gl.uniform1i(uniforms.uCount, of);
+      gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+    gl.disable(gl.BLEND);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+
+    const emitted = [0, 0, 0, 0];
+    for (const {layer, radiance} of room.emitters) {
+      emitted.push(...radiance.map((part, c) => part * weights[layer][c] / this.unit), 0);
+    }
+    gl.bindTexture(gl.TEXTURE_2D, this.emitters);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, emitted.length / 4, 1, 0, gl.RGBA, gl.FLOAT,
+                  Float32Array.from(emitted));
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    }
+    this.mixSky(weights);
+    this.probeIsOld = true;
+  }
+
+  mixSky(weights) {
+    const gl = this.gl;
+    const of = ({layer, radiance}) => radiance.map((part, c) => part * weights[layer][c] / this.unit);
+    this.sunLights = room.suns.slice(0, 4).map(of);
+    this.environmentLight = room.environment
+        ? scaled(weights[room.environment.layer], room.environment.brightest / this.unit)
+        : [0, 0, 0];
+    if (!this.patchOf) return;
+    const light = room.patches.map(of);
+    const [columns, rows] = this.patchSide;
+    const texels = new Float32Array(4 * columns * rows);
+    this.patchOf.forEach((patch, i) => {
+      if (patch >= 0) texels.set(light[patch], 4 * i);
+    });
+    gl.bindTexture(gl.TEXTURE_2D, this.patches);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, columns, rows, 0, gl.RGBA, gl.FLOAT, texels);
+  }
+
+  bind(unit, target, texture, location) {
+    const gl = this.gl;
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(target, texture);
+    gl.uniform1i(location, unit);
+  }
+
+  setDisplay(uniforms, mode) {
+    const gl = this.gl;
+    gl.uniform1i(uniforms.uMode, mode);
+    gl.uniform1f(uniforms.uExposure, this.exposure);
+    gl.uniform2f(uniforms.uScale, ...this.scale);
+    gl.uniform1f(uniforms.uLux, room.lux * this.unit);
+    this.bind(7, gl.TEXTURE_2D, this.palette, uniforms.uPalette);
+  }
+
+  /// Draws into what is bound.
+  ///   camera   {eye, right, up, forward, projection}
+  drawView({eye, right, up, forward, projection}, mode) {
+    const gl = this.gl;
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthMask(true);
+    gl.clearColor(0, 0, 0, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const back = scaled(forward, -1);
+    const room_ = this.roomProgram;
+    gl.useProgram(room_.program);
+    const u = room_.uniforms;
+    this.setDisplay(u, mode);
+    gl.uniformMatrix4fv(u.uCamera, false, product(projection, viewMatrix(eye, right, up, back)));
+    gl.uniform3f(u.uEye, ...eye);
+    gl.uniform3f(u.uProbe, ...(this.probePlace ?? [0, 0, 0]));
+    gl.uniform3f(u.uLow, ...room.low);
+    gl.uniform3f(u.uHigh, ...room.high);
+    gl.uniform1f(u.uProbeLevels, this.probe && !this.drawsProbe ? Math.log2(probeSide) + 1 : 0);
+    this.bind(0, gl.TEXTURE_2D, this.light, u.uLight);
+    this.bind(2, gl.TEXTURE_2D, this.materials, u.uMaterials);
+    this.bind(3, gl.TEXTURE_2D, this.emitters, u.uEmitters);
+    this.bind(4, gl.TEXTURE_CUBE_MAP, this.drawsProbe || !this.probe ? this.noProbe : this.probe,
+              u.uSurroundings);
+    gl.bindVertexArray(this.vertices);
+    const drawParts = (accepts) => {
+      for (const part of room.parts) {
+        if (!accepts(part)) continue;
+        gl.uniform1i(u.uInteraction, part.interaction);
+        gl.uniform1i(u.uTextured, part.texture === null ? 0 : part.emits ? 2 : 1);
+        this.bind(1, gl.TEXTURE_2D, part.texture === null ? this.white : this.textures[part.texture],
+                  u.uTexture);
+        if (part.interaction > 0) gl.disable(gl.CULL_FACE);
+        else gl.enable(gl.CULL_FACE);
+        if (part.cutout && mode !== 1) gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
+        gl.drawElements(gl.TRIANGLES, part.count, gl.UNSIGNED_INT, 4 * part.first);
+        ++this.drawCalls;
+        gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
+      }
+    };
+    drawParts((part) => part.interaction < 2);
+    this.drawSky(right, up, forward, projection, mode);
+    if (room.parts.some((part) => part.interaction === 2)) {
+      gl.useProgram(room_.program);
+      gl.bindVertexArray(this.vertices);
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.ONE, gl.SRC_ALPHA);
+      gl.depthMask(false);
+      drawParts((part) => part.interaction === 2);
+      gl.depthMask(true);
+      gl.disable(gl.BLEND);
+    }
+    gl.bindVertexArray(null);
+  }
+
+  drawSky(right, up, forward, projection, mode) {
+    const gl = this.gl;
+    const {program, uniforms: u} = this.skyProgram;
+    gl.useProgram(program);
+    this.setDisplay(u, mode);
+    const across = scaled(right, 1 / projection[0]), high = scaled(up, 1 / projection[5]);
+    gl.uniformMatrix4fv(u.uRays, false, new Float32Array([...across, 0, ...high, 0, ...forward, 0,
+                                                          0, 0, 0, 0]));
+    this.bind(0, gl.TEXTURE_2D, this.patches, u.uPatches);
+    this.bind(1, gl.TEXTURE_2D, this.environment, u.uEnvironment);
+    gl.uniform3f(u.uEnvironmentLight, ...this.environmentLight);
+    const suns = new Float32Array(16), lights = new Float32Array(12);
+    for (let i = 0; i < 4; ++i) suns[4 * i + 3] = 2;
+    room.suns.slice(0, 4).forEach((sun, i) => {
+      suns.set([...sun.direction, sun.cosine], 4 * i);
+      lights.set(this.sunLights[i], 3 * i);
+    });
+    gl.uniform4fv(u.uSuns, suns);
+    gl.uniform3fv(u.uSunLights, lights);
+    gl.bindVertexArray(this.emptyVertices);
+    gl.disable(gl.CULL_FACE);
+    gl.depthFunc(gl.LEQUAL);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.depthFunc(gl.LESS);
+    ++this.drawCalls;
+  }
+
+  /// A cube map of the room that mirrors and gloss reflect.
+  makeProbe() {
+    const gl = this.gl;
+    this.probe = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, this.probe);
+    gl.texStorage2D(gl.TEXTURE_CUBE_MAP, Math.log2(probeSide) + 1, gl.RGBA16F, probeSide,
+                    probeSide);
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    this.probeTarget = gl.createFramebuffer();
+    this.probeDepth = gl.createRenderbuffer();
+    gl.bindRenderbuffer(gl.RENDERBUFFER, this.probeDepth);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, probeSide, probeSide);
+    this.probePlace = room.probe;
+    this.probeIsOld = true;
+  }
+
+  updateProbe() {
+    if (!this.probe || !this.probeIsOld) return;
+    const gl = this.gl;
+    this.probeIsOld = false;
+    this.drawsProbe = true;
+    const projection = perspective(Math.PI / 2, 1, 0.05, this.far);
+    // Faces of a cube map look from inside, their rows downwards.
+    const faces = [[[1, 0, 0], [0, -1, 0]], [[-1, 0, 0], [0, -1, 0]], [[0, 1, 0], [0, 0, 1]],
+                   [[0, -1, 0], [0, 0, -1]], [[0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, -1, 0]]];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.probeTarget);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER,
+                               this.probeDepth);
+    gl.viewport(0, 0, probeSide, probeSide);
+    faces.forEach(([forward, up], face) => {
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0,
+                              gl.TEXTURE_CUBE_MAP_POSITIVE_X + face, this.probe, 0);
+      this.drawView({eye: this.probePlace, right: cross(forward, up), up, forward, projection}, 1);
+    });
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.bindTexture(gl.TEXTURE_CUBE_MAP, this.probe);
+    gl.generateMipmap(gl.TEXTURE_CUBE_MAP);
+    this.drawsProbe = false;
+  }
+
+  get far() { return 4 * Math.hypot(...subtract(room.high, room.low)) + 10; }
+
+  cameraOf(walker, aspect) {
+    const forward = walker.forward, right = walker.right;
+    return {eye: walker.eye, right, up: cross(right, forward), forward,
+            projection: perspective(walker.angle, aspect, 0.03, this.far)};
+  }
+
+  /// Fits the canvas to its place on the page.
+  fit() {
+    const dense = Math.min(window.devicePixelRatio || 1, 2);
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * dense));
+    const height = Math.max(1, Math.round(this.canvas.clientHeight * dense));
+    if (this.canvas.width !== width || this.canvas.height !== height) {
+      this.canvas.width = width;
+      this.canvas.height = height;
+    }
+  }
+
+  draw(walker) {
+    const gl = this.gl;
+    this.drawCalls = 0;
+    this.updateProbe();
+    this.fit();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    this.drawView(this.cameraOf(walker, this.canvas.width / this.canvas.height), this.mode);
+  }
+
+  /// Radiance of each pixel, linear RGB, row 0 at the top, from `samples` x `samples` samples each.
+  radiance(walker, width, height, samples = 1) {
+    const gl = this.gl;
+    const [columns, rows] = [width * samples, height * samples];
+    const colour = this.texture(columns, rows, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, null,
+                                gl.NEAREST);
+    const depth = gl.createRenderbuffer();
+    gl.bindRenderbuffer(gl.RENDERBUFFER, depth);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT24, columns, rows);
+    const target = gl.createFramebuffer();
+    this.updateProbe();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, colour, 0);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
+    gl.viewport(0, 0, columns, rows);
+    this.drawView(this.cameraOf(walker, width / height), 1);
+    const texels = new Float32Array(4 * columns * rows);
+    gl.readPixels(0, 0, columns, rows, gl.RGBA, gl.FLOAT, texels);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.deleteFramebuffer(target);
+    gl.deleteRenderbuffer(depth);
+    gl.deleteTexture(colour);
+    const picture = new Float32Array(3 * width * height);
+    for (let row = 0; row < rows; ++row) {
+      const y = height - 1 - Math.floor(row / samples);
+      for (let column = 0; column < columns; ++column) {
+        const at = 3 * (y * width + Math.floor(column / samples));
+        for (let c = 0; c < 3; ++c) {
+          picture[at + c] += texels[4 * (row * columns + column) + c] * this.unit / samples ** 2;
+        }
+      }
+    }
+    return picture;
+  }
+
+  /// Light of each lamp, linear RGB at its power, at a place of the light maps.
+  lightAt(lightUv) {
+    const {width, height} = room.atlas;
+    const x = lightUv[0] * width - 0.5, y = lightUv[1] * height - 0.5;
+    const column = clamp(Math.floor(x), 0, width - 2), row = clamp(Math.floor(y), 0, height - 2);
+    const fx = x - column, fy = y - row;
+    const corners = [[0, (1 - fx) * (1 - fy)], [1, fx * (1 - fy)], [width, (1 - fx) * fy],
+                     [width + 1, fx * fy]];
+    const colour = [0, 0, 0];
+    return this.layers.map((texels, layer) => {
+      const light = [0, 0, 0];
+      for (const [offset, weight] of corners) {
+        unpack(texels[row * width + column + offset], colour);
+        for (let c = 0; c < 3; ++c) light[c] += weight * colour[c];
+      }
+      return light.map((part, c) => part * room.lights[layer].brightest * this.lit[layer][c]);
+    });
+  }
+}

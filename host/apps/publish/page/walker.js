@@ -1,0 +1,203 @@
+// Where the viewer stands and looks, and how keys, mouse, fingers and gamepads move them.
+
+const walking = {speed: 1.4, fast: 2.5, radius: 0.22, step: 0.45, headroom: 0.12};
+
+class Walker {
+  constructor(surfaces) {
+    this.surfaces = surfaces;
+    this.eye = [0, 1.6, 0];
+    this.yaw = 0;    // radians from -z, clockwise as seen from above
+    this.pitch = 0;  // radians above the horizon
+    this.angle = 1;  // vertical field of view, radians
+    this.flies = false;
+    this.height = 1.6;  // of the eye above what it stands on
+    this.keys = new Set();
+    this.stick = [0, 0];  // right, forward: of the pad on the screen
+    this.speed = [0, 0, 0];
+    this.enabled = true;
+  }
+
+  get forward() {
+    return [Math.sin(this.yaw) * Math.cos(this.pitch), Math.sin(this.pitch),
+            -Math.cos(this.yaw) * Math.cos(this.pitch)];
+  }
+  get right() { return [Math.cos(this.yaw), 0, Math.sin(this.yaw)]; }
+
+  /// Stands where a camera of the scene does.
+  stand(camera) {
+    this.eye = camera.position.slice();
+    this.yaw = Math.atan2(camera.forward[0], -camera.forward[2]);
+    this.pitch = Math.asin(clamp(camera.forward[1], -1, 1));
+    this.angle = camera.angle;
+    this.speed = [0, 0, 0];
+    const ground = this.ground(this.eye);
+    this.height = ground === null ? 1.6 : clamp(this.eye[1] - ground, 0.5, 2.2);
+  }
+
+  turn(across, up) {
+    this.yaw += across;
+    this.pitch = clamp(this.pitch + up, -1.5, 1.5);
+  }
+
+  /// Height of the surface below a place, or null.
+  ground(place) {
+    const hit = this.surfaces.meet(place, [0, -1, 0]);
+    return hit ? place[1] - hit.distance : null;
+  }
+
+  /// Moves on by what is pressed. Returns whether anything has changed.
+  advance(seconds) {
+    const before = [...this.eye, this.yaw, this.pitch].join();
+    const held = (...names) => names.some((name) => this.keys.has(name));
+    const pad = [...(navigator.getGamepads?.() ?? [])].find((one) => one?.connected);
+    const axis = (i) => (pad && Math.abs(pad.axes[i] ?? 0) > 0.15 ? pad.axes[i] : 0);
+    let across = this.stick[0] + axis(0) + held('KeyD') - held('KeyA');
+    let ahead = this.stick[1] - axis(1) + held('KeyW', 'ArrowUp') - held('KeyS', 'ArrowDown');
+    const rise = held('KeyE', 'PageUp') - held('KeyQ', 'PageDown');
+    this.turn((axis(2) + held('ArrowRight') - held('ArrowLeft')) * 1.6 * seconds,
+              -axis(3) * 1.2 * seconds);
+    const length = Math.max(1, Math.hypot(across, ahead));
+    across /= length;
+    ahead /= length;
+    const pace = held('ShiftLeft', 'ShiftRight') ? walking.fast * walking.speed : walking.speed;
+    const level = normalized([Math.sin(this.yaw), 0, -Math.cos(this.yaw)]);
+    const wanted = scaled(add(scaled(this.right, across),
+                              scaled(this.flies ? this.forward : level, ahead)), pace);
+    if (this.flies) wanted[1] += rise * pace;
+    else this.height = clamp(this.height + rise * 0.6 * seconds, 0.5, 2.2);
+    const ease = 1 - Math.exp(-12 * seconds);
+    this.speed = add(this.speed, scaled(subtract(wanted, this.speed), ease));
+    if (Math.hypot(...this.speed) < 1e-3 && Math.hypot(...wanted) === 0) this.speed = [0, 0, 0];
+    this.move(scaled(this.speed, seconds), seconds);
+    return before !== [...this.eye, this.yaw, this.pitch].join();
+  }
+
+  move(offset, seconds) {
+    if (this.flies) {
+      this.eye = add(this.eye, offset);
+      return;
+    }
+    if (offset[0] !== 0 || offset[2] !== 0) {
+      const from = this.eye.slice();
+      const next = this.pushed(add(this.eye, [offset[0], 0, offset[2]]));
+      // Nobody walks off the edge of the floor, or through a wall in one long step.
+      const way = subtract(next, from), length = Math.hypot(...way);
+      const blocked = length > 0 &&
+          (this.surfaces.meet(from, scaled(way, 1 / length))?.distance ?? Infinity) < length;
+      if (!blocked && this.ground(next) !== null) this.eye = next;
+      else this.speed = [0, 0, 0];
+    }
+    const ground = this.ground(this.eye);
+    if (ground === null) return;
+    const target = ground + this.height;
+    // A table is not climbed.
+    if (target - this.eye[1] > walking.step) return;
+    this.eye[1] += (target - this.eye[1]) * (1 - Math.exp(-10 * seconds));
+    if (Math.abs(target - this.eye[1]) < 1e-4) this.eye[1] = target;
+  }
+
+  /// Away from what stands closer than a body is wide, between the knees and the top of the head.
+  pushed(place) {
+    const foot = place[1] - this.height + walking.step, top = place[1] + walking.headroom;
+    for (let round = 0; round < 3; ++round) {
+      this.surfaces.around(place[0], place[2], walking.radius, (t) => {
+        const corners = this.surfaces.corners(t);
+        const heights = corners.map((c) => c[1]);
+        const low = Math.min(...heights), high = Math.max(...heights);
+        if (high < foot || low > top) return;
+        const level = clamp((low + high) / 2, foot, top);
+        for (const y of new Set([foot, level, top])) {
+          const point = nearestPoint([place[0], y, place[2]], corners);
+          if (point[1] < foot || point[1] > top) continue;
+          const away = [place[0] - point[0], place[2] - point[2]];
+          const distance = Math.hypot(...away);
+          if (distance >= walking.radius || distance < 1e-6) continue;
+          const more = (walking.radius - distance) / distance;
+          place = [place[0] + more * away[0], place[1], place[2] + more * away[1]];
+        }
+      });
+    }
+    return place;
+  }
+}
+
+/// Keys, mouse, fingers and the pad on the screen.
+///   pointed(x, y)   a click or a tap, pixels of the page
+function listen(walker, canvas, pad, changed, pointed) {
+  const typing = (event) => event.target.matches?.('input, select, textarea, button, summary, dialog *');
+  window.addEventListener('keydown', (event) => {
+    if (typing(event) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (/^(Key[WASDQE]|Arrow|Page|Shift)/.test(event.code)) {
+      walker.keys.add(event.code);
+      if (/^(Arrow|Page)/.test(event.code)) event.preventDefault();
+      changed();
+    }
+  });
+  window.addEventListener('keyup', (event) => walker.keys.delete(event.code));
+  window.addEventListener('blur', () => walker.keys.clear());
+
+  const fingers = new Map();
+  let travelled = 0;
+  canvas.addEventListener('pointerdown', (event) => {
+    canvas.focus({preventScroll: true});
+    canvas.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, [event.clientX, event.clientY]);
+    if (fingers.size === 1) travelled = 0;
+  });
+  canvas.addEventListener('pointermove', (event) => {
+    const before = fingers.get(event.pointerId);
+    if (!before) return;
+    const moved = [event.clientX - before[0], event.clientY - before[1]];
+    fingers.set(event.pointerId, [event.clientX, event.clientY]);
+    travelled += Math.hypot(...moved);
+    if (fingers.size === 1) {
+      const radians = walker.angle / canvas.clientHeight;
+      walker.turn(-moved[0] * radians, moved[1] * radians);
+    } else {  // two fingers walk
+      const metres = 2.5 / canvas.clientHeight;
+      const level = [Math.sin(walker.yaw), 0, -Math.cos(walker.yaw)];
+      walker.move(add(scaled(walker.right, -moved[0] * metres),
+                      scaled(walker.flies ? walker.forward : level, moved[1] * metres)), 0.05);
+    }
+    changed();
+  });
+  const lift = (event) => {
+    const was = fingers.size;
+    if (!fingers.delete(event.pointerId)) return;
+    if (event.type === 'pointerup' && was === 1 && travelled < 6) {
+      pointed(event.clientX, event.clientY);
+    }
+  };
+  canvas.addEventListener('pointerup', lift);
+  canvas.addEventListener('pointercancel', lift);
+  canvas.addEventListener('wheel', (event) => {
+    event.preventDefault();
+    walker.angle = clamp(walker.angle * Math.exp(event.deltaY * 0.0008), 0.25, 1.9);
+    changed();
+  }, {passive: false});
+
+  const follow = (event) => {
+    const box = pad.getBoundingClientRect();
+    const offset = [(event.clientX - box.left) / box.width - 0.5,
+                    0.5 - (event.clientY - box.top) / box.height].map((part) => part * 2.4);
+    const length = Math.max(1, Math.hypot(...offset));
+    walker.stick = offset.map((part) => part / length);
+    pad.style.setProperty('--x', walker.stick[0]);
+    pad.style.setProperty('--y', -walker.stick[1]);
+    changed();
+  };
+  pad.addEventListener('pointerdown', (event) => {
+    pad.setPointerCapture(event.pointerId);
+    follow(event);
+  });
+  pad.addEventListener('pointermove', (event) => {
+    if (pad.hasPointerCapture(event.pointerId)) follow(event);
+  });
+  for (const type of ['pointerup', 'pointercancel']) {
+    pad.addEventListener(type, () => {
+      walker.stick = [0, 0];
+      pad.style.setProperty('--x', 0);
+      pad.style.setProperty('--y', 0);
+    });
+  }
+}

@@ -1,0 +1,473 @@
+#include "publish/published_room.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+
+#include "common/files.hpp"
+#include "loading/surroundings.hpp"
+#include "photile/limits.hpp"
+#include "photile/ray_scene.hpp"
+#include "publish/page_template.hpp"
+#include "publish/room_mesh.hpp"
+#include "publish/sections.hpp"
+#include "report/palette.hpp"
+#include "scene/light_emission.hpp"
+#include "trace/distant_light.hpp"
+#include "weather/sky_patches.hpp"
+#include "weather/weather_file.hpp"
+
+namespace photile::publish {
+namespace {
+
+using nlohmann::json;
+
+/// Steps of coded standard errors, and of coded luminances of skies, to a factor of two.
+constexpr int error_steps = 20, hour_steps = 256, hour_offset = 24;
+/// Texels on a side of a block that has one standard error.
+constexpr std::uint32_t error_block = 8;
+/// Texels on a side of a texture, at most.
+constexpr int most_texture_side = 1024;
+/// Texels of surroundings across, at most.
+constexpr int most_surroundings = 2048;
+/// Kelvin that the page offers (page/lights.js).
+constexpr int lowest_kelvin = 1500, highest_kelvin = 10'000, kelvin_step = 100;
+
+json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+/// The number of the patch that a layer is, or none; the ground has the last.
+std::vector<std::uint32_t> patch_of_layers(const LightMix& mix) {
+  std::vector<std::uint32_t> patch_of(mix.lights.size(), none);
+  const std::size_t count = loading::patches_of(mix).size();
+  for (std::size_t patch = 0; count > 0 && patch <= count; ++patch) {
+    for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+      if (mix.lights[i].name == loading::sky_light_name(patch, count)) {
+        patch_of[i] = static_cast<std::uint32_t>(patch);
+      }
+    }
+  }
+  return patch_of;
+}
+
+json kelvins() {
+  json table;
+  for (int kelvin = lowest_kelvin; kelvin <= highest_kelvin; kelvin += kelvin_step) {
+    table.push_back(numbers(scene::color_of_temperature(kelvin)));
+  }
+  return table;
+}
+
+json palette() {
+  const report::Palette turbo("turbo");
+  json table;
+  for (int i = 0; i < 256; ++i) table.push_back(turbo.at(i / 255.0));
+  return table;
+}
+
+json camera_of(const Camera& camera) {
+  return {{"name", camera.name.empty() ? "view" : camera.name},
+          {"position", numbers(camera.position)},
+          {"forward", numbers(camera.forward)},
+          {"angle", camera.vertical_field_of_view}};
+}
+
+class PageWriter {
+ public:
+  explicit PageWriter(const PublishedRoom& room) : room_(room), scene_(room.scene) {}
+
+  json document() {
+    add_lights();
+    add_errors();
+    add_mesh();
+    add_surroundings();
+    add_hours();
+    json& d = document_;
+    d["title"] = room_.title;
+    d["version"] = room_.version;
+    d["lux"] = scene_.unit == PowerUnit::lumen ? 1.0 : room_.mix.lumen_per_watt;
+    d["coding"] = {{"steps", steps_per_octave}, {"octaves", octaves}, {"chroma", chroma_steps}};
+    d["atlas"] = {{"width", room_.baked.width()}, {"height", room_.baked.height()},
+                  {"texel", room_.baked.texel()}, {"used", room_.baked.used_texels()},
+                  {"block", error_block},         {"errorSteps", error_steps}};
+    d["temperatures"] = kelvins();
+    d["palette"] = palette();
+    for (const Camera& camera : scene_.cameras) {
+      if (camera.projection == Projection::perspective) d["cameras"].push_back(camera_of(camera));
+    }
+    if (!d.contains("cameras")) d["cameras"] = {camera_of(scene_.cameras.front())};
+    d["probe"] = d["cameras"][0]["position"];
+    d["presets"] = presets();
+    d["simplified"] = simplified();
+    d["sections"] = sections_.table();
+    return std::move(document_);
+  }
+
+  const std::string& bytes() const { return sections_.bytes(); }
+
+ private:
+  void add_lights() {
+    const std::vector<std::uint32_t> patch_of = patch_of_layers(room_.mix);
+    const LightGroups groups = light_groups_of(scene_);
+    for (std::size_t i = 0; i < room_.mix.lights.size(); ++i) {
+      const MixedLight& light = room_.mix.lights[i];
+      const double brightest =
+          sections_.add_light(fmt::format("light{}", i), room_.baked.layer(i), room_.baked.width());
+      json entry{{"name", light.name},
+                 {"power", light.power},
+                 {"unit", light.unit == PowerUnit::lumen ? "lm" : "W"},
+                 {"color", numbers(light.color)},
+                 {"tint", numbers(light.tint)},
+                 {"brightest", brightest}};
+      if (patch_of[i] != none) {
+        entry["patch"] = patch_of[i];
+        entry["unitPower"] = groups.groups[i].power *
+                             (light.unit == PowerUnit::lumen ? 1 : 1 / room_.mix.lumen_per_watt);
+      }
+      document_["lights"].push_back(std::move(entry));
+    }
+    const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(scene_);
+    document_["emitters"] = json::array();
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+      document_["emitters"].push_back(
+          {{"layer", groups.group_of[i]}, {"radiance", numbers(radiance[i])}});
+    }
+  }
+
+  /// The root of the mean squared error of each block over that of its light.
+  void add_errors() {
+    const std::uint32_t width = room_.baked.width(), height = room_.baked.height();
+    const std::uint32_t columns = (width + error_block - 1) / error_block;
+    const std::uint32_t rows = (height + error_block - 1) / error_block;
+    std::vector<std::uint8_t> codes;
+    for (std::size_t layer = 0; layer < room_.mix.lights.size(); ++layer) {
+      const std::vector<glm::vec3> light = room_.baked.layer(layer);
+      const std::vector<float> errors =
+          room_.node_errors ? room_.baked.errors(layer, *room_.node_errors) : std::vector<float>();
+      std::vector<double> squares(std::size_t{columns} * rows), whole(squares.size());
+      for (std::size_t i = 0; i < light.size(); ++i) {
+        const std::size_t block = i / width / error_block * columns + i % width / error_block;
+        const double value = luminance(glm::dvec3(light[i]));
+        const double error = errors.empty() ? room_.relative_error * value : double{errors[i]};
+        squares[block] += error * error;
+        whole[block] += value * value;
+      }
+      for (std::size_t block = 0; block < squares.size(); ++block) {
+        const double relative = whole[block] > 0 ? std::sqrt(squares[block] / whole[block]) : 0;
+        const double code = relative > 0 ? 255 + std::round(error_steps * std::log2(relative)) : 0;
+        codes.push_back(static_cast<std::uint8_t>(std::clamp(code, 0.0, 255.0)));
+      }
+    }
+    sections_.add_bytes("errors", codes);
+  }
+
+  void add_mesh() {
+    const RoomMesh mesh = mesh_of(scene_, room_.baked);
+    std::array<std::vector<float>, 3> axes;
+    std::vector<float> uv;
+    std::vector<std::uint16_t> normals, light_uv, kinds;
+    glm::vec3 low(std::numeric_limits<float>::infinity()), high = -low;
+    for (const RoomVertex& vertex : mesh.vertices) {
+      for (int axis = 0; axis < 3; ++axis) axes[axis].push_back(vertex.position[axis]);
+      low = glm::min(low, vertex.position);
+      high = glm::max(high, vertex.position);
+      for (int axis = 0; axis < 2; ++axis) {
+        uv.push_back(vertex.uv[axis]);
+        light_uv.push_back(
+            static_cast<std::uint16_t>(std::lround(65535.0f * vertex.light_uv[axis])));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        normals.push_back(static_cast<std::uint16_t>(
+            static_cast<std::int16_t>(std::lround(32767.0f * vertex.normal[axis]))));
+      }
+      normals.push_back(0);
+      kinds.push_back(static_cast<std::uint16_t>(vertex.material));
+      kinds.push_back(static_cast<std::uint16_t>(vertex.light + 1));  // none is 0
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      sections_.add_floats(std::string(1, "xyz"[axis]), axes[axis]);
+    }
+    sections_.add_words("normals", normals);
+    sections_.add_words("light_uv", light_uv);
+    sections_.add_words("kinds", kinds);
+    if (std::any_of(uv.begin(), uv.end(), [](float place) { return place != 0; })) {
+      sections_.add_floats("uv", uv);
+    }
+    sections_.add_indices("indices", mesh.indices);
+    document_["low"] = numbers(low);
+    document_["high"] = numbers(high);
+    add_parts(mesh);
+    for (const Material& material : scene_.materials) add_material(material);
+  }
+
+  void add_parts(const RoomMesh& mesh) {
+    std::map<RoomTextures, std::size_t> number_of;
+    document_["textures"] = json::array();
+    for (const RoomPart& part : mesh.parts) {
+      json entry{{"interaction", static_cast<int>(part.interaction)},
+                 {"first", part.first},
+                 {"count", part.count},
+                 {"texture", nullptr},
+                 {"emits", part.textures.emission != none},
+                 {"cutout", part.textures.opacity != none}};
+      if (part.textures != RoomTextures{}) {
+        const auto [place, is_new] = number_of.insert({part.textures, number_of.size()});
+        if (is_new) add_texture(part.textures);
+        entry["texture"] = place->second;
+      }
+      document_["parts"].push_back(std::move(entry));
+    }
+  }
+
+  void add_texture(const RoomTextures& textures) {
+    const Texture* colour = textures.emission != none ? &scene_.textures[textures.emission]
+                            : textures.colour != none ? &scene_.textures[textures.colour]
+                                                      : nullptr;
+    const Texture* opacity =
+        textures.opacity != none ? &scene_.textures[textures.opacity] : nullptr;
+    const Texture& larger = colour ? *colour : *opacity;
+    int width = larger.width(), height = larger.height(), step = 1;
+    while (std::max(width, height) / step > most_texture_side) step *= 2;
+    width = std::max(1, width / step);
+    height = std::max(1, height / step);
+    std::vector<std::uint8_t> texels;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        glm::vec4 sum(0.0f);
+        for (int i = 0; i < step * step; ++i) {
+          const glm::vec2 place(static_cast<float>(x * step + i % step) + 0.5f,
+                                static_cast<float>(y * step + i / step) + 0.5f);
+          const glm::vec2 uv = place / glm::vec2(width * step, height * step);
+          glm::vec4 texel(1.0f);
+          if (colour) texel = glm::vec4(glm::vec3(colour->sample_data(uv)), 1.0f);
+          if (opacity) texel.a = opacity->sample_data(uv).a;
+          sum += texel;
+        }
+        for (int c = 0; c < 4; ++c) {
+          texels.push_back(static_cast<std::uint8_t>(
+              std::lround(255.0f * sum[c] / static_cast<float>(step * step))));
+        }
+      }
+    }
+    json& list = document_["textures"];
+    sections_.add_texture(fmt::format("texture{}", list.size()), texels,
+                          static_cast<std::size_t>(width));
+    list.push_back({{"width", width}, {"height", height}});
+  }
+
+  void add_material(const Material& material) {
+    glm::vec3 diffuse = material.diffuse;
+    if (material.interaction == Interaction::glass) diffuse = material.transmission;
+    double alpha = 0;
+    if (material.has_holes()) {
+      alpha = material.opacity_cutoff > 0
+                  ? material.opacity_cutoff / std::max(material.opacity, 1e-6f)
+                  : -material.opacity;
+    }
+    document_["materials"].push_back({{"diffuse", numbers(diffuse)},
+                                      {"alpha", alpha},
+                                      {"specular", numbers(material.specular)},
+                                      {"roughness", material.roughness},
+                                      {"f90", material.f90}});
+  }
+
+  void add_surroundings() {
+    document_["suns"] = json::array();
+    document_["patches"] = json::array();
+    document_["environment"] = nullptr;
+    const LightGroups groups = light_groups_of(scene_);
+    for (const trace::DistantLight& distant : trace::DistantLights(scene_)) {
+      const Light& light = distant.lamp();
+      const std::uint32_t layer = groups.group_of[distant.light()];
+      if (light.is_sky_patch()) {
+        const glm::vec4& bounds = light.sky_patch;
+        const glm::dvec3 middle =
+            weather::direction_of((bounds.x + bounds.y) / 2,
+                                  std::asin(glm::clamp((bounds.z + bounds.w) / 2, -1.0f, 1.0f)));
+        document_["patches"].push_back(
+            {{"layer", layer},
+             {"bounds", {bounds.x, bounds.y, bounds.z, bounds.w}},
+             {"radiance", numbers(distant.radiance(glm::vec3(middle)))}});
+      } else if (light.kind == LightKind::directional) {
+        const glm::vec3 direction = -light.direction;
+        document_["suns"].push_back({{"layer", layer},
+                                     {"direction", numbers(direction)},
+                                     {"cosine", std::cos(light.angular_diameter / 2)},
+                                     {"radiance", numbers(distant.radiance(direction))}});
+      } else if (document_["environment"].is_null()) {
+        add_environment(distant, layer);
+      }
+    }
+  }
+
+  /// As the page looks it up: azimuths from south by west, north in the middle, rows from the
+  /// zenith.
+  void add_environment(const trace::DistantLight& distant, std::uint32_t layer) {
+    const EnvironmentMap& map = scene_.environments[distant.lamp().environment];
+    const int width = std::clamp(map.width(), 4, most_surroundings), height = width / 2;
+    std::vector<glm::vec3> texels;
+    for (int y = 0; y < height; ++y) {
+      const double elevation = std::numbers::pi * (0.5 - (y + 0.5) / height);
+      for (int x = 0; x < width; ++x) {
+        const double azimuth = 2 * std::numbers::pi * ((x + 0.5) / width - 0.5);
+        texels.push_back(distant.radiance(glm::vec3(weather::direction_of(azimuth, elevation))));
+      }
+    }
+    const double brightest =
+        sections_.add_light("environment", texels, static_cast<std::size_t>(width));
+    document_["environment"] = {
+        {"layer", layer}, {"width", width}, {"height", height}, {"brightest", brightest}};
+  }
+
+  void add_hours() {
+    const SkyHours& hours = room_.hours;
+    document_["hours"] = nullptr;
+    if (hours.luminances.empty()) return;
+    std::vector<std::uint16_t> codes;
+    for (const double value : hours.luminances) {
+      const double code = value > 0 ? std::round(hour_steps * (std::log2(value) + hour_offset)) : 0;
+      codes.push_back(static_cast<std::uint16_t>(std::clamp(code, 0.0, 65535.0)));
+    }
+    sections_.add_words("hours", codes);
+    document_["hours"] = {{"dates", hours.dates},         {"times", hours.times},
+                          {"lights", hours.lights},       {"steps", hour_steps},
+                          {"offset", hour_offset},        {"startDate", hours.start_date},
+                          {"startTime", hours.start_time}};
+  }
+
+  json presets() const {
+    json list = json::array();
+    for (const Preset& preset : room_.presets) {
+      json lights = json::array();
+      for (std::size_t i = 0; i < preset.mix.lights.size(); ++i) {
+        const MixedLight& light = preset.mix.lights[i];
+        lights.push_back(
+            {{"light", i}, {"power", light.power}, {"tint", numbers(light.tint)}, {"kelvin", 0}});
+      }
+      list.push_back({{"name", preset.name}, {"lights", lights}});
+    }
+    return list;
+  }
+
+  /// What the page shows otherwise than a picture would.
+  std::vector<std::string> simplified() const {
+    std::vector<std::string> list{"light on matt surfaces is exact as the light maps have it"};
+    const auto some = [&](const auto& accepts) {
+      return std::any_of(scene_.materials.begin(), scene_.materials.end(), accepts);
+    };
+    if (some(
+            [](const Material& m) { return m.interaction == Interaction::mirror || m.glossy(); })) {
+      list.emplace_back("mirrors and gloss reflect the room as seen from one place");
+    }
+    if (some([](const Material& m) { return m.interaction == Interaction::glass; })) {
+      list.emplace_back(
+          "glass is clear and bends no light, but what it casts is in the light maps");
+    }
+    if (some([](const Material& m) { return m.normal_texture != none; })) {
+      list.emplace_back("bumps of normal maps are left out");
+    }
+    if (some([](const Material& m) { return m.metallic_roughness != none; })) {
+      list.emplace_back("gloss and metal do not follow textures");
+    }
+    return list;
+  }
+
+  const PublishedRoom& room_;
+  const Scene& scene_;
+  json document_;
+  Sections sections_;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '<')
+      result += "&lt;";
+    else if (c == '&')
+      result += "&amp;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
+  }
+  return result;
+}
+
+/// JSON that no HTML ends.
+std::string inline_json(const json& document) {
+  std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string result;
+  for (const char c : text) {
+    if (c == '<')
+      result += "\\u003c";
+    else
+      result += c;
+  }
+  return result;
+}
+
+}  // namespace
+
+SkyHours sky_hours(const LightMix& mix, const SkySituation& situation) {
+  SkyHours hours;
+  const std::vector<weather::SkyPatch> patches = loading::patches_of(mix);
+  std::optional<weather::WeatherYear> year;
+  if (!situation.weather.empty()) year = weather::read_weather(situation.weather);
+  const std::optional<Site> site = situation.site ? situation.site
+                                   : year         ? std::optional(year->site)
+                                                  : std::nullopt;
+  if (patches.empty() || !site) return hours;
+  constexpr std::array months{"January",   "February", "March",    "April",
+                              "May",       "June",     "July",     "August",
+                              "September", "October",  "November", "December"};
+  hours.lights = patches.size() + 1;
+  for (int half = 0; half < 48; ++half) hours.times.push_back(half / 2.0);
+  LocalTime time;
+  if (situation.time) time.year = situation.time->year;
+  for (int month = 1; month <= 12; ++month) {
+    hours.dates.push_back(fmt::format("21 {}", months[month - 1]));
+    for (const double hour : hours.times) {
+      time.month = month;
+      time.day = 21;
+      time.hour = hour;
+      const weather::SunPosition sun = weather::sun_position(*site, time);
+      const int day = weather::day_of_year(time);
+      const weather::SkyIrradiance irradiance =
+          year ? weather::hour_at(*year, time).irradiance : weather::clear_sky(sun.elevation, day);
+      const auto found = weather::sky_luminances(patches, sun, irradiance, day);
+      hours.luminances.insert(hours.luminances.end(), found.begin(), found.end());
+    }
+  }
+  hours.start_date = situation.time ? static_cast<std::size_t>(situation.time->month - 1) : 5;
+  hours.start_time = situation.time ? std::min(2 * situation.time->hour, 47.0) : 24;
+  return hours;
+}
+
+void write_page(const std::filesystem::path& file, const PublishedRoom& room) {
+  PageWriter writer(room);
+  const std::string document = inline_json(writer.document());
+  std::map<std::string_view, std::string> parts;
+  parts["@TITLE@"] = escaped(room.title);
+  parts["@ROOM@"] = document;
+  parts["@DATA@"] = base64(writer.bytes());
+  OutputFile output(file);
+  std::string_view rest = page_template();
+  while (!rest.empty()) {
+    std::size_t next = rest.size();
+    std::string_view found;
+    for (const auto& [name, text] : parts) {
+      const std::size_t place = rest.find(name);
+      if (place < next) next = place, found = name;
+    }
+    output.write(rest.data(), next);
+    rest.remove_prefix(next + found.size());
+    if (!found.empty()) output.write(parts[found].data(), parts[found].size());
+  }
+  output.commit();
+}
+
+}  // namespace photile::publish

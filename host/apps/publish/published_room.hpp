@@ -1,0 +1,52 @@
+// A room as a page that shows it, in one file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/baked_light.hpp"
+#include "photile/estimator.hpp"
+#include "photile/layered_picture.hpp"
+#include "photile/light_options.hpp"
+#include "photile/scene.hpp"
+
+namespace photile::publish {
+
+/// Light settings by a name that people choose from.
+struct Preset {
+  std::string name;
+  LightMix mix;
+};
+
+/// The luminances of a sky in patches over the hours of some days.
+struct SkyHours {
+  std::vector<std::string> dates;
+  std::vector<double> times;       ///< hours from midnight, of each date
+  std::vector<double> luminances;  ///< cd/m2: [date][time][patch], the ground last
+  std::size_t lights = 0;          ///< patches, and the ground
+  std::size_t start_date = 0;      ///< that the page opens with ...
+  double start_time = 0;           ///< ... and the place in `times`
+};
+
+/// The 21st of each month, each half hour, for the patches of the mix; empty where it has none, or
+/// where no place is known. The sky is clear, or that of the weather file's hours.
+/// Errors: those of read_weather.
+SkyHours sky_hours(const LightMix& mix, const SkySituation& situation);
+
+struct PublishedRoom {
+  const Scene& scene;
+  const bake::BakedLight& baked;
+  const LightMix& mix;           ///< as the page opens
+  const Estimates* node_errors;  ///< as GatheredNodes::errors; null where photons value nodes ...
+  double relative_error = 0;     ///< ... which all err by this part
+  std::vector<Preset> presets;
+  SkyHours hours;
+  std::string title;
+  std::string version;
+};
+
+/// Writes the page. It asks for nothing from anywhere. Errors: OutputError.
+void write_page(const std::filesystem::path& file, const PublishedRoom& room);
+
+}  // namespace photile::publish

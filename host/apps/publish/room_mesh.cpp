@@ -1,0 +1,96 @@
+#include "publish/room_mesh.hpp"
+
+#include <tsl/robin_map.h>
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <utility>
+
+#include "trace/surface.hpp"
+
+namespace photile::publish {
+namespace {
+
+struct VertexHash {
+  std::size_t operator()(const RoomVertex& vertex) const {
+    std::uint64_t hash = vertex.material;
+    const auto mix = [&](std::uint32_t bits) {
+      hash = (hash ^ bits) * 0x9E3779B97F4A7C15ull;
+      hash ^= hash >> 29;
+    };
+    for (int i = 0; i < 3; ++i) {
+      mix(std::bit_cast<std::uint32_t>(vertex.position[i]));
+      mix(std::bit_cast<std::uint32_t>(vertex.normal[i]));
+    }
+    for (int i = 0; i < 2; ++i) {
+      mix(std::bit_cast<std::uint32_t>(vertex.uv[i]));
+      mix(std::bit_cast<std::uint32_t>(vertex.light_uv[i]));
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+/// The light that shines from a side, or none.
+std::uint32_t light_of(const Scene& scene, std::uint32_t side) {
+  const std::uint32_t triangle = triangle_of(side), light = scene.triangle_light[triangle];
+  const bool shines = light != none && (side_of(side) == scene.front_side[triangle] ||
+                                        scene.lights[light].two_sided);
+  return shines ? light : none;
+}
+
+RoomTextures textures_of(const Scene& scene, const Material& material, std::uint32_t light) {
+  RoomTextures textures;
+  if (!scene.corner_uv.empty()) {
+    textures.colour = material.diffuse_texture;
+    textures.opacity = material.opacity_texture;
+  }
+  const bool picture = light != none && scene.lights[light].emission_texture != none;
+  // One set of coordinates: a luminous picture has no other.
+  if (picture) textures = {none, none, scene.lights[light].emission_texture};
+  return textures;
+}
+
+}  // namespace
+
+RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked) {
+  std::map<std::pair<Interaction, RoomTextures>, std::vector<std::uint32_t>> sides;
+  for (const std::uint32_t side : baked.sides()) {
+    const Material& material = scene.materials[scene.triangle_material[triangle_of(side)]];
+    sides[{material.interaction, textures_of(scene, material, light_of(scene, side))}].push_back(
+        side);
+  }
+  RoomMesh mesh;
+  tsl::robin_map<RoomVertex, std::uint32_t, VertexHash> number_of;
+  for (const auto& [key, members] : sides) {
+    const auto& [interaction, textures] = key;
+    RoomPart part{interaction, textures, static_cast<std::uint32_t>(mesh.indices.size()), 0};
+    const bool coordinates = textures != RoomTextures{};
+    for (const std::uint32_t side : members) {
+      const std::uint32_t triangle = triangle_of(side);
+      const auto positions = scene.corners(triangle);
+      const auto light_uv = baked.corners(side);
+      for (const std::size_t corner : {0u, 1 + side_of(side), 2 - side_of(side)}) {
+        RoomVertex vertex;
+        vertex.position = positions[corner];
+        vertex.normal = trace::shading_normal(scene, side, positions[corner]);
+        if (coordinates) {
+          vertex.uv = (textures.emission != none ? scene.corner_emission_uv
+                                                 : scene.corner_uv)[triangle][corner];
+        }
+        vertex.light_uv = light_uv[corner];
+        vertex.material = scene.triangle_material[triangle];
+        vertex.light = light_of(scene, side);
+        const auto [entry, is_new] =
+            number_of.insert({vertex, static_cast<std::uint32_t>(mesh.vertices.size())});
+        if (is_new) mesh.vertices.push_back(vertex);
+        mesh.indices.push_back(entry->second);
+      }
+    }
+    part.count = static_cast<std::uint32_t>(mesh.indices.size()) - part.first;
+    mesh.parts.push_back(part);
+  }
+  return mesh;
+}
+
+}  // namespace photile::publish
