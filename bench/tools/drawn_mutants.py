@@ -2,7 +2,7 @@
 """Faults drawn at random from the code, rather than chosen: which share of them the tests notice.
 
     bench/tools/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--quick N] [--seconds N]
-                           [--part I/N --work FOLDER] [--results FILE] [--list] [--page]
+                           [--part I/N --work FOLDER] [--results FILE] [--list] [--renew] [--page]
 
 Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
 the folders groups, surface and trace of host/renderer. Mutants of kernels are copies of the folder that
@@ -79,24 +79,21 @@ KERNEL_CASES = {
         "lanes clip discs as the oracle does",
         "lanes estimate the oracle's irradiance of several lights and of many",
         "lanes estimate the oracle's glossy radiance"),
-    "maps": ("[#grid_contents_test]~[slow]~[long]", "[#prefix_sum_test]~[slow]"),
+    "maps": ("[#grid_contents_test]~[slow]~[long]",),
     "surface": ("[#arctangent_test]", "[#logarithm_test]"),
     "render": ("maps that keep normals give the same bits within an eighth of the memory",),
     "bench": ("a search for all photons computes the distance of each once",)}
 # These cases run with a layer around OpenCL, which shows what GPUs run, and what is read or written
 # beyond a buffer.
 LAYER_CASES = (
-    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"), ("gpu", "maps", "[#prefix_sum_test]~[slow]"),
+    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"),
     ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))
 # Beyond the tests of the folder itself.
 FURTHER_TESTS = {
-    "groups": (("maps", "grid_contents"), ("estimate", "patches_vs_oracle"),
+    "groups": (("maps", "grid_contents"), ("estimate", "estimates_vs_oracle"),
                ("estimate", "neighbours_vs_oracle")),
-    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "plate_irradiance"),
-                ("estimate", "clipped_surfaces")),
-    "trace": (("reference", "form_factors"), ("reference", "path_direct_light"),
-              ("reference", "path_materials"), ("reference", "path_interreflection"),
-              ("render", "direct_rays"), ("cache", "irradiance_gather"),
+    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "clipped_discs")),
+    "trace": (("reference", "path_light"), ("render", "direct_rays"), ("cache", "irradiance_gather"),
               ("cache", "gathered_nodes"), ("measuring", "gather"),
               ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
               ("loading", "textured_lights"), ("daylight", "daylight_matrix"))}
@@ -107,8 +104,12 @@ def host_files():
             for file in sorted((ROOT / "host" / "renderer" / folder).glob("**/*.[ch]pp"))]
 
 
+def all_files():
+    return sorted(ROOT.glob("kernels/**/*.cl*")) + host_files()
+
+
 def all_sites():
-    return list(mutant_sites.sites(ROOT, sorted(ROOT.glob("kernels/**/*.cl*")) + host_files()))
+    return list(mutant_sites.sites(ROOT, all_files()))
 
 
 def wilson(killed, count):
@@ -287,17 +288,26 @@ def draw(options):
             text = (ROOT / site.file).read_text(encoding="utf-8").split("\n")[site.line]
             results[site.name] = {"line": text}
         options.results.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
-    return {name: found_again(name, result["line"]) for name, result in results.items()}
+    places = {}  # text -> (file, number from 0)
+    for file in all_files():
+        for number, text in enumerate(file.read_text(encoding="utf-8").split("\n")):
+            places.setdefault(text, []).append((str(file.relative_to(ROOT)), number))
+    return {name: found_again(name, places.get(result["line"], [])) for name, result in results.items()}
 
 
-def found_again(name, line):
-    """The site where the text of its line is now, the nearest one."""
+def found_again(name, places):
+    """The site where the text of its line is now: the nearest one in its file, or else in another file."""
     place, token = name.split(" ")[:2]
     file, number, column = place.split(":")
-    lines = (ROOT / file).read_text(encoding="utf-8").split("\n") if (ROOT / file).is_file() else []
-    nearest = min((i for i, text in enumerate(lines) if text == line),
-                  key=lambda i: abs(i + 1 - int(number)), default=None)
-    return None if nearest is None else mutant_sites.Site(file, nearest, int(column) - 1, token)
+    nearest = min(places, key=lambda at: (at[0] != file, abs(at[1] + 1 - int(number))), default=None)
+    return None if nearest is None else mutant_sites.Site(*nearest, int(column) - 1, token)
+
+
+def renew(file, drawn):
+    """Names the mutants of the results by where their lines are now, and leaves out those whose lines are gone."""
+    results = stored(file)
+    file.write_text(json.dumps({site.name: results[name] for name, site in drawn.items() if site}, indent=1) + "\n",
+                    encoding="utf-8")
 
 
 def run_all(options, drawn):
@@ -371,6 +381,7 @@ def arguments():
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/mutants")
     parser.add_argument("--seconds", type=float, default=math.inf, help="after which none is begun")
     parser.add_argument("--list", action="store_true", help="print those drawn, run none")
+    parser.add_argument("--renew", action="store_true", help="name those drawn by where their lines are now, run none")
     parser.add_argument("--page", action="store_true", help="write docs/testing.md, run none")
     parser.add_argument("--results", type=pathlib.Path, default=RESULTS)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
@@ -382,6 +393,8 @@ def main():
     drawn = draw(options)
     if options.list:
         print("\n".join(drawn))
+    elif options.renew:
+        renew(options.results, drawn)
     elif options.page:
         replace_section(ROOT / "docs/testing.md", "tools/drawn_mutants.py", page(stored(options.results)))
     else:

@@ -86,7 +86,7 @@ inline constexpr double max_sun_diameter_degrees = 90;
 
 // Pictures
 inline constexpr int max_image_side = 16'384;
-/// Of all light maps of a page together: 48 MB on the graphics processor.
+/// The most texels of all light maps of a page together: 48 MB on the graphics processor.
 inline constexpr std::uint64_t max_published_texels = 12'000'000;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
 inline constexpr int max_cube_map_side = max_image_side / 4;  ///< of a face: four of them go round

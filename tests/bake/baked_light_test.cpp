@@ -71,8 +71,7 @@ struct BakedRoom {
 
 }  // namespace
 
-TEST_CASE("Baked textures hold the irradiance of both sides at points of the surface",
-          "[baked_light]") {
+TEST_CASE("Baked textures hold the irradiance of both sides at points of the surface") {
   const Scene scene = with_one_lamp(furnished_room(2));
   FormulaSource source(gentle);
   LightMaps maps(scene, quiet_parameters());
@@ -89,7 +88,7 @@ TEST_CASE("Baked textures hold the irradiance of both sides at points of the sur
   }
 }
 
-TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it", "[baked_light]") {
+TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it") {
   SceneBuilder builder;
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
@@ -118,8 +117,7 @@ TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it"
   CHECK(beside > 20);
 }
 
-TEST_CASE("The brighter side of a triangle is baked, and the other where any light falls",
-          "[baked_light]") {
+TEST_CASE("The brighter side of a triangle is baked, and the other where any light falls") {
   const Scene scene = with_one_lamp(furnished_room(2));
   const auto sides_under = [&](const FormulaSource::Formula& light) {
     FormulaSource source(light);
@@ -134,8 +132,8 @@ TEST_CASE("The brighter side of a triangle is baked, and the other where any lig
   CHECK(sides_under(gentle).size() == 2 * std::size_t{scene.triangle_count()});
 }
 
-TEST_CASE("Texels become coarser until they fit, and those asked for are refused where they do not",
-          "[baked_light]") {
+TEST_CASE(
+    "Texels become coarser until they fit, and those asked for are refused where they do not") {
   const Scene scene = with_one_lamp(furnished_room(2));
   FormulaSource source(gentle);
   LightMaps maps(scene, quiet_parameters());
@@ -146,7 +144,7 @@ TEST_CASE("Texels become coarser until they fit, and those asked for are refused
   CHECK_THROWS_AS(BakedRoom(scene, maps, source, baking(0.001, 256)), UsageError);
 }
 
-TEST_CASE("Rectangles on an atlas do not overlap", "[baked_light]") {
+TEST_CASE("Rectangles on an atlas do not overlap") {
   std::mt19937 random(5);
   std::vector<bake::TexelRectangle> rectangles(300);
   for (auto& r : rectangles) {

@@ -129,6 +129,15 @@ class Schemata(unittest.TestCase):
                     self.assertIn(number, matters)
 
 
+class Lines(unittest.TestCase):
+    def test_a_line_is_found_again_nearest_in_its_file_and_else_in_the_one_that_it_went_to(self):
+        name = "a.cpp:3:7 + -> -"
+        again = drawn_mutants.found_again(name, [("b.cpp", 2), ("a.cpp", 9), ("a.cpp", 5)])
+        self.assertEqual(again.name, "a.cpp:6:7 + -> -")
+        self.assertEqual(drawn_mutants.found_again(name, [("b.cpp", 2)]).name, "b.cpp:3:7 + -> -")
+        self.assertIsNone(drawn_mutants.found_again(name, []))
+
+
 class Order(unittest.TestCase):
     def test_what_notices_more_in_less_time_comes_first(self):
         with tempfile.TemporaryDirectory() as name:

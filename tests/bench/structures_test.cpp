@@ -1,5 +1,4 @@
-// What structures are registered, and what those of other kinds than the grid refuse or cannot
-// lose. Their answers are compared with the oracle's in tests/estimate.
+// The structures beside the grid, and what they visit.
 #include <catch2/catch.hpp>
 
 #include "estimates_comparison.hpp"
@@ -7,10 +6,14 @@
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "structures/structure.hpp"
+#include "structures/visits.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
 namespace {
+
+// What structures are registered, and what those of other kinds than the grid refuse or cannot
+// lose. Their answers are compared with the oracle's in tests/estimate.
 
 constexpr double radius = 0.2;
 
@@ -19,8 +22,6 @@ Scene torus() {
   test::add_torus(scene, 1.0f, 0.4f, 48, 24);
   return scene;
 }
-
-}  // namespace
 
 TEST_CASE("a structure is found by its name, and an unknown name lists those there are") {
   CHECK(structures::named("uniform-grid").is_grid());
@@ -73,4 +74,25 @@ TEST_CASE("trees of maps that lie in several pages give the same bits as in one"
   }
 }
 
+// What searches of trees look at, as the benches count it.
+
+TEST_CASE("a search for all photons computes the distance of each once") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  constexpr std::size_t count = 100;
+  constexpr double radius = 2;  // metres: all of the plate
+  const Photons photons = test::uniform_photons(scene, count, 1, false);
+  const PrimaryHits hits = test::uniform_hits(scene, 10, 2, false);
+  const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
+  for (const std::string_view structure : {"kdtree-3d", "kdtree-left-balanced"}) {
+    CAPTURE(structure);
+    const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+                                              photons, groups, {radius, 4});
+    const structures::Visits visits = structures::count_visits(maps, hits, 2 * count);
+    CHECK(visits.photons == count);
+    CHECK(visits.nodes >= 1);
+  }
+}
+
+}  // namespace
 }  // namespace photile::test

@@ -24,7 +24,7 @@ glm::dvec3 point_of(const Scene& scene, const Charts::Owner& owner) {
 
 }  // namespace
 
-TEST_CASE("A wall is one chart a side, however finely it is cut", "[charts]") {
+TEST_CASE("A wall is one chart a side, however finely it is cut") {
   for (const int cells : {1, 7}) {
     const Scene box = closed_box(diffuse(glm::vec3(0.5f)), cells);
     const Charts charts(box, 0.04, 60);
@@ -35,7 +35,7 @@ TEST_CASE("A wall is one chart a side, however finely it is cut", "[charts]") {
   }
 }
 
-TEST_CASE("Tiles that touch along edges only share a chart", "[charts]") {
+TEST_CASE("Tiles that touch along edges only share a chart") {
   // A wide tile beside two narrow ones: no two share both corners of an edge.
   SceneBuilder builder;
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
@@ -47,7 +47,7 @@ TEST_CASE("Tiles that touch along edges only share a chart", "[charts]") {
   CHECK(Charts(scene, 0.04, 60).size() == 2);
 }
 
-TEST_CASE("Plates that lie on each other have charts of their own", "[charts]") {
+TEST_CASE("Plates that lie on each other have charts of their own") {
   SceneBuilder builder;
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
@@ -58,12 +58,12 @@ TEST_CASE("Plates that lie on each other have charts of their own", "[charts]") 
   CHECK(charts_of(Charts(scene, 0.04, 60)).size() == 6);
 }
 
-TEST_CASE("Mirrors and glass have no chart", "[charts]") {
+TEST_CASE("Mirrors and glass have no chart") {
   const Scene scene = plate(mirror(glm::vec3(1.0f)), 1.0f);
   CHECK(charts_of(Charts(scene, 0.04, 60)) == std::set<std::uint32_t>{none});
 }
 
-TEST_CASE("The corners of a rectangle are nodes, and so are places on it", "[charts]") {
+TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
   SceneBuilder builder;
   // Turned, of no whole number of cells.
   const glm::vec3 u = 1.13f * glm::normalize(glm::vec3(0.6f, 0.8f, 0.1f));
@@ -100,7 +100,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it", "[cha
   }
 }
 
-TEST_CASE("A node beyond an edge stands for the nearest point of the edge", "[charts]") {
+TEST_CASE("A node beyond an edge stands for the nearest point of the edge") {
   // A right triangle: the far half of its rectangle has no surface.
   SceneBuilder builder;
   builder.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.add(diffuse(glm::vec3(0.5f))));
@@ -127,7 +127,7 @@ TEST_CASE("A node beyond an edge stands for the nearest point of the edge", "[ch
   }
 }
 
-TEST_CASE("Owners in charts of many triangles are those that looking at all finds", "[charts]") {
+TEST_CASE("Owners in charts of many triangles are those that looking at all finds") {
   // A wavy sheet: charts of many triangles, none of them flat.
   SceneBuilder builder;
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));

@@ -54,8 +54,7 @@ bool same_pixels(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& 
 
 }  // namespace
 
-TEST_CASE("Frames that value a few nodes at a time come to the bits of one that values all",
-          "[light_map_frames]") {
+TEST_CASE("Frames that value a few nodes at a time come to the bits of one that values all") {
   DrawnRoom at_once, step_by_step;
   const auto expected = at_once.draw(in_the_room(0.5), all);
   CHECK(at_once.drawn.lacking == 0);
@@ -73,8 +72,7 @@ TEST_CASE("Frames that value a few nodes at a time come to the bits of one that 
   CHECK(step_by_step.maps.statistics().nodes == at_once.maps.statistics().nodes);
 }
 
-TEST_CASE("A frame without time values nothing, and one with a little the nearest surface",
-          "[light_map_frames]") {
+TEST_CASE("A frame without time values nothing, and one with a little the nearest surface") {
   std::vector<glm::vec3> asked;
   DrawnRoom room([&](const glm::vec3& p, std::uint32_t) {
     asked.push_back(p);
@@ -100,8 +98,7 @@ TEST_CASE("A frame without time values nothing, and one with a little the neares
   CHECK(first_farthest < nearest + 0.2);  // some cells of 4 cm
 }
 
-TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is black",
-          "[light_map_frames]") {
+TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is black") {
   DrawnRoom room;
   int with_nodes = 0;
   for (int frame = 0; frame < 20; ++frame) {
@@ -113,8 +110,7 @@ TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is
   CHECK(with_nodes >= 15);
 }
 
-TEST_CASE("Where there is no node yet, other light maps are shown, which are filled before",
-          "[light_map_frames]") {
+TEST_CASE("Where there is no node yet, other light maps are shown, which are filled before") {
   const auto constant = [](float light) {
     return [light](const glm::vec3&, std::uint32_t) { return light; };
   };
@@ -139,7 +135,7 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
   CHECK(empty.maps.statistics().nodes > 0);
 }
 
-TEST_CASE("A frame that nobody waits for any longer values no more nodes", "[light_map_frames]") {
+TEST_CASE("A frame that nobody waits for any longer values no more nodes") {
   DrawnRoom room;
   std::vector<glm::vec3> picture(std::size_t{width} * height);
   const std::vector<glm::vec3> powers{glm::vec3(1.0f)};
@@ -154,7 +150,7 @@ TEST_CASE("A frame that nobody waits for any longer values no more nodes", "[lig
   }) != glm::vec3(0.0f));
 }
 
-TEST_CASE("A camera that stands still, or comes back, sees the same bits", "[light_map_frames]") {
+TEST_CASE("A camera that stands still, or comes back, sees the same bits") {
   DrawnRoom room;
   const auto first = room.draw(in_the_room(0.5), all);
   CHECK(same_pixels(room.draw(in_the_room(0.5), all), first));
@@ -162,8 +158,7 @@ TEST_CASE("A camera that stands still, or comes back, sees the same bits", "[lig
   CHECK(same_pixels(room.draw(in_the_room(0.5), all), first));
 }
 
-TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is",
-          "[light_map_frames]") {
+TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is") {
   DrawnRoom room;
   const auto one = room.draw(in_the_room(0.5), all);
   const auto nine = room.draw(in_the_room(0.5), all, 1.0f, 9);
@@ -178,8 +173,7 @@ TEST_CASE("Several rays a pixel smooth edges, and leave smooth light as it is",
   CHECK(sum_of_nine == Approx(sum_of_one).epsilon(0.01));
 }
 
-TEST_CASE("Cells that were seen least recently are forgotten, and come back to the same bits",
-          "[light_map_frames]") {
+TEST_CASE("Cells that were seen least recently are forgotten, and come back to the same bits") {
   DrawnRoom free, bounded;
   const Camera behind = Camera::look_at({0.5, 0.3, 1.5}, {0.4, 0.1, 2.5}, {0, 0, 1}, 0.5);
   const auto first = free.draw(in_the_room(0.5), all);
@@ -198,7 +192,7 @@ TEST_CASE("Cells that were seen least recently are forgotten, and come back to t
   }
 }
 
-TEST_CASE("Walking changes no light of a wall between frames", "[light_map_frames]") {
+TEST_CASE("Walking changes no light of a wall between frames") {
   DrawnRoom room;
   const PrimaryHits points = points_on(room.scene, 6);
   std::vector<float> before;

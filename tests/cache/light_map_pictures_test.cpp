@@ -60,8 +60,7 @@ double error_of_lamp(const LightLayers& layers, double height, double side) {
 
 }  // namespace
 
-TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at hits",
-          "[light_map_pictures]") {
+TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at hits") {
   test::SceneBuilder builder;
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 3, builder.add(test::diffuse(glm::vec3(1.0f))));
   builder.add(test::point_light("lamp", {0, 0, 1}, 1.0));
@@ -81,8 +80,7 @@ TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at
   CHECK(by_maps <= 1.02 * at_hits);
 }
 
-TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half the photons are",
-          "[light_map_pictures]") {
+TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half the photons are") {
   const Scene scene = test::furnished_room(2);
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 2'000}).photons;
   const std::vector<double> powers = estimate::layer_powers(scene);
@@ -101,8 +99,7 @@ TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half th
   CHECK(spacing(2 * nearest) < 1.5 * nearest);  // which is not held back
 }
 
-TEST_CASE("Pictures that read light maps are the same bits on one, two and three threads",
-          "[light_map_pictures]") {
+TEST_CASE("Pictures that read light maps are the same bits on one, two and three threads") {
   for (const Scene& scene : {test::furnished_room(3), many_lamps()}) {
     std::vector<LightLayers> pictures;
     for (const std::size_t threads : {1u, 2u, 3u}) {
@@ -114,7 +111,7 @@ TEST_CASE("Pictures that read light maps are the same bits on one, two and three
   }
 }
 
-TEST_CASE("What was looked at before changes no bit of a picture", "[light_map_pictures]") {
+TEST_CASE("What was looked at before changes no bit of a picture") {
   const Scene scene = test::furnished_room(2);
   const RenderParameters parameters = with_light_maps();
   SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);
@@ -129,15 +126,14 @@ TEST_CASE("What was looked at before changes no bit of a picture", "[light_map_p
   CHECK(same_bits(again.layers, fresh.layers));
 }
 
-TEST_CASE("Rows traced in several batches change no bit of a picture", "[light_map_pictures]") {
+TEST_CASE("Rows traced in several batches change no bit of a picture") {
   const Scene scene = test::furnished_room(2);
   const RenderParameters parameters = with_light_maps();
   const RenderResult whole = render(scene, room_camera(), test::device(), parameters);
   CHECK(same_bits(whole.layers, test::picture_in_parts(scene, room_camera(), parameters)));
 }
 
-TEST_CASE("A first picture shows a lamp's closed form, whatever brings that light later",
-          "[light_map_pictures]") {
+TEST_CASE("A first picture shows a lamp's closed form, whatever brings that light later") {
   test::SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(1.0f))));
   builder.add(test::point_light("lamp", {0, 0, 1}, 1.0));
@@ -170,7 +166,7 @@ TEST_CASE("A first picture shows a lamp's closed form, whatever brings that ligh
   CHECK(mean / expected == Approx(1).margin(0.1));
 }
 
-TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[light_map_pictures]") {
+TEST_CASE("A hit on a wall reads the same light from wherever it is seen") {
   // Cameras that look straight at the same points of a plate, from nearer and farther.
   test::SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
@@ -184,8 +180,7 @@ TEST_CASE("A hit on a wall reads the same light from wherever it is seen", "[lig
   CHECK(same_bits(first.layers, later.layers));
 }
 
-TEST_CASE("Automatic light maps are read by pictures, but not by several passes or naive maps",
-          "[light_map_pictures]") {
+TEST_CASE("Automatic light maps are read by pictures, but not by several passes or naive maps") {
   const Scene scene = test::furnished_room(2);
   RenderParameters parameters = with_light_maps();
   parameters.light_maps = LightMapMode::automatic;
@@ -200,7 +195,7 @@ TEST_CASE("Automatic light maps are read by pictures, but not by several passes 
   CHECK(used() == LightMapMode::off);
 }
 
-TEST_CASE("Bounded light maps whose nodes gather draw the same bits", "[light_map_pictures]") {
+TEST_CASE("Bounded light maps whose nodes gather draw the same bits") {
   const Scene scene = test::furnished_room(2);
   RenderParameters parameters = with_light_maps();
   parameters.light_map_rays = 8;
@@ -220,8 +215,7 @@ TEST_CASE("Bounded light maps whose nodes gather draw the same bits", "[light_ma
   for (const double x : {0.5, 1.5, 0.5, 2.5}) CHECK(draw(*bounded, x) == draw(*free, x));
 }
 
-TEST_CASE("Glossy surfaces keep the estimate at the hit where photons bring gloss",
-          "[light_map_pictures]") {
+TEST_CASE("Glossy surfaces keep the estimate at the hit where photons bring gloss") {
   // Only the table is glossy: pixels that see nothing else are those of an estimate at each hit.
   test::SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));

@@ -62,8 +62,7 @@ double error_of(const std::vector<double>& values, const std::vector<double>& tr
 
 }  // namespace
 
-TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes",
-          "[light_map_sensors]") {
+TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes") {
   SceneBuilder builder;
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 3, builder.add(diffuse(glm::vec3(0.5f))));
   builder.add(point_light("lamp", {0, 0, 1}, 1.0));
@@ -91,8 +90,7 @@ TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes",
         1e-4);  // a look at a lamp is exact; nodes lie 8 cm apart
 }
 
-TEST_CASE("Sensors in the air of a furnace read the same light everywhere, by rays to light maps",
-          "[light_map_sensors]") {
+TEST_CASE("Sensors in the air of a furnace read the same light everywhere, by rays to light maps") {
   constexpr double albedo = 0.5;
   Scene box = closed_box(diffuse(glm::vec3(albedo)));
   box.lights = {area_light("walls")};
@@ -112,8 +110,7 @@ TEST_CASE("Sensors in the air of a furnace read the same light everywhere, by ra
   for (const double lux : lux_of(result)) CHECK(lux == Approx(truth).epsilon(0.02));
 }
 
-TEST_CASE("Sensors in a furnished room read what estimates at the ends of their rays give",
-          "[light_map_sensors]") {
+TEST_CASE("Sensors in a furnished room read what estimates at the ends of their rays give") {
   const Scene scene = furnished_room(2);
   std::vector<Sensor> sensors;
   for (int i = 0; i < 40; ++i) {

@@ -21,7 +21,7 @@ float shadow(const glm::vec3& p, std::uint32_t) {
 
 }  // namespace
 
-TEST_CASE("Light maps give back uniform light", "[light_maps]") {
+TEST_CASE("Light maps give back uniform light") {
   const Scene room = with_one_lamp(furnished_room(3));
   FormulaSource source([](const glm::vec3&, std::uint32_t) { return 3.25f; });
   LightMaps maps(room, quiet_parameters());
@@ -31,7 +31,7 @@ TEST_CASE("Light maps give back uniform light", "[light_maps]") {
   CHECK(source.asked == maps.statistics().nodes);
 }
 
-TEST_CASE("Light maps give back light that varies linearly over a wall", "[light_maps]") {
+TEST_CASE("Light maps give back light that varies linearly over a wall") {
   const Scene room = closed_box(diffuse(glm::vec3(0.5f)), 3);
   const auto light = [](const glm::vec3& p, std::uint32_t) { return 5.0f + p.x - 2 * p.y + p.z; };
   FormulaSource source(light);
@@ -44,8 +44,7 @@ TEST_CASE("Light maps give back light that varies linearly over a wall", "[light
   }
 }
 
-TEST_CASE("Between nodes curved light is off by an eighth of its second difference",
-          "[light_maps]") {
+TEST_CASE("Between nodes curved light is off by an eighth of its second difference") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f, 2));
   // Second derivatives at most 36 each: so far is a chord of 4 cm from its arc, twice.
   const auto light = [](const glm::vec3& p, std::uint32_t) {
@@ -62,7 +61,7 @@ TEST_CASE("Between nodes curved light is off by an eighth of its second differen
   }
 }
 
-TEST_CASE("Cells are split where light varies, down to the finest level", "[light_maps]") {
+TEST_CASE("Cells are split where light varies, down to the finest level") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 2.0f));
   FormulaSource source(shadow);
   LightMaps maps(floor, quiet_parameters());
@@ -82,8 +81,7 @@ TEST_CASE("Cells are split where light varies, down to the finest level", "[ligh
   CHECK(nodes < 51 * 51 + 4 * (101 + 201 + 401));
 }
 
-TEST_CASE("What is read does not depend on what was looked at before, or on threads",
-          "[light_maps]") {
+TEST_CASE("What is read does not depend on what was looked at before, or on threads") {
   const Scene room = with_one_lamp(furnished_room(2));
   const auto light = [](const glm::vec3& p, std::uint32_t s) {
     return 1.0f + std::abs(std::sin(11 * p.x) + std::sin(9 * p.y) * std::cos(13 * p.z)) +
@@ -108,7 +106,7 @@ TEST_CASE("What is read does not depend on what was looked at before, or on thre
   CHECK(one_by_one.statistics().nodes == at_once.statistics().nodes);
 }
 
-TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks", "[light_maps]") {
+TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
   SceneBuilder builder;
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
@@ -132,7 +130,7 @@ TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks", "[light_maps
   }
 }
 
-TEST_CASE("A failing source leaves light maps as they were", "[light_maps]") {
+TEST_CASE("A failing source leaves light maps as they were") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   const PrimaryHits hits = points_on(floor, 10);
   LightMaps maps(floor, quiet_parameters());
@@ -147,8 +145,7 @@ TEST_CASE("A failing source leaves light maps as they were", "[light_maps]") {
   CHECK(read_all(maps, hits) == read_all(untroubled, hits));
 }
 
-TEST_CASE("Light maps are taken in whole, and filled on as if they had never been away",
-          "[light_maps]") {
+TEST_CASE("Light maps are taken in whole, and filled on as if they had never been away") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   const PrimaryHits hits = points_on(floor, 60);
   PrimaryHits some;
@@ -173,8 +170,7 @@ TEST_CASE("Light maps are taken in whole, and filled on as if they had never bee
   CHECK(after.statistics().nodes == fresh.statistics().nodes);
 }
 
-TEST_CASE("What is forgotten is valued again to the same bits, and the rest stays",
-          "[light_maps]") {
+TEST_CASE("What is forgotten is valued again to the same bits, and the rest stays") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   const PrimaryHits hits = points_on(floor, 60);
   FormulaSource source(shadow);
@@ -202,7 +198,7 @@ TEST_CASE("What is forgotten is valued again to the same bits, and the rest stay
   CHECK(maps.statistics().nodes == nodes);
 }
 
-TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
+TEST_CASE("Contents that do not fit the scene are refused") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   FormulaSource source(shadow);
   LightMaps maps(floor, quiet_parameters());
@@ -233,7 +229,7 @@ TEST_CASE("Contents that do not fit the scene are refused", "[light_maps]") {
   });
 }
 
-TEST_CASE("Light maps refuse what makes no lattice", "[light_maps]") {
+TEST_CASE("Light maps refuse what makes no lattice") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
   for (const double spacing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     CHECK_THROWS_AS(LightMaps(floor, quiet_parameters(spacing)), UsageError);
@@ -244,8 +240,7 @@ TEST_CASE("Light maps refuse what makes no lattice", "[light_maps]") {
 }
 
 TEST_CASE(
-    "hits read from the coarsest nodes alone have the same light whoever looked closer before",
-    "[light_maps]") {
+    "hits read from the coarsest nodes alone have the same light whoever looked closer before") {
   SceneBuilder builder;
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
   const Scene scene = with_one_lamp(std::move(builder).build());

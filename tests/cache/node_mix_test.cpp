@@ -39,7 +39,7 @@ bool same_light(const NodeMix& a, const NodeMix& b) {
 
 }  // namespace
 
-TEST_CASE("Light at nodes is the sum over lamps of power times light", "[node_mix]") {
+TEST_CASE("Light at nodes is the sum over lamps of power times light") {
   for (const std::size_t lights : {1, 3, 40}) {
     const bool gaps = lights > 8;
     const Estimates values = random_values(lights, gaps);
@@ -60,7 +60,7 @@ TEST_CASE("Light at nodes is the sum over lamps of power times light", "[node_mi
   }
 }
 
-TEST_CASE("Light by the normal is mixed as luminance is", "[node_mix]") {
+TEST_CASE("Light by the normal is mixed as luminance is") {
   const glm::vec4 part(0.1f, -0.2f, 0.3f, 0.4f);
   for (const std::size_t lights : {1, 3, 40}) {
     Estimates values = random_values(lights, lights > 8);
@@ -81,7 +81,7 @@ TEST_CASE("Light by the normal is mixed as luminance is", "[node_mix]") {
   }
 }
 
-TEST_CASE("No bit of mixed light depends on powers of before", "[node_mix]") {
+TEST_CASE("No bit of mixed light depends on powers of before") {
   for (const std::size_t lights : {1, 7, 40}) {
     const Estimates values = random_values(lights, lights > 8);
     std::vector<glm::vec3> powers(lights, glm::vec3(1.0f));

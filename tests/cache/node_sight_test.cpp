@@ -75,8 +75,7 @@ std::uint32_t floor_under(const Scene& scene, const glm::vec3& p) {
 
 }  // namespace
 
-TEST_CASE("light beside a box on the floor is that of the floor, not of what it stands on",
-          "[light_maps]") {
+TEST_CASE("light beside a box on the floor is that of the floor, not of what it stands on") {
   const trace::FlushDenormals flush_denormals;
   const Scene scene = boxes_on_floor();
   const RayScene rays(scene);
@@ -112,7 +111,7 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
   CHECK(dark > hits.size() / 4);  // without a look
 }
 
-TEST_CASE("a place in a slot sees none of the nodes under its sides", "[light_maps]") {
+TEST_CASE("a place in a slot sees none of the nodes under its sides") {
   const trace::FlushDenormals flush_denormals;
   const Scene scene = boxes_on_floor();
   const RayScene rays(scene);
@@ -135,8 +134,7 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides", "[light_ma
 }
 
 TEST_CASE(
-    "a gap between plates is as bright as its own nodes, not as those in the slits below them",
-    "[light_maps]") {
+    "a gap between plates is as bright as its own nodes, not as those in the slits below them") {
   const trace::FlushDenormals flush_denormals;
   const Scene scene = plates_above_floor();
   const RayScene rays(scene);
@@ -164,7 +162,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("all nodes of open floor and of a bowl are seen", "[light_maps]") {
+TEST_CASE("all nodes of open floor and of a bowl are seen") {
   const trace::FlushDenormals flush_denormals;
   // A strip that turns by 15 degrees over 20 cm, hollow above and vaulted below.
   SceneBuilder builder;

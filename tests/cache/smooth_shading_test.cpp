@@ -106,8 +106,7 @@ double rms_beside_paths(const Scene& scene, const std::vector<Sensor>& sensors, 
 
 TEST_CASE(
     "Nodes show a sphere of facets in suns by the cosine to the interpolated normal, each sun and "
-    "their sum",
-    "[smooth_shading]") {
+    "their sum") {
   // Half of the suns shine from the other side: what one light leaves dark takes nothing from
   // another. Of more than eight lights each light sample draws one, so that a layer is right on
   // average.
@@ -158,12 +157,12 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("Nodes show a smooth sphere and cylinder in a room as paths do", "[smooth_shading]") {
+TEST_CASE("Nodes show a smooth sphere and cylinder in a room as paths do") {
   CHECK(rms_beside_paths(in_room(sphere), some_of(sphere, 5), 4'000) < 0.02);
   CHECK(rms_beside_paths(in_room(cylinder), some_of(cylinder, 1), 6'000) < 0.02);
 }
 
-TEST_CASE("Nodes show a floor with a normal map as paths do", "[smooth_shading]") {
+TEST_CASE("Nodes show a floor with a normal map as paths do") {
   Scene scene = in_room(sphere);
   constexpr std::array<std::uint8_t, 4> tilted{160, 110, 249, 255};  // by 16 degrees
   scene.textures.emplace_back("tilted", 1, 1, std::vector<std::array<std::uint8_t, 4>>{tilted});
@@ -177,7 +176,7 @@ TEST_CASE("Nodes show a floor with a normal map as paths do", "[smooth_shading]"
   CHECK(rms_beside_paths(scene, sensors, 4'000) < 0.03);
 }
 
-TEST_CASE("Many lights are shaded as smoothly", "[smooth_shading]") {
+TEST_CASE("Many lights are shaded as smoothly") {
   const std::vector<Sensor> sensors = some_of(sphere, 5);
   SceneBuilder builder;
   const std::uint32_t wall = builder.add(diffuse(glm::vec3(0.6f)));
@@ -217,8 +216,7 @@ class TurnedSource : public NodeSource {
   }
 };
 
-TEST_CASE("Light by the normal is kept, taken in again and refused where it is no number",
-          "[smooth_shading]") {
+TEST_CASE("Light by the normal is kept, taken in again and refused where it is no number") {
   const Scene scene = in_room(sphere, true, 1);
   LightMapParameters parameters;
   parameters.powers = {1.0};
@@ -256,8 +254,7 @@ TEST_CASE("Light by the normal is kept, taken in again and refused where it is n
   refused([](auto& by_normal) { by_normal[7].w = std::nanf(""); });
 }
 
-TEST_CASE("Vertex normals change no lux, and layers follow the powers of lamps",
-          "[smooth_shading]") {
+TEST_CASE("Vertex normals change no lux, and layers follow the powers of lamps") {
   const std::vector<Sensor> sensors = some_of(sphere, 7);
   const Scene smooth = in_room(sphere), flat = in_room(sphere, false);
   REQUIRE(needs_of(smooth).smooth_shading);

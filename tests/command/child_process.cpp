@@ -134,6 +134,19 @@ Outcome run_photile(const std::vector<std::string>& arguments) {
   return run_photile(run);
 }
 
+Outcome succeed(const Run& run) {
+  Outcome outcome = run_photile(run);
+  INFO(outcome.errors);
+  REQUIRE(outcome.exit_code == 0);
+  return outcome;
+}
+
+Outcome succeed(const std::vector<std::string>& arguments) {
+  Run run;
+  run.arguments = arguments;
+  return succeed(run);
+}
+
 pid_t start_photile(const std::vector<std::string>& arguments) {
   Run run;
   run.arguments = arguments;

@@ -7,13 +7,34 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace photile::test {
 
 /// Exit codes of photile (photile/errors.hpp).
 inline constexpr int failure = 1, usage = 2, bad_input = 3, no_device = 4;
+
+/// The words of a command line: literals are split at blanks, strings are a word each, lists as
+/// many as they hold.
+template <class... Parts>
+std::vector<std::string> typed(const Parts&... parts) {
+  std::vector<std::string> all;
+  const auto append = [&]<class Part>(const Part& part) {
+    if constexpr (std::is_same_v<Part, std::string>) {
+      all.push_back(part);
+    } else if constexpr (std::is_same_v<Part, std::vector<std::string>>) {
+      all.insert(all.end(), part.begin(), part.end());
+    } else {
+      std::istringstream text(part);
+      for (std::string word; text >> word;) all.push_back(word);
+    }
+  };
+  (append(parts), ...);
+  return all;
+}
 
 struct Run {
   std::vector<std::string> arguments;
@@ -39,6 +60,10 @@ struct Outcome {
 /// Runs photile to its end. Ends it after two minutes, so that a hang fails and does not block.
 Outcome run_photile(const Run& run);
 Outcome run_photile(const std::vector<std::string>& arguments);
+
+/// Runs photile, and fails the test with what it printed where it does not succeed.
+Outcome succeed(const Run& run);
+Outcome succeed(const std::vector<std::string>& arguments);
 
 /// Starts photile, which prints nowhere, for a test that waits for it or ends it itself.
 pid_t start_photile(const std::vector<std::string>& arguments);

@@ -28,11 +28,9 @@ std::string write_open_box(const FileFolder& folder) {
 
 std::vector<std::string> quick(const std::string& command, const std::string& scene,
                                std::vector<std::string> more) {
-  std::vector<std::string> arguments{command,      scene,         "--photons", "20k",     "--rays",
-                                     "64",         "--repeats",   "2",         "--quiet", "--plane",
-                                     "floor+0.75", "--wall-band", "0.2"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return typed(command, scene,
+               "--photons 20k --rays 64 --repeats 2 --quiet --plane floor+0.75 --wall-band 0.2",
+               more);
 }
 
 }  // namespace
@@ -40,12 +38,10 @@ std::vector<std::string> quick(const std::string& command, const std::string& sc
 TEST_CASE("a year of daylight fills its files") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
-  const Outcome outcome = run_photile(
+  const Outcome outcome = succeed(
       quick("daylight", scene,
             {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to", "500",
              "-o", folder / "a.csv", "-o", folder / "a.json", "--honeybee", folder / "bee"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("sDA 300") && Contains("ASE") && Contains("UDI") &&
                                  Contains("EN 17037") && Contains("kWh"));
   const auto record = nlohmann::json::parse(folder.read("a.json"));
@@ -80,12 +76,10 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
   folder.write("closed.obj", box_obj());
   const Outcome outcome =
-      run_photile(quick("daylight", scene,
-                        {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--blinds",
-                         folder / "closed.obj", "--days", "mon-fri", "-o", folder / "a.csv", "-o",
-                         folder / "a.json", "--honeybee", folder / "bee"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+      succeed(quick("daylight", scene,
+                    {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--blinds",
+                     folder / "closed.obj", "--days", "mon-fri", "-o", folder / "a.csv", "-o",
+                     folder / "a.json", "--honeybee", folder / "bee"}));
   CHECK_THAT(outcome.output, Contains("blinds closed"));
   const auto grid = nlohmann::json::parse(folder.read("a.json")).at(0);
   CHECK(grid["occupied_hours"] == 2600);
@@ -112,13 +106,11 @@ TEST_CASE("a room that no sky shines into is warned of") {
   std::vector<std::string> arguments =
       quick("daylight", closed, {"--inside", "0,0,0", "--weather", write_weather(folder)});
   std::erase(arguments, "--quiet");
-  const Outcome year = run_photile(arguments);
-  CHECK(year.exit_code == 0);
+  const Outcome year = succeed(arguments);
   CHECK_THAT(year.errors, Contains("no light of the sky") && Contains("glass"));
   arguments = quick("measure", closed, {"--inside", "0,0,0", "--daylight-factor"});
   std::erase(arguments, "--quiet");
-  const Outcome factors = run_photile(arguments);
-  CHECK(factors.exit_code == 0);
+  const Outcome factors = succeed(arguments);
   CHECK_THAT(factors.errors, Contains("no light of the sky") && Contains("glass"));
 }
 
@@ -146,9 +138,7 @@ TEST_CASE("daylight factors are per cent of the sky's lux") {
   const std::string scene = write_open_box(folder);
   const auto run = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--inside", "0,0,0", "-o", folder / "df.json"});
-    const Outcome outcome = run_photile(quick("measure", scene, std::move(more)));
-    INFO(outcome.errors);
-    REQUIRE(outcome.exit_code == 0);
+    succeed(quick("measure", scene, std::move(more)));
     return nlohmann::json::parse(folder.read("df.json"));
   };
   const auto factors = run({"--daylight-factor"});
@@ -162,15 +152,11 @@ TEST_CASE("daylight factors are per cent of the sky's lux") {
 TEST_CASE("a picture of patches takes the sky of another hour") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
-  const Outcome rendered =
-      run_photile({"render", scene, "--sky", "patches=145", "--quality", "draft", "--photons",
-                   "20k", "--size", "8x6", "--quiet", "-o", folder / "sky.exr"});
-  INFO(rendered.errors);
-  REQUIRE(rendered.exit_code == 0);
-  const Outcome noon = run_photile({"relight", folder / "sky.exr", "--weather", weather, "--time",
-                                    "2026-06-21T12:00", "-o", folder / "noon.png"});
-  INFO(noon.errors);
-  CHECK(noon.exit_code == 0);
+  succeed(typed("render", scene,
+                "--sky patches=145 --quality draft --photons 20k --size 8x6 --quiet -o",
+                folder / "sky.exr"));
+  succeed({"relight", folder / "sky.exr", "--weather", weather, "--time", "2026-06-21T12:00", "-o",
+           folder / "noon.png"});
   const Outcome lacking = run_photile(
       {"relight", folder / "sky.exr", "--time", "2026-06-21T12:00", "-o", folder / "x.png"});
   CHECK(lacking.exit_code == 2);

@@ -1,13 +1,16 @@
 // `photile devices` and the choice of a device.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_bytes.hpp"
 #include "file_folder.hpp"
+#include "photile/image.hpp"
 #include "source_folder.hpp"
+#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
@@ -23,11 +26,8 @@ Run without_platforms(const FileFolder& folder, std::vector<std::string> argumen
   return run;
 }
 
-}  // namespace
-
 TEST_CASE("the list of devices is JSON and marks exactly one as selected") {
-  const Outcome outcome = run_photile({"devices", "--json"});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"devices", "--json"});
   const auto devices = nlohmann::json::parse(outcome.output);
   REQUIRE(devices.size() >= 1);
   CHECK(std::count_if(devices.begin(), devices.end(),
@@ -39,8 +39,7 @@ TEST_CASE("the list of devices is JSON and marks exactly one as selected") {
 
 TEST_CASE("the list of devices has a line for each and marks the selected one with a star") {
   const auto count = nlohmann::json::parse(run_photile({"devices", "--json"}).output).size();
-  const Outcome outcome = run_photile({"devices"});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"devices"});
   CHECK(static_cast<std::size_t>(std::count(outcome.output.begin(), outcome.output.end(), '\n')) ==
         count + 1);
   CHECK_THAT(outcome.output, Contains("* 0:0"));
@@ -58,7 +57,7 @@ TEST_CASE("without any OpenCL platform every command that needs one says so and 
 
 TEST_CASE("what needs no device works without any OpenCL platform") {
   const FileFolder folder;
-  CHECK(run_photile(without_platforms(folder, {"info", write_box(folder)})).exit_code == 0);
+  succeed(without_platforms(folder, {"info", write_box(folder)}));
 }
 
 TEST_CASE("an unknown device is refused with the list of those there are") {
@@ -79,15 +78,12 @@ TEST_CASE("after devices --compile the first picture of an interior compiles not
   Run run;
   run.environment["XDG_CACHE_HOME"] = folder / "cache";
   run.arguments = {"devices", "--compile"};
-  const Outcome compiled = run_photile(run);
-  INFO(compiled.errors);
-  REQUIRE(compiled.exit_code == 0);
+  const Outcome compiled = succeed(run);
   CHECK_THAT(compiled.errors, Contains(" compiled, ") && !Contains(": 0 compiled"));
   const std::string room = source_folder() / "scenes/living-room/living-room.gltf";
   run.arguments = {"render",    room,   "-o",     folder / "out.png",
                    "--photons", "200k", "--size", "16x12"};
-  const Outcome rendered = run_photile(run);
-  REQUIRE(rendered.exit_code == 0);
+  const Outcome rendered = succeed(run);
   CHECK_THAT(rendered.errors, Contains(": 0 compiled"));
 }
 
@@ -96,12 +92,11 @@ TEST_CASE("two halves of a device render the file of the whole, and the record n
   Run run;
   run.arguments = {"render", write_box(folder), "-o",    folder / "whole.png", "--photons",
                    "5k",     "--size",          "64x48", "--quality",          "draft"};
-  REQUIRE(run_photile(run).exit_code == 0);
+  succeed(run);
   run.arguments[3] = folder / "halves.png";
   run.arguments.insert(run.arguments.end(), {"--stats", folder / "stats.json"});
   run.environment["PHOTILE_DEVICE"] = "0:0/2";
-  const Outcome outcome = run_photile(run);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(run);
   CHECK(folder.read("halves.png") == folder.read("whole.png"));
   CHECK_THAT(outcome.errors, Contains("device: 0:0.0 ") && Contains("device: 0:0.1 ") &&
                                  Contains("share of 0:0.0") && Contains("share of 0:0.1"));
@@ -113,8 +108,7 @@ TEST_CASE("two halves of a device render the file of the whole, and the record n
 }
 
 TEST_CASE("the list of devices marks the whole of which parts are chosen") {
-  const Outcome outcome = run_photile({"devices", "--device", "0:0/2"});
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"devices", "--device", "0:0/2"});
   CHECK_THAT(outcome.output, Contains("* 0:0 "));
 }
 
@@ -124,15 +118,14 @@ TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {
   run.environment["PHOTILE_DEVICE"] = "no-such-device";
   CHECK_THAT(only_error(run_photile(run), no_device), Contains("no-such-device"));
   run.arguments = {"devices", "--device", "0:0"};
-  CHECK(run_photile(run).exit_code == 0);
+  succeed(run);
 }
 
 TEST_CASE("the test of devices passes, and not with kernels that compute wrong areas", "[slow]") {
   const FileFolder folder;
   Run run;
   run.arguments = {"devices", "--test"};
-  const Outcome right = run_photile(run);
-  CHECK(right.exit_code == 0);
+  const Outcome right = succeed(run);
   CHECK_THAT(right.output, Contains("passed ("));
 
   const auto file = std::filesystem::path("surface/clipped_disc.clh");
@@ -148,4 +141,194 @@ TEST_CASE("the test of devices passes, and not with kernels that compute wrong a
   CHECK_THAT(last_error(wrong, no_device), Contains("computes wrong results"));
 }
 
+// Each command where a CPU poses as a GPU (tests/device/layers/gpu_layer.cpp): it runs what a GPU
+// would, and finds the light that it finds as a CPU.
+//
+// PoCL compiles a kernel of lanes for ten seconds. Compiled kernels are kept between runs.
+
+/// Lanes add the same photons in another order: roundings of sums of 50 numbers in single
+/// precision, of parts of the largest value.
+constexpr double rounding = 1e-5;
+
+/// Runs the command on a device of this type alone: where there is none, it fails.
+Outcome run_on(const std::string& type, const std::vector<std::string>& arguments) {
+  Run run;
+  run.arguments = arguments;
+  run.environment["PHOTILE_DEVICE"] = type;
+  if (type == "gpu") run.environment["OPENCL_LAYERS"] = PHOTILE_GPU_LAYER;
+  return succeed(run);
+}
+
+/// Runs the command on a CPU and as a GPU, each in a folder of its own that holds the box.
+struct OnBoth {
+  template <class Arguments>
+  explicit OnBoth(const Arguments& arguments) {
+    for (const auto& [type, folder] : {std::pair("cpu", &cpu), std::pair("gpu", &gpu)}) {
+      CHECK_THAT(run_on(type, arguments(*folder)).errors, Contains("device: "));
+    }
+  }
+
+  FileFolder cpu, gpu;
+};
+
+void check_same_picture(const OnBoth& folders, const std::string& name) {
+  const Image cpu = read_image(folders.cpu / name), gpu = read_image(folders.gpu / name);
+  REQUIRE(cpu.channel_names == gpu.channel_names);
+  for (std::size_t channel = 0; channel < cpu.channels.size(); ++channel) {
+    const std::vector<float>&expected = cpu.channels[channel], &found = gpu.channels[channel];
+    REQUIRE(found.size() == expected.size());
+    const double largest = *std::max_element(expected.begin(), expected.end());
+    double difference = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      difference = std::max<double>(difference, std::abs(found[i] - expected[i]));
+    }
+    CAPTURE(name, cpu.channel_names[channel]);
+    CHECK(difference <= rounding * largest);
+  }
+}
+
+/// Numbers of two JSON documents agree, and all else is the same.
+void check_same_values(const nlohmann::json& cpu, const nlohmann::json& gpu) {
+  const nlohmann::json expected = cpu.flatten(), found = gpu.flatten();
+  REQUIRE(found.size() == expected.size());
+  REQUIRE(expected.size() > 10);
+  for (const auto& [name, value] : expected.items()) {
+    CAPTURE(name);
+    REQUIRE(found.contains(name));
+    if (value.is_number_float()) {
+      CHECK(found[name].get<double>() == Approx(value.get<double>()).epsilon(rounding));
+    } else {
+      CHECK(found[name] == value);
+    }
+  }
+}
+
+void check_same_values(const OnBoth& folders, const std::string& name) {
+  check_same_values(nlohmann::json::parse(folders.cpu.read(name)),
+                    nlohmann::json::parse(folders.gpu.read(name)));
+}
+
+/// Runs a command that would compile kernels for many minutes until its bar shows that some work is
+/// done, and then interrupts it.
+///   share   of the work, as the bar shows it
+void check_begins(const std::vector<std::string>& arguments, const std::string& share) {
+  const FileFolder cache;
+  Run run;
+  run.arguments = arguments;
+  run.environment = {{"PHOTILE_DEVICE", "gpu"},
+                     {"OPENCL_LAYERS", PHOTILE_GPU_LAYER},
+                     {"XDG_CACHE_HOME", cache.path}};
+  run.terminal = true;
+  run.signal_when = "]   " + share + "  ";
+  const Outcome outcome = run_photile(run);
+  INFO(outcome.errors);
+  CHECK(outcome.exit_code == 130);
+}
+
+TEST_CASE("as a GPU, render and measure find the light of the Cornell box that a CPU finds") {
+  const std::string scene = source_folder() / "scenes/cornell-box/cornell-box.obj";
+  const OnBoth rendered([&](const FileFolder& folder) {
+    return typed("render", scene, "-o", folder / "box.exr", "--stats", folder / "box.json",
+                 "--photons 20k --size 16x16 --quality draft");
+  });
+  check_same_picture(rendered, "box.exr");
+  for (const FileFolder* folder : {&rendered.cpu, &rendered.gpu}) {
+    const auto record = nlohmann::json::parse(folder->read("box.json"));
+    const bool gpu = folder == &rendered.gpu;
+    REQUIRE(record["devices"].size() == 1);
+    CHECK(record["devices"][0]["type"] == (gpu ? "gpu" : "cpu"));
+    CHECK_THAT(record["tuning"].get<std::string>(), Contains(gpu ? "lanes" : "select"));
+  }
+  const OnBoth measured([&](const FileFolder& folder) {
+    return typed("measure", scene, "--points", folder.write("middle.pts", "0.28 0.1 -0.28 0 1 0\n"),
+                 "-o", folder / "box.json", "--photons 20k --rays 64 --repeats 2");
+  });
+  check_same_values(measured, "box.json");
+}
+
+TEST_CASE("as a GPU, a device passes its test", "[slow]") {
+  CHECK_THAT(run_on("gpu", {"devices", "--test", "--device", "gpu"}).output,
+             Contains("passed") && !Contains("not passed"));
+  const auto devices = nlohmann::json::parse(run_on("gpu", {"devices", "--json"}).output);
+  REQUIRE(devices.size() >= 1);
+  for (const auto& device : devices) CHECK(device["type"] == "gpu");
+}
+
+TEST_CASE("as a GPU, a device has kernels compiled ahead", "[slow]") {
+  check_begins({"devices", "--compile"}, "2%");
+}
+
+TEST_CASE("as a GPU, glare rates what it rates on a CPU", "[slow]") {
+  const OnBoth folders([](const FileFolder& folder) {
+    return typed("glare", write_box(folder), "--observers",
+                 folder.write("eyes.pts", "0.2 0 0.1 0 1 0\n"), "-o", folder / "glare.json",
+                 "--photons 20k --rays 64 --repeats 2 --samples 1 --picture-size 64");
+  });
+  check_same_values(folders, "glare.json");
+}
+
+TEST_CASE("as a GPU, daylight finds the year that it finds on a CPU", "[slow]") {
+  const OnBoth folders([](const FileFolder& folder) {
+    const auto by_day = [](int lux) {
+      return [lux](int, int, int hour) { return hour > 8 && hour < 17 ? lux : 0; };
+    };
+    folder.write("box.mtl", box_mtl());
+    return typed("daylight", folder.write("open.obj", open_box_obj()),
+                 "--inside 0,0,0 --plane floor+0.75 --wall-band 0.2 --weather",
+                 folder.write("year.epw", weather_text(by_day(400), by_day(150))),
+                 "--lamps-to 500 --patches 145 -o", folder / "year.json",
+                 "--photons 20k --rays 64 --repeats 2");
+  });
+  check_same_values(folders, "year.json");
+}
+
+TEST_CASE("as a GPU, walk renders the frames of a CPU", "[slow]") {
+  const OnBoth folders([](const FileFolder& folder) {
+    const std::string path = folder.write("path.json", R"([
+        {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
+        {"time": 1, "position": [0.5, 0, 0.9], "look_at": [0, 0, -1], "fov": 60}])");
+    return typed("walk", write_box(folder), "-o", folder / "f.#.exr", "--fps 1 --camera-path", path,
+                 "--quality draft --photons 20k --size 16x12");
+  });
+  check_same_picture(folders, "f.1.exr");
+  check_same_picture(folders, "f.2.exr");
+}
+
+TEST_CASE("as a GPU, bake writes the light maps of a CPU", "[slow]") {
+  const OnBoth folders([](const FileFolder& folder) {
+    return std::vector<std::string>{
+        "bake", write_box(folder), "-o", folder / "baked.gltf", "--photons", "50k"};
+  });
+  const auto document = nlohmann::json::parse(folders.cpu.read("baked.gltf"));
+  const auto& maps = document["scenes"][0]["extras"]["photile"]["light_maps"];
+  REQUIRE(maps.size() == 2);
+  for (const auto& map : maps) check_same_picture(folders, map["uri"].get<std::string>());
+}
+
+TEST_CASE("as a GPU, photons that were traced to a file give the picture of a CPU", "[slow]") {
+  const FileFolder photons;
+  run_on("gpu",
+         {"trace", write_box(photons), "-o", photons / "box.photons", "--photons", "20k", "-q"});
+  const OnBoth folders([&](const FileFolder& folder) {
+    return typed("render", photons / "box.obj", "--load-maps", photons / "box.photons",
+                 "--photons 20k -o", folder / "box.exr", "--quality draft --size 16x12");
+  });
+  check_same_picture(folders, "box.exr");
+}
+
+TEST_CASE("as a GPU, light that is known in closed form is measured right", "[slow]") {
+  CHECK_THAT(
+      run_on("gpu", {"validate", "--case", "point light", "--integrator", "photon-map", "--quiet"})
+          .output,
+      Contains("ok") && !Contains("wrong"));
+}
+
+TEST_CASE("as a GPU, trade measures times and errors", "[slow]") {
+  const FileFolder folder;
+  check_begins({"trade", write_box(folder), "-o", folder / "results", "--size", "16x12",
+                "--photons", "4k", "-k", "8", "--samples", "1", "--reference-samples", "16"},
+               "3%");  // the first of some 40 settings
+}
+
+}  // namespace
 }  // namespace photile::test

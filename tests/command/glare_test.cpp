@@ -1,32 +1,139 @@
-// `photile render --glare`.
+// Glare, luminaires and projections on the command line.
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
+#include "source_folder.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Contains;
 
-std::vector<std::string> render(const std::string& scene, std::vector<std::string> more) {
-  std::vector<std::string> arguments{"render",    scene, "--size",    "40x30",
-                                     "--samples", "1",   "--quality", "draft"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+// `photile glare`, `photile ies` and the projections of `photile render`.
+
+/// Few photons and rays: seconds, not accuracy.
+std::vector<std::string> glare(const std::string& scene, std::vector<std::string> more) {
+  return typed("glare", scene,
+               "--photons 20k --rays 64 --repeats 2 --samples 1 --quiet --picture-size 64", more);
 }
 
-}  // namespace
+std::size_t lines_of_text(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST_CASE("glare rates each observer and writes the same to all of its files") {
+  const FileFolder folder;
+  const std::string eyes = folder.write("eyes.pts", "# two\n0.2 0 0.1 0 1 0\n0 0 0 1 0 0\n");
+  const Outcome outcome =
+      succeed(glare(write_box(folder), {"--observers", eyes, "-o", folder / "a.csv", "-o",
+                                        folder / "a.json", "--pictures", folder / "views"}));
+  CHECK_THAT(outcome.output, Contains("UGR") && Contains("DGP") && Contains("eyes 2"));
+  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  REQUIRE(record["observers"].size() == 2);
+  const auto& first = record["observers"][0];
+  CHECK(first["name"] == "eyes 1");
+  CHECK(first["illuminance"]["value"] > 0);
+  CHECK(first["background_luminance"]["value"] > 0);
+  const std::string csv = folder.read("a.csv");
+  CHECK(lines_of_text(csv) == 3);
+  CHECK_THAT(csv, Contains("observer,x,y,z") && Contains("eyes 1,0.2,0,0.1,0,1,0,"));
+  for (const char* name : {"views/view-0001.hdr", "views/view-0002.hdr"}) {
+    CHECK(read_image(folder / name).width == 64);
+    CHECK_THAT(folder.read(name), Contains("VIEW= -vta") && Contains("-vh 180 -vv 180"));
+  }
+}
+
+TEST_CASE("a grid has four directions of view at each point, and no pictures") {
+  const FileFolder folder;
+  const Outcome outcome =
+      succeed(glare(write_box(folder), {"--grid", "floor+1.2", "--spacing", "0.5", "--wall-band",
+                                        "0.2", "-o", folder / "a.json"}));
+  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  const std::size_t views = record["observers"].size();
+  CHECK(views >= 4);
+  CHECK(views % 4 == 0);
+  CHECK_FALSE(record["observers"][0].contains("picture"));
+  CHECK_THAT(outcome.output, Contains("highest UGR") && !Contains("DGP"));
+}
+
+TEST_CASE("glare needs somebody who looks, and outputs that are tables") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  CHECK_THAT(only_error(run_photile(glare(scene, {})), usage), Contains("--observers"));
+  CHECK_THAT(only_error(run_photile(glare(scene, {"--grid", "--directions", "0"})), usage),
+             Contains("--directions"));
+  CHECK_THAT(only_error(run_photile(glare(scene, {"--grid", "-o", folder / "a.png"})), usage),
+             Contains("a.png") && Contains(".csv"));
+  CHECK_THAT(only_error(run_photile(glare(scene, {"--grid", "--ratings", "vcp"})), usage),
+             Contains("vcp"));
+}
+
+TEST_CASE("render projects as it is told, black beyond the circle of a fisheye") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const std::string projection = GENERATE("angular", "fisheye", "equirectangular", "orthographic");
+  std::vector<std::string> arguments =
+      typed("render", scene, "--quality draft --photons 20k --samples 1 -q --projection",
+            projection, "-o", folder / "a.exr", "-o", folder / "a.hdr");
+  // Parallel rays that start outside the box would see its dark outside.
+  if (projection == "orthographic") arguments.insert(arguments.end(), {"--field-of-view", "0.5"});
+  succeed(arguments);
+  const Image picture = read_image(folder / "a.exr");
+  const bool round = projection == "angular" || projection == "fisheye";
+  const bool sphere = projection == "equirectangular";
+  CHECK(picture.height == 384);
+  if (round) CHECK(picture.width == 384);
+  if (sphere) CHECK(picture.width == 768);
+  if (round) CHECK((*picture.find("G"))[0] == 0);
+  const std::size_t middle = static_cast<std::size_t>(picture.width) * 192 + 100;
+  CHECK((*picture.find("G"))[middle] > 0);
+  CHECK((folder.read("a.hdr").find("VIEW=") == std::string::npos) == sphere);
+}
+
+TEST_CASE("a field of view has to fit its projection") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  CHECK_THAT(only_error(run_photile(typed("render", scene, "-q -o", folder / "a.exr",
+                                          "--projection fisheye --field-of-view 200")),
+                        usage),
+             Contains("--field-of-view 200") && Contains("180"));
+}
+
+TEST_CASE("ies says what a lamp is and prints its UGR table") {
+  const FileFolder folder;
+  std::string text =
+      "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 4 1 1 2 0.1 1.2 0\n1 1 50\n0 30 60 90\n0\n";
+  text += "300 250 120 0\n";
+  const std::string file = folder.write("lamp.ies", text);
+  const Outcome outcome =
+      succeed({"ies", file, "--ugr-table", "-o", folder / "a.csv", "-o", folder / "a.json"});
+  CHECK_THAT(outcome.output, Contains("1.2 m along azimuth 0 x 0.1 m along 90") &&
+                                 Contains("crosswise") && Contains("12H x 8H"));
+  CHECK(lines_of_text(folder.read("a.csv")) == 20);
+  CHECK(nlohmann::json::parse(folder.read("a.json"))["rooms"].size() == 19);
+  // A point has no luminance.
+  const std::string point =
+      folder.write("point.ies", text.replace(text.find("0.1 1.2"), 7, "0.0 0.0"));
+  CHECK_THAT(last_error(run_photile({"ies", point, "--ugr-table"}), 3), Contains("opening"));
+  CHECK_THAT(only_error(run_photile({"ies", folder / "none.ies"}), 3), Contains("none.ies"));
+}
+
+// `photile render --glare`.
+
+std::vector<std::string> render(const std::string& scene, std::vector<std::string> more) {
+  return typed("render", scene, "--size 40x30 --samples 1 --quality draft", more);
+}
 
 TEST_CASE("matt walls have no reflections to mark, with photons or paths") {
   const std::string integrator = GENERATE("photon-map", "path");
   const FileFolder folder;
-  const Outcome outcome = run_photile(
+  const Outcome outcome = succeed(
       render(write_box(folder), {"--glare", folder / "glare.png", "--integrator", integrator}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.errors, Contains("glare: no reflection is above"));
   CHECK(read_image(folder / "glare.png").width == 40);
 }
@@ -37,4 +144,5 @@ TEST_CASE("glare needs a PNG to be written to") {
              Contains("marks.exr") && Contains(".png"));
 }
 
+}  // namespace
 }  // namespace photile::test

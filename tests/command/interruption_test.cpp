@@ -1,13 +1,31 @@
-// SIGINT and SIGTERM stop a render: exit code 130, earlier files kept, nothing half written.
+// Runs that are watched, held to few threads, stopped or killed.
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <random>
+#include <thread>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
+#include "command/processes.hpp"
+#include "command/terminal_progress.hpp"
 #include "file_folder.hpp"
+#include "photile/image.hpp"
+#include "skipped.hpp"
 
 namespace photile::test {
+namespace {
 
+using app::progress_bar;
+using app::StageProgress;
 using Catch::Contains;
+
+// SIGINT and SIGTERM stop a render: exit code 130, earlier files kept, nothing half written.
 
 TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
   const FileFolder folder;
@@ -26,4 +44,221 @@ TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
   CHECK(folder.file_count() == 3);  // the scene's two files and the earlier picture
 }
 
+// Killed at any moment, and on a disk that is full: old files or whole new ones, and nothing else.
+
+using Clock = std::chrono::steady_clock;
+
+/// Runs photile in a folder of a disk of such a size, which no other process sees; tells what is
+/// left there.
+Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments,
+                          const std::string& size = "64k") {
+  const std::string script = "mount -t tmpfs -o size=" + size + " none '" + (folder / "disk") +
+                             "' && '" PHOTILE_COMMAND "' " + arguments + "; code=$?; ls -A '" +
+                             (folder / "disk") + "'; exit $code";
+  const std::string file = folder.write("run.sh", script);
+  const std::string output = folder / "output", errors = folder / "errors";
+  const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' unshare -m sh '" + file +
+                                  "' > '" + output + "' 2> '" + errors + "'")
+                                     .c_str());
+  return {WEXITSTATUS(status), folder.read("output"), folder.read("errors")};
+}
+
+TEST_CASE("killed a hundred times at any moment, a render leaves the old picture or a new one",
+          "[slow]") {
+  const FileFolder folder;
+  const std::vector<std::string> arguments =
+      typed("render", write_box(folder), "-o", folder / "out.exr", "-o", folder / "out.png",
+            "--photons 20k --size 200x150 --quality draft");
+  const auto begin = Clock::now();
+  succeed(arguments);
+  const auto whole = std::chrono::duration<double>(Clock::now() - begin);
+  const std::vector<float> expected = *read_image(folder / "out.exr").find("G");
+  const std::string png = folder.read("out.png");
+  std::mt19937 random(1);
+  int killed = 0, old = 0;
+  for (int turn = 0; turn < 100; ++turn) {
+    const std::string before = "old";
+    folder.write("out.exr", before);
+    folder.write("out.png", before);
+    const pid_t child = start_photile(arguments);
+    std::this_thread::sleep_for(whole * std::uniform_real_distribution<double>(0.2, 1.1)(random));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    killed += WIFSIGNALED(status) ? 1 : 0;
+    if (folder.read("out.exr") == before) {
+      ++old;
+    } else {
+      CHECK(*read_image(folder / "out.exr").find("G") == expected);
+    }
+    CHECK((folder.read("out.png") == before || folder.read("out.png") == png));
+  }
+  CHECK(killed > 20);
+  CHECK(old > 20);
+  succeed(arguments);
+  CHECK(folder.file_count() == 4);  // the scene's, and the pictures: nothing of killed runs
+}
+
+/// A command, by its words: FOLDER and DISK stand for folders, SCENE, LARGE and MANY for files of
+/// the former, NOWHERE for a picture that nobody looks at.
+std::string filled(std::string command, const FileFolder& folder) {
+  const std::vector<std::pair<std::string, std::string>> words{
+      {"DISK", folder / "disk"},
+      {"SCENE", folder / "box.obj"},
+      {"LARGE", folder / "large.exr"},
+      {"MANY", folder / "many.pts"},
+      {"PATH", folder / "path.json"},
+      {"NOWHERE", folder / "other"},
+      {"DRAFT", "--quality draft -q --photons 5k"},
+      {"POINTS", "-q --photons 5k --rays 1 --repeats 2 --points"}};
+  for (const auto& [word, meaning] : words) {
+    for (std::size_t at = 0; (at = command.find(word, at)) != std::string::npos;
+         at += meaning.size()) {
+      command.replace(at, word.size(), meaning);
+    }
+  }
+  return command;
+}
+
+TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name and leaves nothing",
+          "[slow]") {
+  const FileFolder folder;
+  write_box(folder);
+  std::filesystem::create_directory(folder / "disk");
+  if (run_on_small_disk(folder, "--version").exit_code != 0) {
+    skip("this process may mount nothing");
+    return;
+  }
+  succeed(typed("render", folder / "box.obj", "-o", folder / "large.exr",
+                "--photons 5k --size 200x150 --quality draft"));
+  std::string points;
+  for (int i = 0; i < 3'000; ++i) points += "0.1 -0.9 0.1 0 1 0\n";
+  folder.write("many.pts", points);
+  folder.write("path.json", R"([{"time": 0, "position": [0, 0, 0.5], "look_at": [0, 0, 0],
+    "fov": 60}])");
+  const auto [size, command, name] = GENERATE(table<std::string, std::string, std::string>({
+      {"64k", "render SCENE DRAFT --size 200x150 -o DISK/a.exr", "a.exr"},
+      {"4k", "render SCENE DRAFT --size 200x150 -o DISK/a.png", "a.png"},
+      {"64k", "render SCENE DRAFT --size 4x4 --save-maps DISK/a.maps -o NOWHERE.exr", "a.maps"},
+      {"64k", "render SCENE -q --photons 5k --size 200x150 -o NOWHERE.exr --errors DISK/e.exr",
+       "e.exr"},
+      {"4k", "render SCENE DRAFT --size 200x150 -o NOWHERE.exr --illuminance DISK/lux.png",
+       "lux.png"},
+      {"4k", "render SCENE DRAFT --size 200x150 -o NOWHERE.exr --luminance DISK/cd.png", "cd.png"},
+      {"4k", "render SCENE DRAFT --size 200x150 -o NOWHERE.exr --glare DISK/glare.png",
+       "glare.png"},
+      {"4k", "render SCENE DRAFT --size 4x4 -o NOWHERE.exr --stats DISK/a.json", "a.json"},
+      {"64k", "relight LARGE -o DISK/a.exr", "a.exr"},
+      {"64k", "measure SCENE POINTS MANY -o DISK/a.csv", "a.csv"},
+      {"64k", "measure SCENE POINTS MANY -o DISK/a.json", "a.json"},
+      {"64k", "walk SCENE DRAFT --camera-path PATH --size 200x150 -o DISK/frame.#.exr",
+       "frame.1.exr"},
+      {"64k", "bake SCENE -q --photons 5k --texel 0.02 -o DISK/room.gltf", "room.light00.exr"},
+      {"4k", "compare LARGE LARGE -o DISK/c.png", "c.png"},
+  }));
+  CAPTURE(command);
+  const Outcome outcome = run_on_small_disk(folder, filled(command, folder), size);
+  CHECK_THAT(last_error(outcome, failure), Catch::Contains("disk/" + name));
+  CHECK_THAT(outcome.errors, !Catch::Contains("No such file"));
+  CHECK(outcome.output.empty());
+}
+
+// Progress: the bar's text, the bar on a terminal, plain lines elsewhere.
+
+Run small_render(const FileFolder& folder) {
+  Run run;
+  run.arguments = {"render", write_box(folder), "-o",    folder / "out.png", "--photons",
+                   "20k",    "--size",          "16x12", "--quality",        "draft"};
+  return run;
+}
+
+const StageProgress half_done{"trace photons", 50, 100, "paths", 2.0};
+
+TEST_CASE("a bar shows the share done, the time elapsed and remaining, and the rate") {
+  const std::string bar = progress_bar(half_done, 100);
+  CHECK_THAT(bar, Contains("trace photons") && Contains(" 50%") && Contains("2.00 s | 2.00 s") &&
+                      Contains("25 paths/s"));
+  CHECK(std::count(bar.begin(), bar.end(), '=') == 20);  // half of the widest bar, 40
+}
+
+TEST_CASE("a bar leaves the last column of any terminal free") {
+  for (int width = 0; width < 200; ++width) {
+    CHECK(static_cast<int>(progress_bar(half_done, width).size()) <= std::max(0, width - 1));
+  }
+}
+
+TEST_CASE("a bar copes with nothing done, too much done and an unknown total") {
+  CHECK_THAT(progress_bar({"a", 0, 100, "paths", 0}, 100), Contains("  0%") && Contains("| ?"));
+  CHECK_THAT(progress_bar({"a", 150, 100, "paths", 1}, 100), Contains("100%"));
+  CHECK_THAT(progress_bar({"a", 150, 0, "paths", 1}, 100), !Contains("%") && Contains("1.00 s"));
+}
+
+TEST_CASE("a render without a terminal prints plain lines, the device first") {
+  const FileFolder folder;
+  const Outcome outcome = succeed(small_render(folder));
+  CHECK(outcome.output.empty());
+  CHECK(outcome.errors.find_first_of("\r\033") == std::string::npos);
+  const auto lines = outcome.error_lines();
+  CHECK_THAT(lines[0], Catch::StartsWith("device: "));
+  CHECK_THAT(outcome.errors, Contains("16 triangles") && Contains("light: left: area, ") &&
+                                 Contains("load scene: ") && Contains("write pictures: ") &&
+                                 Contains("\ntotal "));
+}
+
+TEST_CASE("a render on a terminal draws a bar on one line and removes it") {
+  const FileFolder folder;
+  Run run = small_render(folder);
+  run.terminal = true;
+  const Outcome outcome = succeed(run);
+  CHECK_THAT(outcome.errors, Contains("\r") && Contains("%"));
+  // Between two carriage returns no more than the terminal's 99 usable columns are printed.
+  std::size_t column = 0, widest = 0;
+  for (const char character : outcome.errors) {
+    column = character == '\r' ? 0 : column + 1;
+    if (character == '%') widest = std::max(widest, column);
+  }
+  CHECK(widest < 100);
+  CHECK_THAT(outcome.error_lines().back(), !Contains("%"));
+}
+
+TEST_CASE("a quiet render prints nothing, on a terminal or not") {
+  const FileFolder folder;
+  Run run = small_render(folder);
+  run.arguments.emplace_back("--quiet");
+  run.terminal = GENERATE(false, true);
+  const Outcome outcome = succeed(run);
+  CHECK(outcome.output.empty());
+  CHECK(outcome.errors.empty());
+}
+
+TEST_CASE("an error is coloured on a terminal, but not where NO_COLOR is set") {
+  Run run;
+  run.arguments = {"info", "/nonexistent-folder/scene.obj"};
+  run.terminal = true;
+  CHECK_THAT(run_photile(run).errors, Contains("\033[1;31merror:"));
+  run.environment.emplace("NO_COLOR", "1");
+  CHECK_THAT(run_photile(run).errors, !Contains("\033"));
+}
+
+// --threads: how many threads work on the host.
+
+std::size_t allowed() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+TEST_CASE("while a limit of threads lives, TBB keeps to it") {
+  const std::size_t before = allowed();
+  for (const int count : {1, 2, 3}) {
+    const app::ThreadLimit limit(count);
+    CHECK(allowed() == static_cast<std::size_t>(count));
+  }
+  CHECK(allowed() == before);
+  const app::ThreadLimit none(0);
+  CHECK(allowed() == before);
+  for (const char* variable : {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
+    ::unsetenv(variable);  // those of the tests that follow
+  }
+}
+
+}  // namespace
 }  // namespace photile::test

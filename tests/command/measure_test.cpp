@@ -16,10 +16,7 @@ using Catch::Contains;
 
 /// Few photons and rays: seconds, not accuracy.
 std::vector<std::string> measure(const std::string& scene, std::vector<std::string> more) {
-  std::vector<std::string> arguments{"measure", scene,       "--photons", "20k",    "--rays",
-                                     "64",      "--repeats", "3",         "--quiet"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return typed("measure", scene, "--photons 20k --rays 64 --repeats 3 --quiet", more);
 }
 
 double ratio_of(const std::string& a, const std::string& b) {
@@ -32,12 +29,10 @@ double ratio_of(const std::string& a, const std::string& b) {
 
 TEST_CASE("measure writes the same values to all of its files") {
   const FileFolder folder;
-  const Outcome outcome = run_photile(measure(
+  const Outcome outcome = succeed(measure(
       write_box(folder), {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.csv",
                           "-o", folder / "a.json", "-o", folder / "a.svg", "-o", folder / "a.html",
                           "--honeybee", folder / "bee", "--pal", "viridis", "-s", "auto"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("working plane") && Contains("Uo") && Contains("left"));
 
   const auto record = nlohmann::json::parse(folder.read("a.json"));
@@ -83,15 +78,11 @@ TEST_CASE("a report shows the moods of a picture, and is printed as PDF") {
   const std::string scene = write_box(folder);
   folder.write("moods.json",
                R"({"photile_moods": 1, "moods": {"dusk": {"left": {"power": 1, "unit": "W"}}}})");
-  REQUIRE(run_photile({"render", scene, "-o", folder / "box.exr", "--size", "16x12", "--quality",
-                       "draft", "--photons", "2k", "-k", "20", "--quiet"})
-              .exit_code == 0);
-  const Outcome outcome =
-      run_photile(measure(scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "-o",
-                                  folder / "a.html", "-o", folder / "a.pdf", "--picture",
-                                  folder / "box.exr", "--moods", folder / "moods.json"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", scene, "-o", folder / "box.exr",
+                "--size 16x12 --quality draft --photons 2k -k 20 --quiet"));
+  succeed(measure(scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.html",
+                          "-o", folder / "a.pdf", "--picture", folder / "box.exr", "--moods",
+                          folder / "moods.json"}));
   CHECK_THAT(folder.read("a.html"), Contains("data:image/png;base64,iVBORw0KGgo") &&
                                         Contains("<figcaption>as rendered</figcaption>") &&
                                         Contains("<figcaption>dusk</figcaption>"));
@@ -110,9 +101,7 @@ TEST_CASE("points of Radiance are measured in their order, with paths or photons
     std::vector<std::string> arguments{"measure", scene,          "--points", points, "--rays",
                                        "2k",      "--integrator", integrator, "-o",   files.back()};
     if (integrator == "photon-map") arguments.insert(arguments.end(), {"--photons", "200k"});
-    const Outcome outcome = run_photile(arguments);
-    INFO(outcome.errors);
-    REQUIRE(outcome.exit_code == 0);
+    succeed(arguments);
     const auto grid = nlohmann::json::parse(folder.read(integrator + ".json"))["grids"][0];
     CHECK(grid["name"] == "two");
     CHECK(grid["sensors"][0]["lux"].get<double>() > 2 * grid["sensors"][1]["lux"].get<double>());
@@ -126,9 +115,7 @@ TEST_CASE("the maintenance factor and --light scale what is measured") {
   const std::string scene = write_box(folder);
   const auto run = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.end(), {"--plane", "floor+0.5", "-o", folder / name});
-    const Outcome outcome = run_photile(measure(scene, more));
-    INFO(outcome.errors);
-    REQUIRE(outcome.exit_code == 0);
+    succeed(measure(scene, more));
     return folder.read(name);
   };
   const std::string plain = run("plain.json", {});
@@ -160,13 +147,11 @@ TEST_CASE("measure refuses what it cannot do with one line and the right exit co
 
 TEST_CASE("a target is judged in the table, the JSON and the report") {
   const FileFolder folder;
-  const Outcome outcome = run_photile(
-      measure(write_box(folder),
-              {"--plane", "floor+0.75", "--walls", "--ceiling", "--cylindrical-at", "floor+1.2",
-               "--semi-cylindrical-at", "floor+1.2", "--target", "Em=1,Uo=0.999,Ewall=1", "-o",
-               folder / "a.json", "-o", folder / "a.html"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome =
+      succeed(measure(write_box(folder),
+                      {"--plane", "floor+0.75", "--walls", "--ceiling", "--cylindrical-at",
+                       "floor+1.2", "--semi-cylindrical-at", "floor+1.2", "--target",
+                       "Em=1,Uo=0.999,Ewall=1", "-o", folder / "a.json", "-o", folder / "a.html"}));
   CHECK_THAT(outcome.output, Contains("working plane: Em") && Contains("at least 1: met") &&
                                  Contains("NOT MET") && Contains("wall at 90 degrees") &&
                                  Contains("semi-cylindrical at 270 degrees"));
@@ -247,9 +232,7 @@ TEST_CASE("a scene that lies on its side is measured at the places of its file")
   const auto record = [&](const std::string& scene, const std::string& where,
                           std::vector<std::string> more) {
     more.insert(more.end(), {"--points", where, "-o", folder / "a.json"});
-    const Outcome outcome = run_photile(measure(scene, more));
-    INFO(outcome.errors);
-    REQUIRE(outcome.exit_code == 0);
+    succeed(measure(scene, more));
     return nlohmann::json::parse(folder.read("a.json"))["grids"][0]["sensors"];
   };
   const auto expected = record(upright, points, {}), seen = record(lying, same, {"--set", "up=z"});
@@ -264,10 +247,8 @@ TEST_CASE("a point beyond the walls is blank in every file, and the others keep 
   const std::string points =
       folder.write("p.pts", "0 0 0 0 1 0\n9 0 0.1 0 1 0\n0.3 0 0.2 0 1 0\n-0.3 0.1 0.2 0 1 0\n");
   const Outcome outcome =
-      run_photile(measure(write_box(folder), {"--points", points, "-o", folder / "a.csv", "-o",
-                                              folder / "a.json", "--honeybee", folder / "bee"}));
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+      succeed(measure(write_box(folder), {"--points", points, "-o", folder / "a.csv", "-o",
+                                          folder / "a.json", "--honeybee", folder / "bee"}));
   CHECK_THAT(outcome.output, Contains("p: 3 points, and 1 blank"));
   CHECK_THAT(folder.read("a.csv"), Contains("p,1,9,0,0.1,0,1,0,,,,,,,inside a solid or beyond"));
   const std::string res = folder.read("bee/p.res");

@@ -15,13 +15,8 @@ using Catch::Contains;
 /// Renders the box to `name` with some more options.
 std::string render(const FileFolder& folder, const std::string& name,
                    const std::vector<std::string>& options = {}) {
-  std::vector<std::string> arguments{
-      "render", write_box(folder), "-o",    folder / name, "--photons",
-      "50k",    "--size",          "24x16", "--quality",   "draft"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(folder), "-o", folder / name,
+                "--photons 50k --size 24x16 --quality draft", options));
   return folder / name;
 }
 
@@ -51,10 +46,7 @@ TEST_CASE("relighting equals rendering with that power up to float rounding") {
   const FileFolder folder;
   const std::string original = render(folder, "original.exr");
   const std::string rendered = render(folder, "rendered.exr", {"--light", change});
-  const Outcome outcome =
-      run_photile({"relight", original, "--light", change, "-o", folder / "relit.exr"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed({"relight", original, "--light", change, "-o", folder / "relit.exr"});
   check_same_root(folder / "relit.exr", rendered, 4 * std::numeric_limits<float>::epsilon());
 }
 
@@ -63,10 +55,7 @@ TEST_CASE("a group of lights is one light of the picture, and its power scales t
   const std::string grouped = render(folder, "grouped.exr", {"--light-group", "*=both"});
   CHECK(read_image(grouped).channel_names.size() == 4 + 4);
   CHECK_THAT(run_photile({"relight", grouped}).output, Contains("group: both: "));
-  const Outcome outcome =
-      run_photile({"relight", grouped, "--light", "both=x2.5", "-o", folder / "relit.exr"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed({"relight", grouped, "--light", "both=x2.5", "-o", folder / "relit.exr"});
   const std::string each =
       render(folder, "each.exr", {"--light", "left=x2.5", "--light", "right=x2.5"});
   // 50 photons of each of 4 samples, in another order.
@@ -76,19 +65,14 @@ TEST_CASE("a group of lights is one light of the picture, and its power scales t
 TEST_CASE("a relit picture can be relit again and comes back to the original") {
   const FileFolder folder;
   const std::string original = render(folder, "original.exr");
-  REQUIRE(
-      run_photile({"relight", original, "--light", "left=x4", "-o", folder / "a.exr"}).exit_code ==
-      0);
-  REQUIRE(
-      run_photile({"relight", folder / "a.exr", "--light", "left=x0.25", "-o", folder / "b.exr"})
-          .exit_code == 0);
+  succeed({"relight", original, "--light", "left=x4", "-o", folder / "a.exr"});
+  succeed({"relight", folder / "a.exr", "--light", "left=x0.25", "-o", folder / "b.exr"});
   check_same_root(original, folder / "b.exr", 0);  // powers of two are exact
 }
 
 TEST_CASE("relight without a change and an output lists the lights with their powers") {
   const FileFolder folder;
-  const Outcome outcome = run_photile({"relight", render(folder, "a.exr", {"--light", "left=7"})});
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"relight", render(folder, "a.exr", {"--light", "left=7"})});
   CHECK_THAT(outcome.output, Contains("light: left: 7 W") && Contains("light: right: "));
 }
 
@@ -96,9 +80,7 @@ TEST_CASE("relight writes a PNG that changes with the exposure") {
   const FileFolder folder;
   const std::string original = render(folder, "a.exr");
   for (const auto& [name, stops] : {std::pair{"dark.png", "-2"}, std::pair{"light.png", "1"}}) {
-    REQUIRE(
-        run_photile({"relight", original, "-o", folder / name, "--exposure", stops}).exit_code ==
-        0);
+    succeed({"relight", original, "-o", folder / name, "--exposure", stops});
   }
   const auto mean = [&](const char* name) {
     const Image picture = read_image(folder / name);
@@ -134,7 +116,7 @@ TEST_CASE("relight refuses what it cannot do with one line and the right exit co
     only_error(run_photile({"relight", folder.write("empty.exr", ""), "-o", out}), 3);
   }
   SECTION("a picture without layers") {
-    REQUIRE(run_photile({"relight", original, "-o", folder / "flat.png"}).exit_code == 0);
+    succeed({"relight", original, "-o", folder / "flat.png"});
     const Outcome outcome = run_photile({"relight", folder / "flat.png", "-o", out});
     CHECK_THAT(only_error(outcome, 3), Contains("flat.png") || Contains("layer"));
   }
@@ -153,8 +135,7 @@ TEST_CASE("relight names the picture that lacks what it needs") {
   for (const std::vector<std::string>& more : {std::vector<std::string>{},
                                                {"-o", folder / "out.exr"},
                                                {"--illuminance", folder / "l.png"}}) {
-    std::vector<std::string> arguments{"relight", folder / "plain.exr"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::vector<std::string> arguments = typed("relight", folder / "plain.exr", more);
     CHECK_THAT(last_error(run_photile(arguments), bad_input),
                Contains("plain.exr: ") && Contains("no light layers"));
   }
@@ -182,9 +163,8 @@ TEST_CASE("relight names the picture that lacks what it needs") {
 TEST_CASE("a lamp turned up beyond what files hold is told with its name and its pixels") {
   const FileFolder folder;
   const std::string original = render(folder, "original.exr", {"--light", "left=1e29"});
-  const Outcome outcome = run_photile(
+  const Outcome outcome = succeed(
       {"relight", original, "--light", "left=1e30", "--light", "left=x1", "-o", folder / "a.exr"});
-  CHECK(outcome.exit_code == 0);
   CHECK(outcome.errors.empty());  // a power that floats carry
   CHECK_THAT(
       only_error(run_photile({"relight", original, "--light", "left=x1e9", "-o", folder / "b.exr"}),
@@ -196,8 +176,7 @@ TEST_CASE("a lamp turned up beyond what files hold is told with its name and its
   }
   write_exr(folder / "bright.exr", bright);
   const Outcome told =
-      run_photile({"relight", folder / "bright.exr", "--light", "left=x5", "-o", folder / "c.exr"});
-  CHECK(told.exit_code == 0);
+      succeed({"relight", folder / "bright.exr", "--light", "left=x5", "-o", folder / "c.exr"});
   CHECK_THAT(told.errors, Contains("warning: light 'left': 384 of 384 pixels"));
 }
 

@@ -1,8 +1,11 @@
 // `photile render` as a whole: what it writes, and that the same seed gives the same bits.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -10,6 +13,7 @@
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "render/render_costs.hpp"
+#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
@@ -17,12 +21,7 @@ namespace {
 using Catch::Contains;
 
 void render(const FileFolder& folder, const std::vector<std::string>& options) {
-  std::vector<std::string> arguments{"render", write_box(folder), "--photons",
-                                     "100k",   "--quality",       "draft"};
-  arguments.insert(arguments.end(), options.begin(), options.end());
-  const Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(folder), "--photons 100k --quality draft", options));
 }
 
 double mean(const Image& picture, const std::string& channel) {
@@ -54,8 +53,6 @@ std::vector<std::string> checked_stages(const nlohmann::json& record) {
   CHECK(processor_seconds == Approx(record["total_processor_seconds"].get<double>()));
   return names;
 }
-
-}  // namespace
 
 TEST_CASE("the same seed gives the same bits on one and on two threads") {
   const std::string maps = GENERATE("auto", "patch", "triangle", "naive");
@@ -182,11 +179,8 @@ TEST_CASE("the stages add up with maps that are kept, with reflections and by pa
   CHECK_THAT(names_with({"--load-maps", folder / "a.maps"}),
              VectorContains(std::string("load photons")));
   const FileFolder by_paths;
-  const Outcome outcome =
-      run_photile({"render", write_box(by_paths), "--integrator", "path", "--size", "16x12", "-o",
-                   by_paths / "a.png", "--stats", by_paths / "a.json"});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  succeed(typed("render", write_box(by_paths), "--integrator path --size 16x12 -o",
+                by_paths / "a.png", "--stats", by_paths / "a.json"));
   checked_stages(nlohmann::json::parse(by_paths.read("a.json")));
 }
 
@@ -201,9 +195,8 @@ TEST_CASE("naive maps are darker than those of neighbour groups at borders, henc
 TEST_CASE("a profiled render lists the time of each kernel") {
   const FileFolder folder;
   const Outcome outcome =
-      run_photile({"render", write_box(folder), "--photons", "10k", "--size", "16x12", "-o",
-                   folder / "a.png", "--quality", "draft", "--set", "profile=on"});
-  CHECK(outcome.exit_code == 0);
+      succeed(typed("render", write_box(folder), "--photons 10k --size 16x12 -o", folder / "a.png",
+                    "--quality draft --set profile=on"));
   CHECK_THAT(outcome.errors, Contains("\nkernel ") && Contains("launches"));
 }
 
@@ -259,14 +252,212 @@ TEST_CASE("where no surface stores photons the lamps are seen, and a line says t
       "lamp.obj", "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lamp\nusemtl lamp\nf 1 2 3\n");
   folder.write("lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
   const std::string quality = GENERATE("draft", "good");
-  const Outcome outcome = run_photile({"render", scene, "-o", folder / "out.exr", "--photons",
-                                       "100", "--size", "4x4", "--quality", quality});
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
+  const Outcome outcome = succeed(typed("render", scene, "-o", folder / "out.exr",
+                                        "--photons 100 --size 4x4 --quality", quality));
   CHECK_THAT(outcome.errors, Contains("lamp.obj: no surface but mirrors and glass is lit"));
   const Image picture = read_image(folder / "out.exr");
   const std::vector<float>& red = *picture.find("R");
   CHECK(*std::max_element(red.begin(), red.end()) == Approx(1));
 }
 
+// `photile render --integrator path`: the same files as photon maps give, without their options.
+
+std::vector<std::string> by_paths(const FileFolder& folder,
+                                  const std::vector<std::string>& options) {
+  return typed("render", write_box(folder), "--integrator path --size 16x12", options);
+}
+
+TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
+  const FileFolder folder;
+  Run run;
+  run.arguments = by_paths(folder, {"-o", folder / "a.exr", "--stats", folder / "a.json"});
+  run.environment["OCL_ICD_VENDORS"] = folder / "no runtimes";
+  succeed(run);
+
+  const Image picture = read_image(folder / "a.exr");
+  CHECK(picture.find("Combined_left.R") != nullptr);
+  CHECK(picture.find("Illuminance_right.Y") != nullptr);
+  CHECK(picture.attributes.at("photile.integrator") == "path");
+  CHECK(picture.attributes.count("photile.photons_emitted") == 0);
+  CHECK(picture.attributes.count("photile.device") == 0);
+  const auto statistics = nlohmann::json::parse(folder.read("a.json"));
+  CHECK(statistics["parameters"]["integrator"] == "path");
+  CHECK_FALSE(statistics.contains("photons_stored"));
+
+  succeed({"relight", folder / "a.exr", "--light", "left=off", "-o", folder / "b.exr"});
+  CHECK(*read_image(folder / "b.exr").find("R") == *picture.find("Combined_right.R"));
+}
+
+TEST_CASE("options of photon maps are usage errors beside --integrator path") {
+  const auto option = GENERATE(values<std::vector<std::string>>({{"--photons", "10"},
+                                                                 {"--set", "passes=2"},
+                                                                 {"--set", "quota=power"},
+                                                                 {"-k", "20"},
+                                                                 {"--set", "radius=0.1"},
+                                                                 {"--set", "angle_degrees=30"},
+                                                                 {"--set", "maps=auto"},
+                                                                 {"--set", "photons_per_cell=2"},
+                                                                 {"--device", "cpu"},
+                                                                 {"--set", "device_memory=1"},
+                                                                 {"--set", "program_cache=off"},
+                                                                 {"--set", "profile=on"}}));
+  const FileFolder folder;
+  std::vector<std::string> options = typed("-o", folder / "a.exr", option);
+  const std::string name = option[0] == "-k" ? "--neighbours" : option[0];
+  CHECK_THAT(only_error(run_photile(by_paths(folder, options)), 2),
+             Contains(name) && Contains("photon maps"));
+  CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
+}
+
+TEST_CASE("a signal stops paths with 130") {
+  const FileFolder folder;
+  Run run;
+  run.arguments = by_paths(folder, {"-o", folder / "out.exr", "--samples", "65536"});
+  run.terminal = true;
+  run.signal_when = "%  ";  // only a bar under way prints one
+  const Outcome outcome = run_photile(run);
+  INFO(outcome.errors);
+  CHECK(outcome.exit_code == 130);
+  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
+}
+
+// A room without lamps: light comes from a sky, or none is needed.
+
+/// The box without its lamps and one of its walls.
+std::string write_unlit_box(const FileFolder& folder) {
+  std::string obj = box_obj();
+  obj.erase(obj.find("v -0.8 0.99"));
+  const std::string wall = "f 1 4 8 5\n";
+  obj.erase(obj.find(wall), wall.size());
+  folder.write("box.mtl", box_mtl());
+  return folder.write("unlit.obj", obj);
+}
+
+TEST_CASE("a room without lamps is lit by a sky in every command") {
+  const FileFolder folder;
+  const std::string room = write_unlit_box(folder);
+  const auto always = [](int, int, int hour) { return hour > 8 && hour < 17 ? 200 : 0; };
+  const std::string weather = folder.write("year.epw", weather_text(always, always));
+  const std::string eyes = folder.write("eyes.pts", "0 0 0.5 0 0 -1\n");
+  const std::vector<std::string> sky{"--sky", "overcast=10000"},
+      place{"--plane", "floor+0.75", "--wall-band", "0.2", "--inside",  "0,0,0",
+            "--rays",  "32",         "--repeats",   "2",   "--photons", "10k"};
+  const auto joined = [](std::vector<std::string> all,
+                         std::initializer_list<std::vector<std::string>> more) {
+    for (const auto& words : more) all.insert(all.end(), words.begin(), words.end());
+    all.emplace_back("--quiet");
+    return all;
+  };
+  const std::vector<std::string> picture = typed("--quality draft --photons 2k -k 20 --size 16x12");
+  for (const auto& command :
+       {joined({"render", room, "-o", folder / "a.exr"}, {sky, picture}),
+        joined({"walk", room, "-o", folder / "walk.png", "--camera-path",
+                folder.write("path.json", R"([{"time": 0, "position": [0, 0, 0.5],
+                    "look_at": [0, 0, 0]}, {"time": 0.04, "position": [0, 0, 0.4],
+                    "look_at": [0, 0, 0]}])")},
+               {sky, picture}),
+        joined({"trace", room, "-o", folder / "a.photons", "--photons", "2k"}, {sky}),
+        joined({"measure", room}, {sky, place}),
+        joined({"measure", room, "--daylight-factor"}, {place}),
+        joined({"daylight", room, "--weather", weather, "--patches", "145"}, {place}),
+        joined({"glare", room, "--observers", eyes, "--ratings", "ugr", "--rays", "32", "--repeats",
+                "2", "--photons", "10k"},
+               {sky})}) {
+    CAPTURE(command[0], command[3]);
+    succeed(command);
+  }
+}
+
+TEST_CASE("info takes a room without lamps and says what is missing, others refuse it") {
+  const FileFolder folder;
+  const std::string room = write_unlit_box(folder);
+  const Outcome info = succeed({"info", room});
+  CHECK_THAT(info.output, Contains("material: wall") && Contains("warning: no lights") &&
+                              Contains("--luminaires") && Contains("--sky"));
+  succeed({"info", room, "--json"});
+  CHECK_THAT(
+      only_error(run_photile({"render", room, "-o", folder / "a.exr", "--quiet"}), bad_input),
+      Contains("no lights"));
+}
+
+// `photile render --errors`: the noise of each light's layer, as the picture states it.
+
+constexpr int seeds = 6;
+
+void render_picture(const FileFolder& folder, const std::string& file, const std::string& seed,
+                    const std::vector<std::string>& more) {
+  succeed(typed("render", write_box(folder), "-o", file,
+                "--size 24x18 --samples 4 --photons 50k -k 50 --set light_map_rays=16 --seed", seed,
+                more));
+}
+
+/// A picture and its errors, of this seed.
+void render(const FileFolder& folder, int seed) {
+  const std::string name = std::to_string(seed);
+  render_picture(folder, folder / name + ".exr", name, {"--errors", folder / name + "-errors.exr"});
+}
+
+TEST_CASE("the stated errors of a light are the scatter of its layer from seed to seed") {
+  const FileFolder folder;
+  std::vector<Image> pictures, errors;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    render(folder, seed);
+    pictures.push_back(read_image(folder / std::to_string(seed) + ".exr"));
+    errors.push_back(read_image(folder / std::to_string(seed) + "-errors.exr"));
+    REQUIRE(errors.back().channel_names == pictures.back().channel_names);
+  }
+  for (const std::string channel : {"Illuminance_left.Y", "Illuminance_right.Y"}) {
+    CAPTURE(channel);
+    double stated = 0, measured = 0;
+    for (std::size_t pixel = 0; pixel < pictures.front().pixels(); ++pixel) {
+      double sum = 0, squares = 0;
+      for (int i = 0; i < seeds; ++i) {
+        const double value = (*pictures[i].find(channel))[pixel];
+        sum += value;
+        squares += value * value;
+        stated += std::pow((*errors[i].find(channel))[pixel], 2) / seeds;
+      }
+      measured += (squares - sum * sum / seeds) / (seeds - 1);
+    }
+    // A ratio of variances: the stated error leaves out what photons share.
+    CHECK(stated / measured > 0.4);
+    CHECK(stated / measured < 2.0);
+  }
+}
+
+TEST_CASE("stating errors changes no bit of the picture") {
+  const FileFolder folder;
+  render(folder, 1);
+  render_picture(folder, folder / "alone.exr", "1", {});
+  CHECK(read_image(folder / "1.exr").channels == read_image(folder / "alone.exr").channels);
+}
+
+TEST_CASE("errors are relit as pictures are: a light's own in proportion to its power") {
+  const FileFolder folder;
+  render(folder, 1);
+  succeed({"relight", folder / "1-errors.exr", "--light", "left=x3", "-o", folder / "relit.exr"});
+  const Image before = read_image(folder / "1-errors.exr"),
+              after = read_image(folder / "relit.exr");
+  const auto& own = *before.find("Combined_left.G");
+  const auto& tripled = *after.find("Combined_left.G");
+  CHECK(*std::max_element(own.begin(), own.end()) > 0);
+  for (std::size_t pixel = 0; pixel < own.size(); ++pixel) {
+    CHECK(tripled[pixel] == Approx(3 * own[pixel]));
+  }
+  CHECK(*before.find("Combined_right.G") == *after.find("Combined_right.G"));
+}
+
+TEST_CASE("errors are not stated where no nodes gather") {
+  const FileFolder folder;
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = typed("render", write_box(folder), "-o", folder / "a.exr",
+                                               "--errors", folder / "errors.exr", more);
+    return only_error(run_photile(arguments), usage);
+  };
+  CHECK_THAT(refusal({"--quality", "draft"}), Contains("--errors") && Contains("--quality good"));
+  CHECK_THAT(refusal({"--integrator", "path"}), Contains("--errors"));
+  CHECK_THAT(refusal({"--save-maps", folder / "a.maps"}), Contains("--errors"));
+}
+
+}  // namespace
 }  // namespace photile::test

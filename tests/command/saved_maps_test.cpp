@@ -1,4 +1,6 @@
-// `photile render --save-maps` and `--load-maps`.
+// Photons between runs and between processes.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -12,16 +14,13 @@ namespace {
 
 using Catch::Contains;
 
+// `photile render --save-maps` and `--load-maps`.
+
 std::vector<std::string> arguments_of(const FileFolder& folder, const std::string& name,
                                       const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{
-      "render", write_box(folder), "-o",      folder / name, "--photons", "20k",
-      "--size", "24x16",           "--quiet", "--quality",   "draft"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return typed("render", write_box(folder), "-o", folder / name,
+               "--photons 20k --size 24x16 --quiet --quality draft", more);
 }
-
-}  // namespace
 
 TEST_CASE("saved photons give the picture again, in other powers and sizes as well") {
   const FileFolder folder;
@@ -30,14 +29,12 @@ TEST_CASE("saved photons give the picture again, in other powers and sizes as we
       {{"--set", "light_maps=auto"}, {"--set", "light_maps=off"}, {"--set", "light_map_rays=8"}}));
   const auto render = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.end(), {option, value});
-    return run_photile(arguments_of(folder, name, more));
+    return succeed(arguments_of(folder, name, more));
   };
-  REQUIRE(render("a.exr", {"--save-maps", maps}).exit_code == 0);
+  render("a.exr", {"--save-maps", maps});
   REQUIRE(std::filesystem::exists(maps));
   const Outcome loaded = render("b.exr", {"--load-maps", maps});
-  INFO(loaded.errors);
-  REQUIRE(loaded.exit_code == 0);
-  REQUIRE(render("c.exr", {}).exit_code == 0);
+  render("c.exr", {});
   const Image a = read_image(folder / "a.exr");
   CHECK(a.channels == read_image(folder / "b.exr").channels);
   CHECK(a.channels == read_image(folder / "c.exr").channels);
@@ -48,7 +45,7 @@ TEST_CASE("saved photons give the picture again, in other powers and sizes as we
 TEST_CASE("rays that gather refuse saved photons without caustics, and say what to do") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
+  succeed(arguments_of(folder, "a.exr", {"--save-maps", maps}));
   const Outcome outcome = run_photile(
       arguments_of(folder, "b.exr", {"--load-maps", maps, "--set", "light_map_rays=4"}));
   CHECK_THAT(only_error(outcome, 2), Contains("light_map_rays") && Contains("save them again"));
@@ -57,7 +54,7 @@ TEST_CASE("rays that gather refuse saved photons without caustics, and say what 
 TEST_CASE("photons of other settings or scenes, and broken files, are refused by name") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  REQUIRE(run_photile(arguments_of(folder, "a.exr", {"--save-maps", maps})).exit_code == 0);
+  succeed(arguments_of(folder, "a.exr", {"--save-maps", maps}));
   CHECK_THAT(
       only_error(run_photile(arguments_of(folder, "b.exr", {"--load-maps", maps, "--seed", "2"})),
                  3),
@@ -79,4 +76,119 @@ TEST_CASE("photons of other settings or scenes, and broken files, are refused by
   CHECK_FALSE(std::filesystem::exists(folder / "b.exr"));
 }
 
+// Work that several processes share: `photile trace --shard`, `photile merge`, and shares of a
+// walk.
+
+/// `photile trace` of the box, to a file of the folder.
+std::vector<std::string> trace(const FileFolder& folder, const std::string& file,
+                               const std::vector<std::string>& more = {}) {
+  return typed("trace", write_box(folder), "-o", folder / file, "--photons 20k -q", more);
+}
+
+std::vector<std::string> merge(const FileFolder& folder, const std::vector<std::string>& files,
+                               const std::string& output) {
+  std::vector<std::string> arguments{"merge", "-o", folder / output};
+  for (const std::string& file : files) arguments.push_back(folder / file);
+  return arguments;
+}
+
+TEST_CASE("merged shards are the file of one process, byte for byte, and render its picture") {
+  const FileFolder folder;
+  succeed(trace(folder, "whole.photons"));
+  for (const int count : {2, 7}) {
+    std::vector<std::string> shards;
+    for (int i = count; i >= 1; --i) {  // in any order
+      shards.push_back(fmt::format("{}of{}.photons", i, count));
+      succeed(trace(folder, shards.back(), {"--shard", fmt::format("{}/{}", i, count)}));
+    }
+    succeed(merge(folder, shards, "all.photons"));
+    CHECK(folder.read("all.photons") == folder.read("whole.photons"));
+  }
+  const auto render = [&](const std::string& picture, const std::vector<std::string>& more) {
+    return typed("render", write_box(folder), "-o", folder / picture,
+                 "--photons 20k -q --size 24x16 --samples 1", more);
+  };
+  succeed(render("own.exr", {}));
+  succeed(render("loaded.exr", {"--load-maps", folder / "all.photons"}));
+  CHECK(read_image(folder / "own.exr").channels == read_image(folder / "loaded.exr").channels);
+  // Photons alone fit any settings of groups.
+  succeed(render("wide.exr", {"--set", "radius=0.3", "--load-maps", folder / "all.photons"}));
+  const std::string other = only_error(
+      run_photile(render("seed.exr", {"--seed", "5", "--load-maps", folder / "all.photons"})), 3);
+  CHECK_THAT(other, Contains("seed 1") && Contains("seed 5"));
+}
+
+TEST_CASE("shards that are missing, doubled or foreign are named, and nothing is written") {
+  const FileFolder folder;
+  for (const char* i : {"1", "2", "3"}) {
+    succeed(trace(folder, fmt::format("{}.photons", i), {"--shard", fmt::format("{}/3", i)}));
+  }
+  succeed(trace(folder, "whole.photons"));
+  succeed(trace(folder, "seed.photons", {"--shard", "3/3", "--seed", "2"}));
+  succeed(trace(folder, "half.photons", {"--shard", "2/2"}));
+  folder.write("damaged.photons", folder.read("3.photons").substr(0, 2000));
+  const auto [files, words] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"1.photons", "3.photons"}, "shards 2 of 3 are missing"},
+      {{"1.photons", "2.photons", "1.photons"}, "1.photons: holds shard 1 of 3"},
+      {{"1.photons", "2.photons", "seed.photons"}, "seed.photons: was traced with"},
+      {{"1.photons", "half.photons"}, "half.photons: is one of 2 shards"},
+      {{"whole.photons"}, "whole.photons: holds all photons"},
+      {{"1.photons", "2.photons", "damaged.photons"}, "damaged.photons: is truncated"},
+  }));
+  CHECK_THAT(only_error(run_photile(merge(folder, files, "all.photons")), 3), Contains(words));
+  CHECK_FALSE(std::filesystem::exists(folder / "all.photons"));
+}
+
+TEST_CASE("a shard is no whole, and no file overwrites a shard that it is made of") {
+  const FileFolder folder;
+  succeed(trace(folder, "1.photons", {"--shard", "1/2"}));
+  const std::string before = folder.read("1.photons");
+  CHECK_THAT(
+      only_error(run_photile({"render", write_box(folder), "-o", folder / "a.exr", "--photons",
+                              "20k", "-q", "--load-maps", folder / "1.photons"}),
+                 3),
+      Contains("shard 1 of 2") && Contains("photile merge"));
+  CHECK_THAT(only_error(run_photile(merge(folder, {"1.photons"}, "1.photons")), 2),
+             Contains("1.photons"));
+  CHECK(folder.read("1.photons") == before);
+  for (const char* shard : {"0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2"}) {
+    CHECK_THAT(only_error(run_photile(trace(folder, "b.photons", {"--shard", shard})), 2),
+               Contains("--shard") && Contains("I/N"));
+  }
+}
+
+TEST_CASE("frames that several processes make are those of one, with its exposure") {
+  const FileFolder one, several;
+  const auto walk = [](const FileFolder& folder, const std::vector<std::string>& more) {
+    const std::string path = folder.write("path.json", R"([
+        {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
+        {"time": 1, "position": [0.5, 0, 0.2], "look_at": [0, 0, -1], "fov": 60}])");
+    return typed("walk", write_box(folder), "-o", folder / "f.##.exr", "--png", folder / "f.##.png",
+                 "--fps 4 --quality draft --photons 20k --size 16x12 --camera-path", path, more);
+  };
+  succeed(walk(one, {}));
+  succeed(walk(several, {"--frames", "2-4x2"}));
+  CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
+  CHECK_FALSE(std::filesystem::exists(several / "f.03.png"));
+  CHECK_THAT(succeed(walk(several, {"--shard", "2/2"})).errors,
+             Contains("1 of 3 frames are finished"));  // 3, 4 and 5
+  CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
+  succeed(walk(several, {"--shard", "1/2"}));
+  for (int frame = 1; frame <= 5; ++frame) {
+    CAPTURE(frame);
+    const std::string name = fmt::format("f.{:02}", frame);
+    CHECK(several.read(name + ".png") == one.read(name + ".png"));
+    CHECK(read_image(several / (name + ".exr")).channels ==
+          read_image(one / (name + ".exr")).channels);
+  }
+  CHECK_THAT(last_error(run_photile(walk(several, {"--frames", "7-9"})), 2),
+             Contains("--frames") && Contains("1 to 5"));
+  CHECK_THAT(only_error(run_photile(walk(several, {"--frames", "4-2"})), 2), Contains("A-BxS"));
+  CHECK_THAT(only_error(run_photile(walk(
+                            several, {"--shard", "1/2", "--contact-sheet", several / "sheet.png"})),
+                        2),
+             Contains("--contact-sheet"));
+}
+
+}  // namespace
 }  // namespace photile::test

@@ -1,22 +1,33 @@
-// What the command line refuses before anything starts: exit code 2 and one line.
+// What the command line takes, says and refuses before anything starts.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
+#include "command/setting_options.hpp"
+#include "command/terminal_progress.hpp"
+#include "command/validators.hpp"
 #include "file_folder.hpp"
+#include "photile/image.hpp"
 #include "photile/renderer.hpp"
+#include "source_folder.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Contains;
+using namespace app;
+
+// What the command line refuses before anything starts: exit code 2 and one line.
 
 /// `photile render` of a good scene with one more option.
 Outcome render_with(const FileFolder& folder, const std::string& option, const std::string& value) {
   return run_photile({"render", write_box(folder), "-o", folder / "out.exr", option + "=" + value});
 }
-
-}  // namespace
 
 TEST_CASE("an unknown option is a usage error of one line that names it") {
   const std::string line = only_error(run_photile({"render", "a.obj", "--fast"}), usage);
@@ -29,8 +40,7 @@ TEST_CASE("an empty value is refused, and takes no other word in its place") {
   for (const std::string option : {"--stats", "--save-maps", "--png", "--glare", "--errors"}) {
     for (const std::vector<std::string>& words :
          {std::vector<std::string>{option + "=", notes}, std::vector<std::string>{option, ""}}) {
-      std::vector<std::string> arguments{"render", scene, "-o", folder / "out.exr"};
-      arguments.insert(arguments.end(), words.begin(), words.end());
+      std::vector<std::string> arguments = typed("render", scene, "-o", folder / "out.exr", words);
       CHECK_THAT(only_error(run_photile(arguments), usage), Contains(option) && Contains("empty"));
     }
   }
@@ -128,8 +138,8 @@ TEST_CASE("a sky too dark for its radiance to be a number is refused") {
   const FileFolder folder;
   for (const std::string sky : {"clear=1e-50", "perez=1,1e-300"}) {
     const Outcome outcome =
-        run_photile({"render", write_box(folder), "-o", folder / "out.exr", "--sky", sky, "--site",
-                     "52,13,1", "--time", "2026-06-21T12:00", "--size", "8x8"});
+        run_photile(typed("render", write_box(folder), "-o", folder / "out.exr", "--sky", sky,
+                          "--site 52,13,1 --time 2026-06-21T12:00 --size 8x8"));
     CHECK_THAT(last_error(outcome, usage), Contains("lux") && Contains("at least"));
   }
 }
@@ -137,8 +147,8 @@ TEST_CASE("a sky too dark for its radiance to be a number is refused") {
 TEST_CASE("parallel rays that span more than scenes may hold are refused") {
   const FileFolder folder;
   const Outcome outcome =
-      run_photile({"render", write_box(folder), "-o", folder / "out.exr", "--projection",
-                   "orthographic", "--field-of-view", "1e19", "--size", "8x8"});
+      run_photile(typed("render", write_box(folder), "-o", folder / "out.exr",
+                        "--projection orthographic --field-of-view 1e19 --size 8x8"));
   CHECK_THAT(last_error(outcome, usage), Contains("--field-of-view"));
 }
 
@@ -149,8 +159,7 @@ TEST_CASE("an unknown camera is a usage error that lists the cameras") {
 }
 
 TEST_CASE("the version names photile and what it was built with") {
-  const Outcome outcome = run_photile({"--version"});
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed({"--version"});
   CHECK_THAT(outcome.output, Contains("photile 0.") && Contains("Embree          3.") &&
                                  Contains("OpenEXR         3.") && Contains("TBB") &&
                                  Contains("OpenCL headers"));
@@ -161,8 +170,7 @@ TEST_CASE("the help of a command shows the settings of its usual quality") {
       {{"render", Quality::good}, {"view", Quality::good}, {"trade", Quality::draft}}));
   RenderParameters parameters;
   set_quality(parameters, usual);
-  const Outcome outcome = run_photile({command, "--help"});
-  CHECK(outcome.exit_code == 0);
+  const Outcome outcome = succeed({command, "--help"});
   const auto shows = [&](auto number) { return Contains("N=" + std::to_string(number)); };
   CHECK_THAT(outcome.output,
              shows(parameters.photons.emitted_photons) && shows(parameters.neighbours));
@@ -175,4 +183,256 @@ TEST_CASE("a full disk behind standard output is a failure") {
   CHECK_THAT(only_error(run_photile(run), 1), Contains("standard output"));
 }
 
+// Every setting of the table is an option or reached by --set, in the records of a run, and in the
+// documentation.
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+TEST_CASE("the documentation holds the tables of settings as the command prints them") {
+  const Outcome tables = succeed({"settings", "--markdown"});
+  const std::size_t blank = tables.output.find("\n\n");
+  const std::string all = tables.output.substr(0, blank), qualities = tables.output.substr(blank);
+  REQUIRE(std::count(all.begin(), all.end(), '\n') > 10);
+  REQUIRE(std::count(qualities.begin(), qualities.end(), '\n') > 5);
+  CHECK_THAT(content_of(source_folder() / "docs/settings.md"), Contains(all));
+  CHECK_THAT(content_of(source_folder() / "docs/command-line.md"), Contains(qualities));
+}
+
+TEST_CASE("every setting is an option of render, or one that --set reaches") {
+  const Outcome help = run_photile({"render", "--help"}), list = run_photile({"settings"});
+  for (const Setting& setting : settings()) {
+    CAPTURE(setting.name);
+    if (setting.option.empty()) {
+      CHECK_THAT(list.output, Contains("  " + std::string(setting.name) + " "));
+    } else {
+      CHECK_THAT(help.output, Contains(app::option_of(setting) + " "));
+    }
+  }
+}
+
+TEST_CASE("the help of render has at most 45 options") {
+  std::istringstream help(run_photile({"render", "--help"}).output);
+  int options = 0;
+  for (std::string line; std::getline(help, line);) options += line.starts_with("  -") ? 1 : 0;
+  CHECK(options > 30);
+  CHECK(options <= 45);
+}
+
+TEST_CASE("what --set does not know is refused in a line that says what to type") {
+  const auto [command, arguments, remedy] =
+      GENERATE(table<std::string, std::vector<std::string>, std::string>({
+          {"render", {"--set", "light_map_ray=64"}, "nearest is light_map_rays"},
+          {"render", {"--set", "Radius=1"}, "nearest is radius"},
+          {"render", {"--set", "radius"}, "radius=X"},
+          {"render", {"--set", "maps="}, "naive"},
+          {"render", {"--set", ""}, "empty"},
+          {"render", {"--set", "samples_per_pixel=4"}, "--samples"},
+          {"render", {"--set", "width=4"}, "--size"},
+          {"measure", {"--set", "gloss=rays"}, "no use"},
+          {"render", {"--radius", "0.1"}, "--set radius=0.1"},
+          {"render", {"--angle=30"}, "--set angle_degrees=30"},
+          {"render", {"--light-map-rays", "64"}, "--set light_map_rays=64"},
+          {"walk", {"--lambertian"}, "--set lambertian="},
+      }));
+  const FileFolder folder;
+  const std::string output = command == "measure" ? "out.csv" : "out.exr";
+  std::vector<std::string> all =
+      typed(command, write_box(folder), "-o", folder / output, arguments);
+  CAPTURE(all);
+  CHECK_THAT(only_error(run_photile(all), usage), Contains(remedy));
+}
+
+TEST_CASE("settings of scenes and devices are set by name, too") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto radiance = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", scene, "--size", "8x6", "--photons", "5k", "--quality",
+                               "draft", "-o", folder / name, "-q"});
+    succeed(more);
+    return *read_image(folder / name).find("R");
+  };
+  const auto usual = radiance("a.exr", {});
+  const auto twice = radiance("b.exr", {"--set", "emissive_scale=2", "--set", "device_memory=1",
+                                        "--set", "program_cache=off"});
+  for (std::size_t i = 0; i < usual.size(); ++i) CHECK(twice[i] == Approx(2 * usual[i]));
+}
+
+TEST_CASE("a picture and its statistics tell every setting that it was made with") {
+  const FileFolder folder;
+  succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
+                "--size 16x12 --photons 5k --quality draft --set quota=equal",
+                "--set photons_per_cell=0.1 --set passes=3 --stats", folder / "a.json"));
+  const Image picture = read_image(folder / "a.exr");
+  const auto recorded = nlohmann::json::parse(folder.read("a.json"))["parameters"];
+  for (const Setting& setting : settings()) {
+    const std::string name(setting.name);
+    CAPTURE(name);
+    CHECK(recorded.contains(name));
+    CHECK(picture.attributes.count("photile." + name) == 1);
+  }
+  CHECK(picture.attributes.at("photile.quality") == "draft");
+  CHECK(picture.attributes.at("photile.quota") == "equal");
+  CHECK(picture.attributes.at("photile.photons_per_cell") == "0.1");
+  CHECK(recorded["photons_emitted"] == 5000);
+  CHECK(recorded["samples_per_pixel"] == 6);  // a multiple of the passes
+  CHECK(recorded["passes"] == 3);
+  CHECK(recorded["radius"] > 0);  // the one used
+}
+
+TEST_CASE("--quality sets settings that go together, and those given beside it count") {
+  const FileFolder folder;
+  const auto made_with = [&](const std::vector<std::string>& more) {
+    succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
+                  "--size 8x6 --photons 5k --stats", folder / "a.json", more));
+    const auto record = nlohmann::json::parse(folder.read("a.json"));
+    CHECK(record["asked"]["quality"] == (more.front() == "--quality" ? more[1] : "good"));
+    return record["parameters"];
+  };
+  const nlohmann::json draft = made_with({"--quality", "draft"});
+  // Photons come before the quality on the line, samples after it.
+  const nlohmann::json good = made_with({"--quality", "good", "--samples", "2"});
+  CHECK(good["photons_emitted"] == 5000);
+  CHECK(good["samples_per_pixel"] == 2);
+  CHECK(good["light_maps"] == "on");
+  CHECK(good == made_with({"--samples", "2"}));     // the usual quality
+  CHECK(good["neighbours"] < draft["neighbours"]);  // nodes average over rays, not over photons
+  CHECK(good["light_map_rays"] > 0);
+  CHECK_THAT(only_error(run_photile({"render", write_box(folder), "-o", folder / "b.exr",
+                                     "--quality", "best"}),
+                        usage),
+             Contains("draft, good, final"));
+}
+
+TEST_CASE("nodes gather in pictures unless another method is asked for") {
+  const FileFolder folder;
+  const auto [option, value, gather] =
+      GENERATE(table<std::string, std::string, bool>({{"--set", "direct_rays=1", false},
+                                                      {"--set", "maps=naive", false},
+                                                      {"--set", "light_maps=off", false},
+                                                      {"--set", "passes=2", false}}));
+  CAPTURE(option);
+  succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
+                "--size 8x6 --photons 5k -k 50 --samples 2", option, value, "--stats",
+                folder / "a.json"));
+  const auto used = nlohmann::json::parse(folder.read("a.json"))["parameters"];
+  CHECK((used["light_map_rays"] > 0) == gather);
+}
+
+TEST_CASE("settings that go with no other are refused by the names of their options") {
+  const FileFolder folder;
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments =
+        typed("render", write_box(folder), "-o", folder / "out.exr", more);
+    return only_error(run_photile(arguments), usage);
+  };
+  CHECK_THAT(refusal({"--set", "least_neighbours=60", "-k", "50"}),
+             Contains("least_neighbours") && Contains("60") && Contains("50"));
+}
+
+// Counts and sizes as typed.
+
+TEST_CASE("counts are read with exponents and suffixes") {
+  CHECK(parse_count("0") == 0u);
+  CHECK(parse_count("500000") == 500'000u);
+  CHECK(parse_count("1e6") == 1'000'000u);
+  CHECK(parse_count("4M") == 4'000'000u);
+  CHECK(parse_count("1.1M") == 1'100'000u);
+  CHECK(parse_count("200k") == 200'000u);
+  CHECK(parse_count("2G") == 2'000'000'000u);
+}
+
+TEST_CASE("counts of 64 bits keep every digit") {
+  CHECK(parse_count("18446744073709551615") == std::numeric_limits<std::uint64_t>::max());
+  CHECK(parse_count("9007199254740993") == 9'007'199'254'740'993u);
+}
+
+TEST_CASE("what is no whole number is no count") {
+  const std::string text = GENERATE("", "k", "-1", "1.5", "1e-3", "nan", "inf", "1e30", "12x",
+                                    " 12", "0x10", "1kk", "18446744073709551616");
+  INFO(text);
+  CHECK_FALSE(parse_count(text).has_value());
+}
+
+TEST_CASE("sizes are read as width x height") {
+  const auto size = parse_size("640x480");
+  REQUIRE(size.has_value());
+  CHECK(size->width == 640);
+  CHECK(size->height == 480);
+}
+
+TEST_CASE("what is no size is none") {
+  const std::string text = GENERATE("", "x", "640", "640x", "x480", "6.4x3", "1x2x3", "640X480");
+  INFO(text);
+  CHECK_FALSE(parse_size(text).has_value());
+}
+
+TEST_CASE("shares are read as percentages and as numbers") {
+  CHECK(*parse_share("2%") == Approx(0.02));
+  CHECK(*parse_share("0.02") == Approx(0.02));
+  CHECK(*parse_share("12.5%") == Approx(0.125));
+  const std::string text = GENERATE("", "%", "0", "0%", "-1%", "nan", "inf%", "2 %", "2%%");
+  INFO(text);
+  CHECK_FALSE(parse_share(text).has_value());
+}
+
+TEST_CASE("times are read with their units") {
+  CHECK(*parse_duration("33ms") == Approx(0.033));
+  CHECK(*parse_duration("1.5s") == Approx(1.5));
+  CHECK(*parse_duration("2min") == Approx(120));
+  const std::string text = GENERATE("", "s", "33", "-1s", "0ms", "nan s", "1h", "1s1");
+  INFO(text);
+  CHECK_FALSE(parse_duration(text).has_value());
+}
+
+// Numbers as people read them, at the borders between units.
+
+TEST_CASE("counts take a suffix from a thousand on") {
+  CHECK(format_count(0) == "0");
+  CHECK(format_count(999) == "999");
+  CHECK(format_count(1000) == "1.0k");
+  CHECK(format_count(999.4) == "999");
+  CHECK(format_count(999.6) == "1.0k");
+  CHECK(format_count(0.5) == "0.5");
+  CHECK(format_count(999'960) == "1.0M");
+  CHECK(format_count(1.94e6) == "1.9M");
+  CHECK(format_count(2.5e9) == "2.5G");
+}
+
+TEST_CASE("bytes take binary units") {
+  CHECK(format_bytes(0) == "0 B");
+  CHECK(format_bytes(1023) == "1023 B");
+  CHECK(format_bytes(1024) == "1.0 KiB");
+  CHECK(format_bytes(3ull << 29) == "1.5 GiB");
+}
+
+TEST_CASE("seconds turn into minutes and hours") {
+  CHECK(format_seconds(0.123) == "0.12 s");
+  CHECK(format_seconds(9.999) == "10.0 s");
+  CHECK(format_seconds(59.99) == "1 min 00 s");
+  CHECK(format_seconds(125) == "2 min 05 s");
+  CHECK(format_seconds(3720) == "1 h 02 min");
+  CHECK(format_seconds(std::numeric_limits<double>::infinity()) == "?");
+}
+
+TEST_CASE("numbers of five digits and more are grouped, not powers of ten") {
+  CHECK(format_number(0.58571, 4) == "0.5857");
+  CHECK(format_number(9999, 4) == "9999");
+  CHECK(format_number(11'990, 4) == "11,990");
+  CHECK(format_number(-702'234.4, 4) == "-702,234");
+  CHECK(format_number(1'000'000, 4) == "1,000,000");
+  CHECK(format_number(1e12, 4) == "1e+12");
+  CHECK(format_number(-1234.5, 4) == "-1234");
+}
+
+TEST_CASE("a power is given in its own unit first") {
+  CHECK(format_power_in_both(683, PowerUnit::lumen, 683) == "683 lm (1 W)");
+  CHECK(format_power_in_both(2, PowerUnit::watt, 179) == "2 W (358 lm)");
+}
+
+}  // namespace
 }  // namespace photile::test

@@ -21,29 +21,9 @@ constexpr const char* path = R"([
 
 std::vector<std::string> walk(const FileFolder& folder, const std::vector<std::string>& more = {},
                               const std::string& frames_per_second = "3") {
-  std::vector<std::string> arguments{"walk",
-                                     write_box(folder),
-                                     "-o",
-                                     folder / "f.##.exr",
-                                     "--fps",
-                                     frames_per_second,
-                                     "--quality",
-                                     "draft",
-                                     "--photons",
-                                     "20k",
-                                     "--size",
-                                     "16x12",
-                                     "--camera-path",
-                                     folder.write("path.json", path)};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-
-Outcome done(const std::vector<std::string>& arguments) {
-  Outcome outcome = run_photile(arguments);
-  INFO(outcome.errors);
-  REQUIRE(outcome.exit_code == 0);
-  return outcome;
+  return typed("walk", write_box(folder), "-o", folder / "f.##.exr", "--fps", frames_per_second,
+               "--quality draft --photons 20k --size 16x12 --camera-path",
+               folder.write("path.json", path), more);
 }
 
 std::filesystem::file_time_type written(const std::string& file) {
@@ -56,7 +36,7 @@ TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only th
   const FileFolder folder;
   const std::vector<std::string> arguments =
       walk(folder, {"--png", folder / "f.##.png", "--contact-sheet", folder / "sheet.png"});
-  done(arguments);
+  succeed(arguments);
   for (const char* name : {"f.01.exr", "f.02.exr", "f.03.exr", "f.04.exr", "f.04.png"}) {
     CHECK(std::filesystem::exists(folder / name));
   }
@@ -70,20 +50,20 @@ TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only th
   const auto first_written = written(folder / "f.01.exr");
   std::filesystem::remove(folder / "f.03.exr");
   folder.write("f.04.exr", "no picture");
-  const Outcome again = done(arguments);
+  const Outcome again = succeed(arguments);
   CHECK_THAT(again.errors, Contains("2 of 4 frames are finished"));
   CHECK(written(folder / "f.01.exr") == first_written);
   CHECK(folder.read("sheet.png") == sheet_bytes);
   const Image now = read_image(folder / "f.03.exr");
   folder.write("before.exr", third);
   CHECK(*now.find("G") == *read_image(folder / "before.exr").find("G"));
-  CHECK_THAT(done(arguments).errors, Contains("4 of 4 frames are finished"));
+  CHECK_THAT(succeed(arguments).errors, Contains("4 of 4 frames are finished"));
 }
 
 TEST_CASE("damaged frames and PNGs of a walk are made again, and no others") {
   const FileFolder folder;
   const std::vector<std::string> arguments = walk(folder, {"--png", folder / "f.##.png"});
-  done(arguments);
+  succeed(arguments);
   const std::string second = folder.read("f.02.exr"), third = folder.read("f.03.exr"),
                     png = folder.read("f.04.png");
   folder.write("f.02.exr", second.substr(0, second.size() / 2));
@@ -93,7 +73,7 @@ TEST_CASE("damaged frames and PNGs of a walk are made again, and no others") {
   folder.write("f.04.png", png.substr(0, png.size() / 2));
   const auto first_written = written(folder / "f.01.exr"),
              last_written = written(folder / "f.04.exr");
-  CHECK_THAT(done(arguments).errors, Contains("2 of 4 frames are finished"));
+  CHECK_THAT(succeed(arguments).errors, Contains("2 of 4 frames are finished"));
   CHECK(written(folder / "f.01.exr") == first_written);
   CHECK(written(folder / "f.04.exr") == last_written);
   folder.write("whole.exr", second);
@@ -122,7 +102,7 @@ TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in pr
     CHECK_FALSE(std::filesystem::exists(file(number)));
   }
   const auto first_written = written(file(1)), last_written = written(file(finished));
-  CHECK_THAT(done(run.arguments).errors,
+  CHECK_THAT(succeed(run.arguments).errors,
              Contains(fmt::format("{} of {} frames are finished", finished, frames)));
   CHECK(written(file(1)) == first_written);
   CHECK(written(file(finished)) == last_written);
@@ -139,16 +119,16 @@ TEST_CASE("saved photons are those of one pass, and the refusal says so") {
 
 TEST_CASE("frames of other settings are not taken for finished") {
   const FileFolder folder;
-  done(walk(folder));
+  succeed(walk(folder));
   const std::string change = GENERATE("--seed=2", "--neighbours=40", "--light=left=x2",
                                       "--set=radius=0.3", "--samples=2", "--set=quota=equal");
   INFO(change);
-  CHECK_THAT(done(walk(folder, {change})).errors, !Contains("finished"));
+  CHECK_THAT(succeed(walk(folder, {change})).errors, !Contains("finished"));
 }
 
 TEST_CASE("a frame has the layers and the attributes of any picture, and its own camera") {
   const FileFolder folder;
-  done(walk(folder));
+  succeed(walk(folder));
   const Image first = read_image(folder / "f.01.exr"), last = read_image(folder / "f.04.exr");
   CHECK(first.find("Combined_left.R") != nullptr);
   CHECK(first.find("Illuminance_right.Y") != nullptr);
@@ -170,7 +150,7 @@ TEST_CASE(
     if (argument == folder / "path.json") argument = folder.write("still.json", still);
     if (argument == folder / "f.##.exr") argument = folder / "q.##.png";
   }
-  done(arguments);
+  succeed(arguments);
   CHECK(folder.read("q.01.png") == folder.read("q.02.png"));
   CHECK(folder.read("q.01.png") != folder.read("q.05.png"));
   CHECK_FALSE(std::filesystem::exists(folder / "q.01.exr"));
@@ -178,14 +158,14 @@ TEST_CASE(
 
 TEST_CASE("quick frames as EXR hold R, G, B, and are not made twice") {
   const FileFolder folder;
-  done(walk(folder, {"--quick"}));
+  succeed(walk(folder, {"--quick"}));
   const Image frame = read_image(folder / "f.01.exr");
   CHECK(frame.channel_names == std::vector<std::string>{"R", "G", "B"});
   CHECK(frame.attributes.at("photile.scene") == "box.obj");
   const std::vector<float>& green = *frame.find("G");
   CHECK(*std::min_element(green.begin(), green.end()) > 0);
-  CHECK_THAT(done(walk(folder, {"--quick"})).errors, Contains("4 of 4 frames are finished"));
-  CHECK_THAT(done(walk(folder)).errors, !Contains("finished"));
+  CHECK_THAT(succeed(walk(folder, {"--quick"})).errors, Contains("4 of 4 frames are finished"));
+  CHECK_THAT(succeed(walk(folder)).errors, !Contains("finished"));
 }
 
 TEST_CASE("a walk from saved maps draws the same frames, without a photon") {
@@ -195,7 +175,7 @@ TEST_CASE("a walk from saved maps draws the same frames, without a photon") {
   const auto frames = [&](const std::string& option) {
     std::vector<std::string> arguments = walk(folder, rays);
     arguments.insert(arguments.end(), {option, maps});
-    done(arguments);
+    succeed(arguments);
     std::vector<Image> images;
     for (const char* name : {"f.01.exr", "f.04.exr"}) {
       images.push_back(read_image(folder / name));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "message_of.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 #include "weather_text.hpp"
@@ -23,12 +24,7 @@ std::string text_of_year() {
 std::string error_of(const TemporaryFolder& folder, const std::string& text) {
   const auto file = folder.path / "bad.epw";
   std::ofstream(file, std::ios::binary) << text;
-  try {
-    weather::read_weather(file);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<InputError>([&] { weather::read_weather(file); });
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -130,7 +130,7 @@ std::set<std::string> symbols() {
 
 }  // namespace
 
-TEST_CASE("every kernel file compiles as it lies there", "[kernel files]") {
+TEST_CASE("every kernel file compiles as it lies there") {
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kernel_root())) {
     if (entry.path().extension() != ".cl") continue;
@@ -140,7 +140,7 @@ TEST_CASE("every kernel file compiles as it lies there", "[kernel files]") {
   CHECK(files > 10);
 }
 
-TEST_CASE("every specialisation that the host makes of a kernel compiles", "[kernel files]") {
+TEST_CASE("every specialisation that the host makes of a kernel compiles") {
   for (const auto& [file, options] : host_programs()) {
     const std::string errors = errors_of(file, options);
     INFO(errors);
@@ -148,8 +148,7 @@ TEST_CASE("every specialisation that the host makes of a kernel compiles", "[ker
   }
 }
 
-TEST_CASE("the host sets the symbols that kernels know, all of them and no others",
-          "[kernel files]") {
+TEST_CASE("the host sets the symbols that kernels know, all of them and no others") {
   std::set<std::string> set_by_host;
   for (const auto& [file, options] : host_programs()) {
     set_by_host.merge(matches(options, std::regex("-D ([A-Z0-9_]+)=")));
@@ -157,7 +156,7 @@ TEST_CASE("the host sets the symbols that kernels know, all of them and no other
   CHECK(set_by_host == symbols());
 }
 
-TEST_CASE("kernels read nothing of lobes or lights that the scene does not have", "[needs]") {
+TEST_CASE("kernels read nothing of lobes or lights that the scene does not have") {
   // With all of its functions inlined, a kernel names an argument that it does not use just once.
   const auto unread = [](const Specialisation& choice) {
     const TemporaryFolder folder;

@@ -1,20 +1,25 @@
-// Two oracles: FCL's triangle distance, and a bracket that needs no other library. Alternating
-// projections give points of both triangles, so their distance is an upper bound; the gap between
-// the triangles' extents along the direction between those points is a lower bound.
+// Distances and boxes.
 #include <fcl/narrowphase/detail/primitive_shape_algorithm/triangle_distance.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "geometry/box_tree.hpp"
+#include "groups/automatic_radius.hpp"
 #include "meshes.hpp"
 #include "photile/neighbour_groups.hpp"
 
 namespace photile::test {
 namespace {
+
+// Two oracles: FCL's triangle distance, and a bracket that needs no other library. Alternating
+// projections give points of both triangles, so their distance is an upper bound; the gap between
+// the triangles' extents along the direction between those points is a lower bound.
 
 double fcl_distance(const Corners& a, const Corners& b) {
   const auto convert = [](const glm::dvec3& p) { return fcl::Vector3d(p.x, p.y, p.z); };
@@ -166,8 +171,6 @@ std::vector<Family> families() {
   };
 }
 
-}  // namespace
-
 TEST_CASE("triangle distance agrees with FCL on 100000 random pairs") {
   Uniform uniform(1);
   double worst = 0;
@@ -251,4 +254,124 @@ TEST_CASE("triangle distance equals known answers") {
   CHECK(triangle_triangle_distance(a, a) == 0);
 }
 
+// Boxes near a box, against a look at each.
+
+std::vector<geometry::Box> random_boxes(std::size_t count, test::Uniform& uniform) {
+  std::vector<geometry::Box> boxes(count);
+  for (geometry::Box& box : boxes) {
+    const glm::vec3 corner(uniform.point(0, 1));
+    box.extend(corner);
+    box.extend(corner + glm::vec3(uniform.point(0, 0.1)));
+  }
+  return boxes;
+}
+
+TEST_CASE("a tree visits every box within the distance, each once") {
+  const std::size_t count = GENERATE(1u, 2u, 5u, 100u, 20'000u);  // the last is built in parallel
+  test::Uniform uniform(count);
+  std::vector<geometry::Box> boxes = random_boxes(count, uniform);
+  if (count == 100) boxes.assign(count, boxes.front());  // all in one place
+  const geometry::BoxTree tree(boxes);
+  for (const geometry::Box& query : random_boxes(50, uniform)) {
+    constexpr float limit = 0.01f;
+    std::vector<int> visits(count, 0);
+    tree.visit_within(query, limit, [&](std::uint32_t box) {
+      ++visits[box];
+      return false;
+    });
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool near = geometry::squared_distance(boxes[i], query) <= limit;
+      if (visits[i] > 1 || (near && visits[i] == 0)) ++wrong;
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("a tree visits the boxes that overlap one, each once, and no others") {
+  const std::size_t count = GENERATE(0u, 1u, 5u, 20'000u);
+  test::Uniform uniform(count);
+  const std::vector<geometry::Box> boxes = random_boxes(count, uniform);
+  const geometry::BoxTree tree(boxes);
+  std::vector<geometry::Box> queries = random_boxes(50, uniform);
+  if (count > 0) queries.push_back(boxes.front());
+  std::size_t wrong = 0, met = 0;
+  for (const geometry::Box& query : queries) {
+    std::vector<int> visits(count, 0);
+    tree.visit_overlapping(boxes, query, [&](std::uint32_t box) { ++visits[box]; });
+    for (std::size_t i = 0; i < count; ++i) {
+      bool apart = false;
+      for (int axis = 0; axis < 3; ++axis) {
+        apart = apart || boxes[i].upper[axis] < query.lower[axis] ||
+                query.upper[axis] < boxes[i].lower[axis];
+      }
+      if (visits[i] != (apart ? 0 : 1)) ++wrong;
+      if (!apart) ++met;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK((met > 0) == (count > 0));
+}
+
+TEST_CASE("a tree without boxes visits none, and a visit that returns true is the last") {
+  int visits = 0;
+  const auto stop = [&](std::uint32_t) { return ++visits > 0; };
+  geometry::Box everywhere;
+  everywhere.extend(glm::vec3(-1e6f));
+  everywhere.extend(glm::vec3(1e6f));
+  geometry::BoxTree(std::vector<geometry::Box>{}).visit_within(everywhere, 1, stop);
+  CHECK(visits == 0);
+  test::Uniform uniform(1);
+  geometry::BoxTree(random_boxes(30, uniform)).visit_within(everywhere, 1, stop);
+  CHECK(visits == 1);
+}
+
+// Distances to the m-th nearest photon, against all distances sorted.
+
+/// Sheets, a dense lump, points that coincide, and one far away.
+std::vector<glm::vec3> uneven_positions(std::size_t count) {
+  test::Uniform uniform(count);
+  std::vector<glm::vec3> positions;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 point(uniform.point(0, 4));
+    positions.push_back(i % 4 == 0   ? glm::vec3(point.x, point.y, 0)
+                        : i % 4 == 1 ? glm::vec3(0, point.y, point.z)
+                        : i % 4 == 2 ? glm::vec3(1) + 1e-3f * point
+                                     : glm::vec3(2, 3, 0));
+  }
+  positions.back() = glm::vec3(1e4f);
+  return positions;
+}
+
+TEST_CASE("the m-th nearest photon is that of all distances sorted") {
+  const std::size_t count = GENERATE(2u, 31u, 1000u, 20'000u);
+  const std::vector<glm::vec3> positions = uneven_positions(count);
+  const groups::PhotonBlocks blocks(positions, count);
+  REQUIRE(blocks.size() == count);
+  std::vector<float> scratch;
+  for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / 50)) {
+    std::vector<double> squared;
+    for (const glm::vec3& position : positions) {
+      const glm::dvec3 offset = glm::dvec3(position) - glm::dvec3(positions[i]);
+      squared.push_back(glm::dot(offset, offset));
+    }
+    std::sort(squared.begin(), squared.end());
+    for (const std::size_t m : {std::size_t{1}, count / 20, count / 2, count - 1}) {
+      CAPTURE(count, i, m);
+      CHECK(blocks.squared_distance(i, m, scratch) == Approx(squared[m]).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("of more positions than wanted those in equal steps are taken") {
+  std::vector<glm::vec3> positions;
+  for (int i = 0; i < 100; ++i) positions.emplace_back(i, 0, 0);
+  const groups::PhotonBlocks blocks(positions, 10);  // 5, 15, ... 95
+  CHECK(blocks.size() == 10);
+  std::vector<float> scratch;
+  CHECK(blocks.squared_distance(0, 1, scratch) == 100);
+  CHECK(blocks.squared_distance(9, 9, scratch) == 8100);
+}
+
+}  // namespace
 }  // namespace photile::test

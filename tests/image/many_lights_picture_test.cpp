@@ -192,7 +192,7 @@ TEST_CASE("every limit of the space gives an error or the whole file of many lig
     CHECK(message.find("free space") != std::string::npos);
     CHECK(files_in(folder.path) == 0);
   }
-  write_bytes(folder / "a.exr", "earlier");
+  put(folder / "a.exr", "earlier");
   {
     const FileSizeLimit limit(whole.size() / 2);
     CHECK_THROWS_AS(write_exr(folder / "a.exr", *picture), OutputError);
@@ -208,10 +208,10 @@ TEST_CASE(
   const LightLayers layers = random_sparse_layers(8, 70, many);
   write_exr(folder / "a.exr", *mixed_picture(layers, mix_of(layers)));
   const std::string whole = bytes_of(folder / "a.exr");
-  write_bytes(folder / "relit.exr", "earlier");
+  put(folder / "relit.exr", "earlier");
   for (std::size_t part = 0; part < 16; ++part) {
     INFO("cut at " << part << "/16");
-    write_bytes(folder / "cut.exr", whole.substr(0, whole.size() * part / 16));
+    put(folder / "cut.exr", whole.substr(0, whole.size() * part / 16));
     const std::string message = message_of<InputError>(
         [&] { write_exr(folder / "relit.exr", *relit_picture(folder / "cut.exr", {})); });
     CHECK(message.find("cut.exr") != std::string::npos);

@@ -50,11 +50,11 @@ TEST_CASE("a run removes what killed runs left in the folder, and nothing that i
   const TemporaryFolder folder;
   // Files that no process holds; the last two names are not of photile's.
   for (const char* name : {".photile.0123456789abcdef", ".photile.00000000ffffffff"}) {
-    write_bytes(folder / name, "half");
+    put(folder / name, "half");
   }
   for (const char* name : {".photile.0123456789abcdeg", ".photile.0123456789abcdef0",
                            "photile.0123456789abcdef", ".photile.7"}) {
-    write_bytes(folder / name, "mine");
+    put(folder / name, "mine");
   }
   // A child that writes.
   int ready[2], done[2];
@@ -122,7 +122,7 @@ TEST_CASE("a symbolic link to what does not exist is followed, or refused and ke
 
 TEST_CASE("a folder that is missing, is a file, or cannot be written is refused by name") {
   const TemporaryFolder folder;
-  write_bytes(folder / "file", "x");
+  put(folder / "file", "x");
   for (const Writer write : {Writer{write_exr}, Writer{write_png}}) {
     refusal(write, folder / "missing/a.exr");
     refusal(write, folder / "file/a.exr");
@@ -178,7 +178,7 @@ TEST_CASE("every limit of the space gives an error or the whole file, nothing be
 
 TEST_CASE("a finished file replaces an earlier one, alone in its folder, and follows a link") {
   const TemporaryFolder folder;
-  write_bytes(folder / "a.exr", "old");
+  put(folder / "a.exr", "old");
   fs::create_symlink("a.exr", folder / "link.exr");
   write_exr(folder / "link.exr", noise(4, 4));
   CHECK(fs::is_symlink(folder / "link.exr"));

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "file_bytes.hpp"
+#include "message_of.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "temporary_folder.hpp"
@@ -19,15 +21,6 @@ namespace photile::test {
 
 inline std::filesystem::path operator/(const TemporaryFolder& folder, const std::string& name) {
   return folder.path / name;
-}
-
-inline std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-inline void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
 }
 
 /// Equal bit for bit, so that NaN equals itself and 0 differs from -0.
@@ -85,20 +78,6 @@ inline MixedLight mixed(const std::string& name, double power, PowerUnit unit = 
   light.power = power;
   light.unit = unit;
   return light;
-}
-
-/// The message of the Failure that an action throws; fails where it throws none.
-template <class Failure, class Action>
-std::string message_of(Action&& action) {
-  try {
-    action();
-  } catch (const Failure& error) {
-    const std::string message = error.what();
-    CHECK(message.find('\n') == std::string::npos);
-    return message;
-  }
-  FAIL("nothing was thrown");
-  return {};
 }
 
 }  // namespace photile::test

@@ -1,9 +1,17 @@
+// OBJ and MTL files: what they say, and damage at random.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
+#include <random>
+#include <string_view>
 
+#include "damaged_files.hpp"
+#include "reading/triangles.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {
@@ -120,6 +128,290 @@ TEST_CASE("a missing material library and a missing material are named and becom
   CHECK(warns(scene, {"absent.mtl"}));
   CHECK(warns(scene, {"'nowhere'", "grey"}));
   CHECK(scene.materials[scene.triangle_material[1]].diffuse == glm::vec3(0.5f));
+}
+
+/// Material m of an MTL text, beside a lamp. Warnings go to `report` where given.
+Material mtl_material(const std::string& statements, Scene* report = nullptr) {
+  Scene scene = load_obj(unit_square + "usemtl lamp\nf 1 2 3\nusemtl m\nf 1 3 4\n",
+                         "newmtl lamp\nKe 1 1 1\nnewmtl m\n" + statements);
+  const Material result = scene.materials[scene.triangle_material[1]];
+  if (report != nullptr) *report = std::move(scene);
+  return result;
+}
+
+TEST_CASE("MTL Ks without a specular illumination model is diffuse only") {
+  const Material m = mtl_material("Kd 0.5 0.25 0.125\nKs 0.3 0.3 0.3\nNs 50\nillum 1\n");
+  CHECK(m.interaction == Interaction::opaque);
+  CHECK(m.diffuse == glm::vec3(0.5f, 0.25f, 0.125f));
+  CHECK_FALSE(m.glossy());
+}
+
+TEST_CASE("MTL illum 2 is glossy with GGX alpha sqrt(2 / (Ns + 2))") {
+  const Material m = mtl_material("Kd 0.5 0.5 0.5\nKs 0.2 0.3 0.4\nNs 30\nillum 2\n");
+  CHECK(m.glossy());
+  CHECK(m.specular == glm::vec3(0.2f, 0.3f, 0.4f));
+  CHECK(m.roughness == Approx(0.25));
+}
+
+TEST_CASE("MTL Kd + Ks above 1 is scaled to 1 with a warning") {
+  Scene scene;
+  const Material m = mtl_material("Kd 0.9 0.2 0.1\nKs 0.6 0.1 0.1\nNs 30\nillum 2\n", &scene);
+  CHECK(m.diffuse.r == Approx(0.6));
+  CHECK(m.specular.r == Approx(0.4));
+  CHECK(m.diffuse.g == Approx(0.2 / 1.5));
+  CHECK(warns(scene, {"'m'", "exceeds 1"}));
+}
+
+TEST_CASE("MTL illum 3 with a sharp lobe or without a diffuse part is a mirror") {
+  CHECK(mtl_material("Kd 0.1 0.1 0.1\nKs 0.8 0.8 0.8\nNs 1000\nillum 3\n").interaction ==
+        Interaction::mirror);
+  const Material black = mtl_material("Kd 0 0 0\nKs 0.8 0.7 0.6\nNs 10\nillum 5\n");
+  CHECK(black.interaction == Interaction::mirror);
+  CHECK(black.specular == glm::vec3(0.8f, 0.7f, 0.6f));
+  CHECK(black.diffuse == glm::vec3(0.0f));
+  CHECK(mtl_material("Kd 0.4 0.4 0.4\nKs 0.3 0.3 0.3\nNs 10\nillum 3\n").interaction ==
+        Interaction::opaque);
+}
+
+TEST_CASE("MTL glass models and transparency with Ni are glass of that index") {
+  for (const std::string model :
+       {"illum 4\n", "illum 6\n", "illum 7\n", "illum 9\n", "d 0.2\n", "Tr 0.8\n"}) {
+    const Material m = mtl_material("Kd 1 1 1\nNi 1.33\nTf 0.9 0.8 0.7\n" + model);
+    CHECK(m.interaction == Interaction::glass);
+    CHECK(m.index_of_refraction == 1.33f);
+    CHECK(m.transmission == glm::vec3(0.9f, 0.8f, 0.7f));
+  }
+  CHECK(mtl_material("illum 7\n").index_of_refraction == 1.5f);
+}
+
+TEST_CASE("MTL glass of a Phong exponent that is no mirror's is named as rough") {
+  Scene scene;
+  mtl_material("illum 7\nNs 250\n", &scene);
+  CHECK(warns(scene, {"'m'", "rough glass (Ns 250)", "smooth"}));
+  for (const std::string exponent : {"", "Ns 0\n", "Ns 1\n", "Ns 1000\n"}) {
+    mtl_material("illum 7\n" + exponent, &scene);
+    CHECK_FALSE(warns(scene, {"rough"}));
+  }
+}
+
+TEST_CASE("MTL transparency without Ni lets light through by chance, with a warning") {
+  Scene scene;
+  const Material m = mtl_material("Kd 1 1 1\nd 0.5\n", &scene);
+  CHECK(m.interaction == Interaction::opaque);
+  CHECK(m.opacity == 0.5f);
+  CHECK(warns(scene, {"'m'", "chance"}));
+  CHECK_FALSE(mtl_material("Kd 1 1 1\nd 0\n", &scene).has_holes());
+  CHECK(warns(scene, {"'m'", "opaque"}));
+}
+
+TEST_CASE("MTL roughness and metallic factors are used where present") {
+  const Material m = mtl_material("Kd 0.5 0.5 0.5\nPr 0.5\nPm 1\n");
+  CHECK(m.diffuse == glm::vec3(0.0f));
+  CHECK(m.specular == glm::vec3(0.5f));
+  CHECK(m.roughness == Approx(0.25));
+}
+
+TEST_CASE("a missing MTL texture is named and becomes mid grey") {
+  Scene scene;
+  const Material m = mtl_material("Kd 1 1 1\nmap_Kd absent.png\n", &scene);
+  CHECK(m.diffuse == glm::vec3(0.5f));
+  CHECK(m.diffuse_texture == none);
+  CHECK(warns(scene, {"'m'", "absent.png", "grey"}));
+}
+
+TEST_CASE("MTL textures other than map_Kd are named in a warning") {
+  Scene scene;
+  mtl_material("Kd 1 1 1\nmap_Ks s.png\nbump b.png\n", &scene);
+  CHECK(warns(scene, {"map_Ks"}));
+  CHECK(warns(scene, {"bump"}));
+}
+
+TEST_CASE("materials that scatter in one way cost nothing elsewhere") {
+  Scene scene;
+  mtl_material("Kd 1 1 1\n", &scene);
+  CHECK_FALSE(needs_of(scene).glossy);
+  CHECK_FALSE(needs_of(scene).textures);
+  CHECK_FALSE(needs_of(scene).specular_paths);
+  CHECK(needs_of(scene).light_count == 1);
+  CHECK(scene.corner_uv.empty());
+  CHECK(scene.corner_normal.empty());
+  mtl_material("illum 7\n", &scene);
+  CHECK(needs_of(scene).specular_paths);
+}
+
+glm::dvec3 area_vector(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  return 0.5 * glm::cross(b - a, c - a);
+}
+
+/// Checks that the triangles tile a planar polygon: their oriented areas all point the polygon's
+/// way, and sum to its area by the shoelace formula.
+void check_tiling(const std::vector<glm::dvec3>& polygon) {
+  const reading::Triangulation result = reading::triangulate_polygon(polygon);
+  CHECK(result.simple);
+  CHECK(result.triangles.size() == polygon.size() - 2);
+  glm::dvec3 expected(0.0);
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    expected += 0.5 * glm::cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  }
+  double sum = 0.0;
+  for (const auto& [a, b, c] : result.triangles) {
+    const glm::dvec3 area = area_vector(polygon[a], polygon[b], polygon[c]);
+    CHECK(glm::dot(area, expected) >= -1e-12);
+    sum += glm::length(area);
+  }
+  CHECK(sum == Approx(glm::length(expected)).epsilon(1e-9));
+}
+
+/// A star polygon around the origin: simple, mostly concave, in a tilted plane.
+std::vector<glm::dvec3> star(int corners, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> radius(0.1, 1.0);
+  const glm::dmat3 tilt(glm::rotate(glm::dmat4(1.0), 1.1, glm::dvec3(1.0, 2.0, 3.0)));
+  std::vector<glm::dvec3> polygon;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / corners, r = radius(generator);
+    polygon.push_back(tilt * glm::dvec3(r * std::cos(angle), r * std::sin(angle), 0.0));
+  }
+  return polygon;
+}
+
+TEST_CASE("concave polygons are tiled: area against the shoelace formula") {
+  check_tiling({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0.5, 0}, {0, 2, 0}});
+  check_tiling(
+      {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});
+  for (unsigned seed = 0; seed < 20; ++seed)
+    check_tiling(star(5 + static_cast<int>(seed) * 3, seed));
+}
+
+TEST_CASE("polygons with corners on their straight edges are tiled") {
+  check_tiling(
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
+}
+
+TEST_CASE("a dart is split along its only diagonal inside") {
+  const reading::Triangulation dart = reading::triangulate_polygon(
+      std::vector<glm::dvec3>{{0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0}});
+  REQUIRE(dart.triangles.size() == 2);
+  for (const auto& triangle : dart.triangles) {
+    CHECK(std::count(triangle.begin(), triangle.end(), 0u) == 1);
+    CHECK(std::count(triangle.begin(), triangle.end(), 2u) == 1);
+  }
+}
+
+TEST_CASE("the triangles of a polygon depend neither on its winding nor on its first corner") {
+  const std::vector<glm::dvec3> polygon = star(17, 3);
+  const auto positions = [](const std::vector<glm::dvec3>& corners) {
+    std::vector<std::vector<double>> result;
+    for (const auto& triangle : reading::triangulate_polygon(corners).triangles) {
+      std::vector<double> sorted;
+      for (const std::uint32_t i : triangle) {
+        sorted.insert(sorted.end(), {corners[i].x, corners[i].y, corners[i].z});
+      }
+      std::sort(sorted.begin(), sorted.end());
+      result.push_back(sorted);
+    }
+    return result;
+  };
+  std::vector<glm::dvec3> reversed(polygon.rbegin(), polygon.rend()), rotated = polygon;
+  std::rotate(rotated.begin(), rotated.begin() + 5, rotated.end());
+  CHECK(positions(reversed) == positions(polygon));
+  CHECK(positions(rotated) == positions(polygon));
+}
+
+TEST_CASE("a polygon that crosses itself is told from a simple one") {
+  CHECK_FALSE(reading::triangulate_polygon(
+                  std::vector<glm::dvec3>{{0, 0, 0}, {4, 3, 0}, {4, 0, 0}, {0, 2, 0}, {-1, 1, 0}})
+                  .simple);
+}
+
+TEST_CASE("polygons without area give triangles for the caller to drop, and end") {
+  CHECK(
+      reading::triangulate_polygon(std::vector<glm::dvec3>(6, glm::dvec3(1.0))).triangles.size() ==
+      4);
+  CHECK(reading::triangulate_polygon(
+            std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})
+            .triangles.size() == 2);
+}
+
+// OBJ and MTL texts damaged at random, with fixed seeds.
+
+/// A text with something of everything that is read.
+const std::string sound_obj =
+    "mtllib fuzz.mtl\no room\n" + unit_square +
+    "vn 0 0 1\nvn 0.1 0 1\nv 0 0 2 1\nv 1 0 2 0.5 0.5 0.5\nv 1 1 2\nv 0.5 0.5 2.5\nv 0 1 2\n"
+    "usemtl wall\nf 1/1/1 2/2/1 3/3/2 4/4/2\ng lamps upper\nusemtl lamp\ns 1\n"
+    "f 5 6 7 8 9\nf -5//-1 -4//-2 \\\n -3//-1\nusemtl glass\nf 1/1 2/2 7/3\nl 1 2\np 3\n"
+    "usemtl shiny\nf 1 4 9 5\nusemtl nowhere\nf 2 3 7\n";
+
+const std::string sound_mtl =
+    "newmtl lamp\nKd 0 0 0\nKe 2 2 2\nmap_Ke -s 1 1 1 -o 0 0 0 absent.png\n\nnewmtl wall\n"
+    "Kd 0.5 0.25 0.125\nmap_Kd -clamp on -bm 0.2 absent.png\nmap_bump -imfchan r -mm 0 1 b.png\n"
+    "newmtl glass\nd 0.2\nNi 1.5\nTf 0.9 0.9 0.9\nillum 4\nTr 0.8\n"
+    "newmtl shiny\nKs 0.5 0.5 0.5\nNs 200\nillum 2\nPr 0.3\nPm 0.1\nnorm -texres 4 n.png\n";
+
+TEST_CASE("the OBJ and MTL texts that are damaged below are sound") {
+  const SceneFolderOnDisk folder;
+  folder.write("fuzz.mtl", sound_mtl);
+  const Scene scene = load_scene(folder.write("fuzz.obj", sound_obj));
+  check_invariants(scene);
+  CHECK(scene.triangle_count() == 2 + 3 + 1 + 1 + 2 + 1);
+  CHECK(scene.materials.size() == 5);
+}
+
+TEST_CASE("an OBJ or MTL text cut anywhere is read or refused") {
+  DamagedFiles files;
+  files.write("fuzz.mtl", sound_mtl);
+  for (std::size_t length = 0; length < sound_obj.size(); ++length) {
+    files.load("fuzz.obj", sound_obj.substr(0, length));
+  }
+  for (std::size_t length = 0; length < sound_mtl.size(); ++length) {
+    files.write("fuzz.mtl", sound_mtl.substr(0, length));
+    files.load("fuzz.obj", sound_obj);
+  }
+  CHECK(files.loaded > 300);
+  CHECK(files.refused > 100);
+}
+
+TEST_CASE("OBJ and MTL texts with bytes or words replaced at random are read or refused") {
+  constexpr std::array<std::string_view, 22> words{"f",
+                                                   "v",
+                                                   "usemtl",
+                                                   "newmtl",
+                                                   "map_Kd",
+                                                   "-1",
+                                                   "0",
+                                                   "4294967295",
+                                                   "1e999",
+                                                   "nan",
+                                                   "-inf",
+                                                   "//",
+                                                   "1/2/3/4",
+                                                   "-2147483648",
+                                                   "-o",
+                                                   "-mm",
+                                                   "\\\n",
+                                                   "\r",
+                                                   "#",
+                                                   "refl -type sphere",
+                                                   "mtllib fuzz.obj",
+                                                   "Ke 1e30 -1 nan"};
+  std::mt19937 random(13);
+  DamagedFiles files;
+  const auto damaged = [&](std::string text) {
+    if (random() % 2 == 0) return with_replaced_bytes(std::move(text), random);
+    for (unsigned changes = 1 + random() % 3; changes > 0; --changes) {
+      const std::size_t begin = random() % text.size();
+      const std::size_t end = std::min(text.find_first_of(" \n/", begin), text.size());
+      text.replace(begin, end - begin, words[random() % words.size()]);
+    }
+    return text;
+  };
+  for (int trial = 0; trial < 2'000; ++trial) {
+    files.write("fuzz.mtl", trial % 2 == 0 ? sound_mtl : damaged(sound_mtl));
+    files.load("fuzz.obj", trial % 3 == 0 ? sound_obj : damaged(sound_obj));
+  }
+  CHECK(files.loaded > 500);
+  CHECK(files.refused > 200);
 }
 
 }  // namespace

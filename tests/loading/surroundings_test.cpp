@@ -1,19 +1,27 @@
-// Environments, suns and skies against closed forms, and pictures that are none.
+// What surrounds a scene.
 #include "loading/surroundings.hpp"
 
 #include <OpenImageIO/imageio.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
 #include <limits>
 #include <numbers>
+#include <random>
 
+#include "pictures/textures.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {
 namespace {
 
+using pictures::CubeMap;
 using std::numbers::pi;
+
+// Environments, suns and skies against closed forms, and pictures that are none.
 
 /// Illuminance of a surface that faces `normal` under all of the map: the midpoint rule over each
 /// texel.
@@ -145,7 +153,7 @@ TEST_CASE("a sun gives its lux to a surface that faces it, whatever its size", "
   }
 }
 
-TEST_CASE("skies give their lux to the ground", "[sky]") {
+TEST_CASE("skies give their lux to the ground") {
   const glm::dvec3 to_sun = loading::direction_to(Sun{200, 35, 1});
   for (const SkyKind kind : {SkyKind::uniform, SkyKind::overcast, SkyKind::clear}) {
     const EnvironmentMap sky = loading::sky_map(kind, 12'000, to_sun);
@@ -154,7 +162,7 @@ TEST_CASE("skies give their lux to the ground", "[sky]") {
   }
 }
 
-TEST_CASE("luminances of uniform and overcast skies follow their closed forms", "[sky]") {
+TEST_CASE("luminances of uniform and overcast skies follow their closed forms") {
   const EnvironmentMap uniform = loading::sky_map(SkyKind::uniform, 1000, {});
   CHECK(uniform.radiance({0.6f, 0.8f, 0}).g == Approx(1000 / pi));
   const EnvironmentMap overcast = loading::sky_map(SkyKind::overcast, 10'000, {});
@@ -166,7 +174,7 @@ TEST_CASE("luminances of uniform and overcast skies follow their closed forms", 
   CHECK(illuminance(overcast, {1, 0, 0}) == Approx(zenith / 3 * (pi / 2 + 4.0 / 3)).epsilon(1e-3));
 }
 
-TEST_CASE("a clear sky is brightest at its sun and darkest about 90 degrees from it", "[sky]") {
+TEST_CASE("a clear sky is brightest at its sun and darkest about 90 degrees from it") {
   const glm::dvec3 to_sun = loading::direction_to(Sun{0, 45, 1});
   const EnvironmentMap sky = loading::sky_map(SkyKind::clear, 10'000, to_sun);
   const auto relative = [&](const glm::dvec3& direction) {
@@ -185,7 +193,7 @@ TEST_CASE("a clear sky is brightest at its sun and darkest about 90 degrees from
   }
 }
 
-TEST_CASE("a clear sky needs a sun above the horizon", "[sky]") {
+TEST_CASE("a clear sky needs a sun above the horizon") {
   SceneLoadOptions options;
   options.sky = Sky{SkyKind::clear, 10'000};
   CHECK_THROWS_AS(load_under(options), UsageError);
@@ -198,7 +206,7 @@ TEST_CASE("a clear sky needs a sun above the horizon", "[sky]") {
   CHECK(scene.lights[1].power > 0);
 }
 
-TEST_CASE("lux become watts in an OBJ scene, by the luminous efficacy", "[sky]") {
+TEST_CASE("lux become watts in an OBJ scene, by the luminous efficacy") {
   SceneLoadOptions options;
   options.sun = Sun{0, 90, 683, 0};
   options.lumen_per_watt = 179;
@@ -222,6 +230,107 @@ TEST_CASE("texts of suns and skies are checked", "[sun]") {
        {"", "overcast", "overcast=", "=1", "cloudy=1", "clear=-1", "clear=0", "clear=1lx"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(Sky::parse(text), UsageError);
+  }
+}
+
+// Cube maps against OpenGL's table of their faces, flipped as EXT_lights_image_based asks, and against
+// integrals in closed form.
+
+/// OpenGL 4.6, table 8.19: the direction of a place of a face, s and t from 0 to 1, t from the
+/// first row of texels on.
+glm::dvec3 opengl_direction(std::size_t face, double s, double t) {
+  const double sc = 2 * s - 1, tc = 2 * t - 1;
+  const std::array<glm::dvec3, 6> directions{
+      {{1, -tc, -sc}, {-1, -tc, sc}, {sc, 1, tc}, {sc, -1, -tc}, {sc, -tc, 1}, {-sc, -tc, -1}}};
+  return glm::normalize(directions[face]);
+}
+
+/// Direction of the middle of a texel: "each saved image must be flipped about its vertical axis".
+glm::dvec3 texel_direction(std::size_t face, int column, int row, int side) {
+  return opengl_direction(face, 1 - (column + 0.5) / side, (row + 0.5) / side);
+}
+
+/// A cube whose texels hold `radiance` of their directions.
+pictures::CubeMap cube_of(int side, const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
+  pictures::CubeMap cube;
+  for (std::size_t face = 0; face < 6; ++face) {
+    cube[face] = {side, side, {}};
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        cube[face].texels.push_back(radiance(texel_direction(face, column, row, side)));
+      }
+    }
+  }
+  return cube;
+}
+
+TEST_CASE("each texel of a cube map lies where OpenGL has it, flipped") {
+  constexpr int side = 5;
+  int number = 0;
+  const CubeMap cube = cube_of(side, [&](const glm::dvec3&) { return glm::vec3(number++); });
+  number = 0;
+  for (std::size_t face = 0; face < 6; ++face) {
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        CAPTURE(face, row, column);
+        const glm::dvec3 direction = texel_direction(face, column, row, side);
+        CHECK(pictures::radiance_towards(cube, direction) == glm::vec3(number++));
+      }
+    }
+  }
+}
+
+TEST_CASE("edges and corners of the cube belong to a face that meets there") {
+  const CubeMap cube = cube_of(4, [](const glm::dvec3& d) { return glm::vec3(d); });
+  for (const glm::dvec3 direction :
+       {glm::dvec3(1, 1, 1), glm::dvec3(-1, 1, -1), glm::dvec3(1, -1, 0), glm::dvec3(0, 1, -1)}) {
+    const glm::dvec3 unit = glm::normalize(direction);
+    CHECK(glm::distance(glm::dvec3(pictures::radiance_towards(cube, unit)), unit) < 0.5);
+  }
+}
+
+/// A light from above and from the side, without symmetry.
+glm::vec3 uneven(const glm::dvec3& d) {
+  return glm::vec3(1 + 0.5 * d.x + 0.25 * d.y, 2 + d.y * d.y, 1 + 0.9 * d.z);
+}
+
+TEST_CASE("the equirectangular map of a cube has its radiance and its integral") {
+  const CubeMap cube = cube_of(64, uneven);
+  const EnvironmentMap map = pictures::environment_of(cube, glm::dquat(1.0, 0.0, 0.0, 0.0), "cube");
+  CHECK(map.name() == "cube");
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 200; ++i) {
+    const glm::dvec3 d = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    // A texel of either map spans 1.4 degrees.
+    CHECK(glm::distance(map.radiance(glm::vec3(d)), uneven(d)) < 0.1f);
+  }
+  // Odd powers vanish, and the mean of y^2 over the sphere is a third.
+  CHECK(map.integral().r == Approx(4 * pi).epsilon(1e-3));
+  CHECK(map.integral().g == Approx(4 * pi * (2 + 1.0 / 3)).epsilon(1e-3));
+  CHECK(map.integral().b == Approx(4 * pi).epsilon(1e-3));
+}
+
+TEST_CASE("a rotation turns the surroundings, by any axis") {
+  const CubeMap cube = cube_of(64, uneven);
+  const glm::dquat rotation = glm::angleAxis(1.1, glm::normalize(glm::dvec3(0.3, -0.5, 0.8)));
+  const EnvironmentMap map = pictures::environment_of(cube, rotation, "turned");
+  for (const glm::dvec3 d : {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1),
+                             glm::normalize(glm::dvec3(1, -2, 3))}) {
+    CHECK(glm::distance(map.radiance(glm::vec3(rotation * d)), uneven(d)) < 0.1f);
+  }
+}
+
+TEST_CASE("a patch of sky keeps its flux wherever it is turned") {
+  // A cap of 20 degrees around +z.
+  const CubeMap cube = cube_of(128, [](const glm::dvec3& d) {
+    return glm::vec3(d.z > std::cos(20 * pi / 180) ? 100.0f : 0.0f);
+  });
+  const double expected = 100 * 2 * pi * (1 - std::cos(20 * pi / 180));
+  for (const double angle : {0.0, 0.4, pi / 2, 2.0}) {
+    const glm::dquat rotation = glm::angleAxis(angle, glm::dvec3(1, 0, 0));  // over a pole
+    CHECK(pictures::environment_of(cube, rotation, "cap").integral().g ==
+          Approx(expected).epsilon(0.01));
   }
 }
 

@@ -3,8 +3,12 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 #include <map>
+#include <numeric>
+#include <random>
 #include <set>
 
+#include "maps/build_steps.hpp"
+#include "maps/map_shapes.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/photon_maps.hpp"
@@ -141,8 +145,6 @@ void check_against_reference(const Scene& scene, const Photons& photons, double 
   CHECK(photon_maps.statistics().references == references);
 }
 
-}  // namespace
-
 TEST_CASE("the shared grid struct has the same size on the device as on the host") {
   auto& context = device::context_of(test::device());
   Scene scene = test::empty_scene();
@@ -270,4 +272,82 @@ TEST_CASE("a radius beyond the groups' or no number is refused") {
   }
 }
 
+device::KernelSet kernels() {
+  return {device::context_of(test::device()), "shared/scan.cl",
+          maps::group_defines(test::device().info())};
+}
+
+TEST_CASE("the device's prefix sum equals the host's for awkward sizes") {
+  const device::KernelSet scan = kernels();
+  auto& context = scan.context();
+  for (const std::size_t size :
+       {1u, 2u, 7u, 93u, 2047u, 2048u, 2049u, 4096u, (1u << 20) + 1u, 5u * 1024u * 1024u}) {
+    std::mt19937 random(static_cast<unsigned>(size));
+    std::vector<std::uint32_t> values(size);
+    for (auto& value : values) value = random() % 500;
+    std::vector<std::uint32_t> expected(size);
+    std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0u);
+
+    auto buffer = context.upload(std::span<const std::uint32_t>(values), "test values");
+    maps::exclusive_prefix_sum(scan, buffer);
+    std::vector<std::uint32_t> scanned(size);
+    context.read(buffer, std::span(scanned));
+    CAPTURE(size);
+    CHECK(scanned == expected);
+  }
+}
+
+TEST_CASE("the prefix sum of nothing is nothing") {
+  const device::KernelSet scan = kernels();
+  auto buffer = scan.context().allocate<std::uint32_t>(0, "test values");
+  CHECK_NOTHROW(maps::exclusive_prefix_sum(scan, buffer));
+}
+
+// The crowding of photons against densities with a closed form.
+
+/// Photons on the front of a unit plate of two triangles (or of more), only where x < lit.
+Photons photons_on_part(const Scene& scene, float lit, std::size_t count) {
+  std::mt19937_64 random(61);
+  auto pick = test::by_area(scene);
+  Photons photons;
+  while (photons.size() < count) {
+    const std::uint32_t triangle = pick(random);
+    const glm::vec3 point = test::random_point(scene, triangle, random);
+    if (point.x < lit) test::add_photon(photons, scene, point, sided(triangle, 0), random);
+  }
+  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+}
+
+TEST_CASE("crowding is one over the part of a surface that is lit evenly") {
+  const int cells = GENERATE(1, 32);  // large triangles are divided, small ones are bins themselves
+  const float lit = GENERATE(1.0f, 0.5f, 0.25f);
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells);
+  const Photons photons = photons_on_part(scene, lit, 60'000);
+  Patches patch;  // one for all
+  patch.first_of = {0, static_cast<std::uint32_t>(scene.triangle_count())};
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+    patch.members.push_back(sided(t, 0));
+    patch.map_of.insert(patch.map_of.end(), {0u, 1u});
+  }
+  const std::vector<float> crowding = maps::photon_crowding(scene, photons, patch);
+  REQUIRE(crowding.size() == 2);
+  // The squared density integrates to (1 / lit)^2 lit = 1 / lit of that of photons spread evenly.
+  // Bins of 16 photons and more estimate it to within a percent; those that the border of the lit
+  // part cuts, one column of at least 32, blur it by at most a thirtieth.
+  CAPTURE(cells, lit);
+  CHECK(crowding[0] == Approx(1.0 / lit).epsilon(0.04));
+  CHECK(crowding[1] == 1.0f);  // no photons on the back
+}
+
+TEST_CASE("photons one by one crowd nothing") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  for (const std::size_t count : {0u, 1u}) {
+    const Photons photons = photons_on_part(scene, 1.0f, count);
+    for (const float value : maps::photon_crowding(scene, photons, {})) CHECK(value == 1.0f);
+  }
+}
+
+}  // namespace
 }  // namespace photile::test

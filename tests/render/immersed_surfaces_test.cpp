@@ -161,14 +161,14 @@ Scene box_in_glass() {
 
 }  // namespace
 
-TEST_CASE("a pool shows the radiance of its closed form, by photon maps", "[immersed]") {
+TEST_CASE("a pool shows the radiance of its closed form, by photon maps") {
   const double albedo = GENERATE(0.5, 1.0);
   check_pool(albedo, 0.05, [](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     return by_maps(scene, cameras, parameters_of(80'000, 144, seed));
   });
 }
 
-TEST_CASE("a pool shows the radiance of its closed form, by paths", "[immersed]") {
+TEST_CASE("a pool shows the radiance of its closed form, by paths") {
   const double albedo = GENERATE(0.5, 1.0);
   check_pool(albedo, 0.05, [](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     std::vector<LightLayers> layers;
@@ -179,12 +179,12 @@ TEST_CASE("a pool shows the radiance of its closed form, by paths", "[immersed]"
   });
 }
 
-TEST_CASE("a white pool is a furnace: nobody sees it", "[immersed]") {
+TEST_CASE("a white pool is a furnace: nobody sees it") {
   CHECK(PoolTruth(1).irradiance == Approx(pi * water * water));
   for (const double angle : {0.1, 0.7, 1.5}) CHECK(PoolTruth(1).radiance(angle) == Approx(1));
 }
 
-TEST_CASE("a pool by rays to lamps is the same pool", "[immersed][slow]") {
+TEST_CASE("a pool by rays to lamps is the same pool", "[slow]") {
   check_pool(0.5, 0.05, [&](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     RenderParameters parameters = parameters_of(80'000, 144, seed);
     parameters.direct_rays = 1;
@@ -192,7 +192,7 @@ TEST_CASE("a pool by rays to lamps is the same pool", "[immersed][slow]") {
   });
 }
 
-TEST_CASE("whatever is seen in a pool is seen by refraction or reflection", "[immersed]") {
+TEST_CASE("whatever is seen in a pool is seen by refraction or reflection") {
   const Pool pool(0.5);
   RenderParameters parameters = parameters_of(20'000, 16, 1);
   parameters.light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
@@ -202,7 +202,7 @@ TEST_CASE("whatever is seen in a pool is seen by refraction or reflection", "[im
                         renderer.render_reflections(camera, parameters.film).layers));
 }
 
-TEST_CASE("sensors under water read what the floor gets, and what it sends up", "[immersed]") {
+TEST_CASE("sensors under water read what the floor gets, and what it sends up") {
   constexpr double albedo = 0.5;
   const Pool pool(albedo);
   const double truth = PoolTruth(albedo).irradiance;
@@ -224,7 +224,7 @@ TEST_CASE("sensors under water read what the floor gets, and what it sends up", 
   }
 }
 
-TEST_CASE("a box cast in glass looks the same by photon maps and by paths", "[immersed]") {
+TEST_CASE("a box cast in glass looks the same by photon maps and by paths") {
   const Scene scene = box_in_glass();
   // Aslant: the glass reflects nothing but the dark. What is seen of the box lies far from its
   // edges.

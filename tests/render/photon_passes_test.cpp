@@ -1,20 +1,39 @@
-// Pictures from several photon passes: consistent, reproducible, bounded in memory.
+// Pictures of several photon passes.
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
-#include "photon_passes.hpp"
 
 #include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
+#include <random>
+#include <vector>
 
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "photile/renderer.hpp"
+#include "photile/scene.hpp"
 #include "pictures.hpp"
+#include "render/film.hpp"
+#include "render/pass_count.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
+
+// Pictures from several photon passes: consistent, reproducible, bounded in memory.
+
+/// What is left of bias and of the deviation by noise after n passes: the mean of the factors by
+/// which the squared radius has shrunk, which falls as n^(-1/3).
+double predicted_of_passes(int passes) {
+  double factor = 1, sum = 0;
+  for (int pass = 1; pass <= passes; ++pass) {
+    sum += factor;
+    factor *= (pass + 2.0 / 3.0) / (pass + 1.0);
+  }
+  return sum / passes;
+}
 
 RenderParameters small_parameters(int passes) {
   RenderParameters parameters = small_picture(30'000, 48, 36);
@@ -80,8 +99,6 @@ void check_convergence(std::uint64_t photons, int neighbours, double radius) {
   }
 }
 
-}  // namespace
-
 TEST_CASE("with more passes the error falls as theory says, where k bounds the estimate") {
   // Where E photons fall on a square metre the disc of k has a radius of sqrt(k / pi E): here
   // 0.32 m below the lamp, and the radius lets it grow to 1 m.
@@ -145,4 +162,154 @@ TEST_CASE("a number of passes beyond the limit is refused") {
   CHECK_THROWS_AS(render_room(small_parameters(65'537)), UsageError);
 }
 
+// How the estimate narrows from pass to pass, and into how many passes photons are split.
+
+constexpr std::uint64_t gib = 1ull << 30;
+
+/// The product of (i + alpha) / (i + 1) for i = 1 ... pass.
+double gamma_ratio(int pass, double alpha) {
+  return std::exp(std::lgamma(pass + 1 + alpha) - std::lgamma(1 + alpha) - std::lgamma(pass + 2.0));
+}
+
+TEST_CASE("the squared radius shrinks as Knaus and Zwicker's, in closed form") {
+  for (const int pass : {0, 1, 2, 9, 99, 9'999}) {
+    const double radius = estimate_of_pass(pass, {0.5, 50}).radius;
+    CHECK(radius * radius == Approx(0.25 * gamma_ratio(pass, 2.0 / 3.0)).epsilon(1e-9));
+  }
+  CHECK(estimate_of_pass(0, {0.5, 50}).radius == 0.5);
+  CHECK(estimate_of_pass(0, {0.5, 50}).neighbours == 50);
+}
+
+TEST_CASE("k shrinks with the squared radius, down to its least") {
+  for (const int pass : {1, 10, 100}) {
+    const PassEstimate estimate = estimate_of_pass(pass, {2.0, 1000});
+    CHECK(estimate.neighbours == Approx(250 * estimate.radius * estimate.radius).margin(0.5));
+  }
+  CHECK(estimate_of_pass(10'000, {1.0, 50}).neighbours == 5);
+  CHECK(estimate_of_pass(10'000, {1.0, 3}).neighbours == 3);
+}
+
+TEST_CASE("photons of a pass take at most half of the memory") {
+  // 10 photons of 100 bytes a path: 1 GiB / 2 holds 536,870 paths.
+  CHECK(passes_within(500'000, 10, 100, gib) == 1);
+  CHECK(passes_within(536'870, 10, 100, gib) == 1);
+  CHECK(passes_within(536'871, 10, 100, gib) == 2);
+  CHECK(passes_within(5'368'000, 10, 100, gib) == 10);
+  CHECK(passes_within(1, 10, 100, 0) == 10);
+  CHECK(passes_within(1000, 0, 100, gib) == 1);
+}
+
+TEST_CASE("photons of a pass can be indexed, whatever the memory") {
+  const std::uint64_t paths = limits::max_emitted_photons;
+  const int passes = passes_within(paths, 6.0, 100, ~0ull);
+  CHECK(passes > 1);
+  CHECK(static_cast<double>(paths) / passes * 6.0 <
+        static_cast<double>(limits::max_stored_photons));
+}
+
+TEST_CASE("more passes than the limit allows are seen as such") {
+  CHECK(passes_within(limits::max_emitted_photons, 100, 100, 1000) > limits::max_passes);
+}
+
+TEST_CASE("the host's memory is known, and the same however much of it is in use") {
+  const std::uint64_t before = installed_host_bytes();
+  const std::vector<char> taken(64u << 20, 1);
+  CHECK(before > (1u << 20));
+  CHECK(before < (std::uint64_t{1} << 50));
+  CHECK(installed_host_bytes() == before);
+  CHECK(taken.back() == 1);
+}
+
+// Pooled estimates against sums by hand.
+
+constexpr std::size_t hits = 3000;  // several tasks
+
+LightPooling random_pooling(std::size_t lights, std::size_t layers, std::mt19937& random) {
+  LightPooling pooling;
+  for (std::size_t i = 0; i < layers; ++i) pooling.layers.push_back("layer" + std::to_string(i));
+  for (std::size_t i = 0; i < lights; ++i) {
+    pooling.layer_of.push_back(static_cast<std::uint32_t>(random() % layers));
+    pooling.scale.push_back(static_cast<float>(random() % 100) / 10);
+  }
+  return pooling;
+}
+
+/// Estimates of all lights where they are few; else of some at each hit, of none at every seventh.
+Estimates random_estimates(std::size_t lights, bool glossy, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
+  Estimates estimates;
+  const bool sparse = lights > max_dense_lights;
+  if (sparse) estimates.first.push_back(0);
+  for (std::size_t hit = 0; hit < hits; ++hit) {
+    const std::size_t count = !sparse ? lights : hit % 7 == 0 ? 0 : random() % lights;
+    for (std::size_t i = 0; i < count; ++i) {
+      estimates.irradiance.emplace_back(uniform(random), uniform(random), uniform(random));
+      if (glossy) estimates.radiance.emplace_back(uniform(random));
+      if (sparse) estimates.light.push_back(static_cast<std::uint16_t>((i * 7 + hit) % lights));
+    }
+    if (sparse) estimates.first.push_back(estimates.irradiance.size());
+  }
+  return estimates;
+}
+
+using Values = std::map<std::size_t, glm::dvec3>;  ///< by light or layer
+
+Values of_hit(const Estimates& estimates, const std::vector<glm::vec3>& values, std::size_t hit,
+              std::size_t lights) {
+  Values result;
+  if (estimates.first.empty()) {
+    for (std::size_t i = 0; i < lights; ++i) result[i] = glm::dvec3(values[hit * lights + i]);
+  } else {
+    for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
+      REQUIRE(result.count(estimates.light[i]) == 0);
+      result[estimates.light[i]] = glm::dvec3(values[i]);
+    }
+  }
+  return result;
+}
+
+void check_pooled(std::size_t lights, std::size_t layers, bool glossy) {
+  std::mt19937 random(5);
+  const LightPooling pooling = random_pooling(lights, layers, random);
+  const Estimates estimates = random_estimates(lights, glossy, random);
+  const Estimates result = pooled(pooling, estimates, hits);
+  REQUIRE(result.first.empty() == (layers <= max_dense_lights));
+  REQUIRE(result.radiance.empty() != glossy);
+  double worst = 0;
+  const auto compare = [&](std::vector<glm::vec3> Estimates::*values) {
+    for (std::size_t hit = 0; hit < hits; ++hit) {
+      Values expected;
+      for (const auto& [light, value] : of_hit(estimates, estimates.*values, hit, lights)) {
+        expected[pooling.layer_of[light]] += static_cast<double>(pooling.scale[light]) * value;
+      }
+      const Values found = of_hit(result, result.*values, hit, layers);
+      if (!result.first.empty()) REQUIRE(found.size() == expected.size());
+      for (const auto& [layer, value] : found) {
+        worst = std::max(worst, glm::length(value - expected[layer]));
+      }
+    }
+  };
+  compare(&Estimates::irradiance);
+  if (glossy) compare(&Estimates::radiance);
+  CHECK(worst < 1e-3);  // of sums of hundreds
+}
+
+TEST_CASE("pooled layers hold the scaled sums of their lights") {
+  check_pooled(146, 3, false);
+  check_pooled(146, 3, true);
+  check_pooled(40, 12, true);
+  check_pooled(5, 2, false);
+}
+
+TEST_CASE("lamps that are seen are pooled, too") {
+  PrimaryHitBatch batch;
+  batch.emission.push_back({7, 2, glm::vec3(2, 4, 6), 8});
+  pool_emission({{"a", "b"}, {0, 0, 1}, {1, 1, 0.5f}}, batch);
+  CHECK(batch.emission[0].light == 1);
+  CHECK(batch.emission[0].pixel == 7);
+  CHECK(batch.emission[0].radiance == glm::vec3(1, 2, 3));
+  CHECK(batch.emission[0].illuminance == 4);
+}
+
+}  // namespace
 }  // namespace photile::test

@@ -67,8 +67,7 @@ std::vector<double> irradiances(const Scene& scene, const Sensor& sensor, int ra
 
 }  // namespace
 
-TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it is a portal",
-          "[portals]") {
+TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it is a portal") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
   // The fraction of the light's 1 lm: pi L A over 4 pi L times the disc.
   const double disc = pi * std::pow(bounding_sphere(scene).radius, 2);
@@ -88,7 +87,7 @@ TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it
   }
 }
 
-TEST_CASE("a sun through a window brings its lux times what the window shows", "[portals]") {
+TEST_CASE("a sun through a window brings its lux times what the window shows") {
   Scene scene = Room::builder(diffuse(glm::vec3(0.0f))).build();
   Light sun;
   sun.name = "sun";
@@ -103,7 +102,7 @@ TEST_CASE("a sun through a window brings its lux times what the window shows", "
   CHECK_VERDICT(mean_is(fluxes_inside(scene, 20'000), truth, 0.03 * truth));
 }
 
-TEST_CASE("reflected light is the same with portals and without", "[portals]") {
+TEST_CASE("reflected light is the same with portals and without") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
   const auto without = fluxes_inside(scene, 100'000);
   scene.portals = {Room::window()};
@@ -112,14 +111,14 @@ TEST_CASE("reflected light is the same with portals and without", "[portals]") {
   CHECK_VERDICT(mean_is(without, mean, 0.15 * mean));
 }
 
-TEST_CASE("portals bring at least ten times the photons", "[portals]") {
+TEST_CASE("portals bring at least ten times the photons") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
   const std::size_t without = inside(scene, 1, 100'000).count;
   scene.portals = {Room::window()};
   CHECK(inside(scene, 1, 100'000).count > 10 * without);
 }
 
-TEST_CASE("looks through a portal find pi L times the window's form factor", "[portals]") {
+TEST_CASE("looks through a portal find pi L times the window's form factor") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
   const glm::dvec3 corner(Room::left, Room::sill, 0), u(1.2, 0, 0), v(0, 1, 0);
   for (const glm::dvec3& normal : {glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(0.2, 1, -1))}) {
@@ -132,7 +131,7 @@ TEST_CASE("looks through a portal find pi L times the window's form factor", "[p
   }
 }
 
-TEST_CASE("a lamp is as bright beside portals", "[portals]") {
+TEST_CASE("a lamp is as bright beside portals") {
   SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
   builder.add(point_light("lamp", {2, 2, 2}));
   Scene scene = builder.build();
@@ -149,7 +148,7 @@ TEST_CASE("a lamp is as bright beside portals", "[portals]") {
   CHECK_VERDICT(mean_is(values, truth, 0.03 * truth));
 }
 
-TEST_CASE("an opening is found from the camera's room, and faces inwards", "[portals]") {
+TEST_CASE("an opening is found from the camera's room, and faces inwards") {
   const Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
   const auto portals = find_portals(scene);
   REQUIRE(portals.size() == 1);
@@ -161,7 +160,7 @@ TEST_CASE("an opening is found from the camera's room, and faces inwards", "[por
   CHECK(glm::distance(middle, glm::vec3(1.8f, 1.4f, 0.0f)) < 0.2f);
 }
 
-TEST_CASE("each of two windows is found once", "[portals]") {
+TEST_CASE("each of two windows is found once") {
   auto portals = find_portals(Room::builder(diffuse(glm::vec3(0.5f)), true).build());
   REQUIRE(portals.size() == 2);
   if (portals[0].corner.z > portals[1].corner.z) std::swap(portals[0], portals[1]);
@@ -171,7 +170,7 @@ TEST_CASE("each of two windows is found once", "[portals]") {
   }
 }
 
-TEST_CASE("light on the outer side of a frame comes by the portal that is found", "[portals]") {
+TEST_CASE("light on the outer side of a frame comes by the portal that is found") {
   // In a reveal of 30 cm, a pane at its outer end, and bars of a frame 5 cm behind it.
   SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
   const std::uint32_t white = builder.add(diffuse(glm::vec3(0.8f)));
@@ -205,7 +204,7 @@ TEST_CASE("light on the outer side of a frame comes by the portal that is found"
   CHECK(fluxes.back() < 10 * fluxes[fluxes.size() / 2]);
 }
 
-TEST_CASE("photons through portals start before all of the scene, wherever it lies", "[portals]") {
+TEST_CASE("photons through portals start before all of the scene, wherever it lies") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
   const glm::vec3 moved = GENERATE(glm::vec3(0.0f), glm::vec3(30.0f, -40.0f, 120.0f));
   for (glm::vec3& vertex : scene.vertices) vertex += moved;
@@ -220,7 +219,7 @@ TEST_CASE("photons through portals start before all of the scene, wherever it li
   }
 }
 
-TEST_CASE("panes of a named material are portals that face inwards", "[portals]") {
+TEST_CASE("panes of a named material are portals that face inwards") {
   SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
   Material pane = glass(1.5f, true);
   pane.name = "window pane";
@@ -239,7 +238,7 @@ TEST_CASE("panes of a named material are portals that face inwards", "[portals]"
   CHECK_THROWS_AS(portals_asked_for(scene, both), UsageError);
 }
 
-TEST_CASE("outside there are no portals, nor in a closed room", "[portals]") {
+TEST_CASE("outside there are no portals, nor in a closed room") {
   CHECK(find_portals(closed_box(diffuse(glm::vec3(0.5f)))).empty());
   CHECK(find_portals(plate(diffuse(glm::vec3(0.5f)), 2)).empty());
 }

@@ -1,14 +1,20 @@
-// The analytic cases of `photile validate`, with fewer photons and the bounds of a t test.
-#include <catch2/catch.hpp>
+// The cases of `photile validate` and their verdicts.
+#include "validation/analytic_cases.hpp"
 
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "estimates_comparison.hpp"
 #include "test_device.hpp"
 #include "validation/validate.hpp"
 
 namespace photile::test {
+namespace {
 
 using namespace photile::validation;
 
-namespace {
+// The analytic cases of `photile validate`, with fewer photons and the bounds of a t test.
 
 /// What the midpoint rule over sensors, and rounding to float, may add to an error.
 constexpr double slack = 1e-3;
@@ -40,8 +46,6 @@ std::vector<ValidationRow> rows_of(const std::string& name,
   }
   throw std::logic_error("no case " + name);
 }
-
-}  // namespace
 
 TEST_CASE("paths read what closed forms say, in every analytic case", "[slow]") {
   ValidationParameters parameters;
@@ -85,4 +89,76 @@ TEST_CASE("photon maps read what closed forms say") {
   }
 }
 
+// What validation makes of sixteen readings: within 1%, beyond it, or too noisy to tell.
+
+/// Sixteen values of this mean whose standard deviation is `scatter`.
+std::vector<double> values(double mean, double scatter) {
+  std::vector<double> result;
+  for (int i = 0; i < seeds; ++i) {
+    result.push_back(mean + (i % 2 == 0 ? 1 : -1) * scatter * std::sqrt(15.0 / 16.0));
+  }
+  return result;
+}
+
+TEST_CASE("the noise of a reading is the 99% interval of its mean") {
+  const validation::Measured result = measured(values(200, 4), 100);
+  CHECK(result.value == Approx(200));
+  CHECK(result.error == Approx(1));
+  CHECK(result.noise == Approx(2.947 * 4 / std::sqrt(16.0) / 100));  // t table, 15 degrees
+}
+
+TEST_CASE("a reading is within 1% only if its noise leaves no doubt") {
+  CHECK(measured(values(1.004, 0.002), 1).verdict == validation::Verdict::within);
+  CHECK(measured(values(0.996, 0.002), 1).verdict == validation::Verdict::within);
+  CHECK(measured(values(1.004, 0.02), 1).verdict == validation::Verdict::too_noisy);
+  CHECK(measured(values(1.0, 0.02), 1).verdict == validation::Verdict::too_noisy);
+  CHECK(measured(values(1.011, 0.01), 1).verdict == validation::Verdict::too_noisy);
+}
+
+TEST_CASE("a reading misses if no noise explains its error") {
+  CHECK(measured(values(1.02, 0.005), 1).verdict == validation::Verdict::misses);
+  CHECK(measured(values(0.98, 0.005), 1).verdict == validation::Verdict::misses);
+  CHECK(measured(values(1.0101, 0), 1).verdict == validation::Verdict::misses);
+}
+
+// The reflectance of the glossy material in a white furnace against an integral over directions.
+
+/// Integral of f cos over directions at `cosine` to the normal, seen along it: the model as
+/// photile/device/bsdf.h states it, by the midpoint rule over the cosine.
+double integral(double albedo, double f0, double alpha) {
+  constexpr int steps = 400'000;
+  constexpr double pi = glm::pi<double>();
+  const double a2 = alpha * alpha;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double cosine = (i + 0.5) / steps;
+    const double half = std::sqrt((1 + cosine) / 2);  // n.h and i.h
+    const double fresnel = f0 + (1 - f0) * std::pow(1 - half, 5);
+    const double d = a2 / (pi * std::pow(half * half * (a2 - 1) + 1, 2));
+    const double g1 = 2 * cosine / (cosine + std::sqrt(a2 + (1 - a2) * cosine * cosine));
+    const double diffuse = photile::test::diffuse_bsdf(cosine, 1, albedo, f0, 1, alpha);
+    const double f = diffuse + fresnel * d * g1 / (4 * cosine);
+    sum += f * cosine * 2 * pi / steps;
+  }
+  return sum;
+}
+
+TEST_CASE("glossy reflectance is the integral of the BSDF") {
+  using photile::validation::glossy_reflectance;
+  for (const double alpha : {0.1, 0.4, 1.0}) {
+    CHECK(glossy_reflectance(0.3, 0.5, alpha) == Approx(integral(0.3, 0.5, alpha)).epsilon(1e-4));
+    CHECK(glossy_reflectance(0.0, 1.0, alpha) == Approx(integral(0.0, 1.0, alpha)).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("white surfaces reflect all light at any roughness, but for the error of the fit") {
+  using photile::validation::glossy_reflectance;
+  for (const double alpha : {0.02, 0.1, 0.25, 0.5, 1.0}) {
+    CAPTURE(alpha);
+    CHECK(glossy_reflectance(1.0, 0.04, alpha) == Approx(1.0).epsilon(0.015));
+    CHECK(glossy_reflectance(0.0, 1.0, alpha) == Approx(1.0).epsilon(0.035));  // a white metal
+  }
+}
+
+}  // namespace
 }  // namespace photile::test

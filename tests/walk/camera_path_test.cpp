@@ -1,19 +1,25 @@
-// Keyframes of a camera.
+// Paths of a camera.
 #include "reading/camera_path.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
+#include <nlohmann/json.hpp>
 
+#include "gltf/cameras.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {
+namespace {
 
 using Catch::Contains;
+using nlohmann::json;
 
-namespace {
+// Keyframes of a camera.
 
 reading::CameraMotion read(const std::string& text) {
   const TemporaryFolder folder;
@@ -29,8 +35,6 @@ void check_near(const glm::dvec3& a, const glm::dvec3& b) {
   INFO(a.x << " " << a.y << " " << a.z << " and " << b.x << " " << b.y << " " << b.z);
   CHECK(glm::length(a - b) < 1e-9);
 }
-
-}  // namespace
 
 TEST_CASE("a camera is where its keyframes say, and stays there before and after them") {
   const auto motion = read(R"([
@@ -112,4 +116,137 @@ TEST_CASE("what is no path is refused by file, keyframe and key") {
                     Contains("keyframe 2") && Contains("'time'"));
 }
 
+// Animations of glTF cameras, against values worked out by hand from the specification.
+
+/// A glTF file with one camera "eye" under a node "dolly" at (0, 1, 0).
+struct AnimatedFile {
+  TemporaryFolder folder;
+  std::vector<float> numbers{0};  // an empty buffer would be refused for itself
+  json document{
+      {"asset", {{"version", "2.0"}}},
+      {"scenes", {{{"nodes", {0}}}}},
+      {"nodes",
+       {{{"name", "dolly"}, {"translation", {0, 1, 0}}, {"children", {1}}},
+        {{"name", "eye"}, {"camera", 0}}}},
+      {"cameras", {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}}},
+      {"accessors", json::array()},
+      {"bufferViews", json::array()},
+      {"animations",
+       {{{"name", "walk"}, {"channels", json::array()}, {"samplers", json::array()}}}}};
+
+  int accessor(const std::vector<float>& values, const char* type, int components) {
+    document["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", 4 * numbers.size()}, {"byteLength", 4 * values.size()}});
+    numbers.insert(numbers.end(), values.begin(), values.end());
+    const int index = static_cast<int>(document["accessors"].size());
+    document["accessors"].push_back(
+        {{"bufferView", index},
+         {"componentType", 5126},
+         {"count", values.size() / static_cast<std::size_t>(components)},
+         {"type", type}});
+    return index;
+  }
+
+  void animate(int node, const char* path, const char* interpolation,
+               const std::vector<float>& times, const std::vector<float>& values) {
+    const bool rotation = std::string(path) == "rotation";
+    json& animation = document["animations"][0];
+    const int input = accessor(times, "SCALAR", 1);
+    const int output = accessor(values, rotation ? "VEC4" : "VEC3", rotation ? 4 : 3);
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+    animation["samplers"].push_back(
+        {{"input", input}, {"output", output}, {"interpolation", interpolation}});
+  }
+
+  reading::CameraMotion read(const std::string& animation = "") {
+    const std::string bytes(reinterpret_cast<const char*>(numbers.data()), 4 * numbers.size());
+    std::ofstream(folder.path / "a.bin", std::ios::binary) << bytes;
+    document["buffers"] = {{{"uri", "a.bin"}, {"byteLength", bytes.size()}}};
+    std::ofstream(folder.path / "a.gltf") << document.dump();
+    Camera camera;
+    camera.name = "eye";
+    return gltf::read_camera_animation(folder.path / "a.gltf", {}, camera, animation);
+  }
+};
+
+void check_close(const glm::dvec3& a, const glm::dvec3& b) {
+  INFO(a.x << " " << a.y << " " << a.z << " and " << b.x << " " << b.y << " " << b.z);
+  CHECK(glm::length(a - b) < 1e-6);
+}
+
+TEST_CASE("LINEAR translations go straight, in the space of the node above") {
+  AnimatedFile file;
+  file.animate(1, "translation", "LINEAR", {1, 3}, {0, 0, 0, 4, 2, 0});
+  const auto motion = file.read();
+  CHECK(motion.begin == 1);
+  CHECK(motion.end == 3);
+  check_close(motion.at(1).position, {0, 1, 0});
+  check_close(motion.at(1.5).position, {1, 1.5, 0});
+  check_close(motion.at(99).position, {4, 3, 0});
+  check_close(motion.at(1.5).forward, {0, 0, -1});
+}
+
+TEST_CASE("STEP holds each value until the next key") {
+  AnimatedFile file;
+  file.animate(1, "translation", "STEP", {0, 1, 2}, {0, 0, 0, 1, 0, 0, 2, 0, 0});
+  const auto motion = file.read();
+  check_close(motion.at(0.99).position, {0, 1, 0});
+  check_close(motion.at(1).position, {1, 1, 0});
+  check_close(motion.at(2).position, {2, 1, 0});
+}
+
+TEST_CASE("CUBICSPLINE follows Hermite curves with its tangents times the seconds between keys") {
+  AnimatedFile file;
+  // in-tangent, value, out-tangent per key; two seconds apart.
+  file.animate(1, "translation", "CUBICSPLINE", {0, 2},
+               {9, 9, 9, 0, 0, 0, 1, 0, 0, -1, 0, 0, 4, 0, 0, 9, 9, 9});
+  // At the middle: 1/2 p0 + 1/8 (2 x 1) + 1/2 p1 - 1/8 (2 x -1).
+  check_close(file.read().at(1).position, {2.5, 1, 0});
+}
+
+TEST_CASE("rotations turn about the node above as well, along the shortest arc") {
+  AnimatedFile file;
+  const auto half = [](double degrees) {
+    return static_cast<float>(std::sin(degrees * M_PI / 360));
+  };
+  const auto whole = [](double degrees) {
+    return static_cast<float>(std::cos(degrees * M_PI / 360));
+  };
+  // About y, 0 to -90 degrees: from -z to +x.
+  file.animate(0, "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, half(-90), 0, whole(-90)});
+  const auto motion = file.read("walk");
+  check_close(motion.at(1).forward, {1, 0, 0});
+  check_close(motion.at(1.0 / 3).forward,
+              {std::sin(glm::radians(30.0)), 0, -std::cos(glm::radians(30.0))});
+}
+
+TEST_CASE("files without such an animation, or with a broken one, are refused") {
+  AnimatedFile file;
+  SECTION("nothing moves") { CHECK_THROWS_WITH(file.read(), Contains("no animation")); }
+  SECTION("another name") {
+    file.animate(1, "translation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0});
+    CHECK_THROWS_WITH(file.read("run"), Contains("'run'"));
+  }
+  SECTION("times that do not ascend") {
+    file.animate(1, "translation", "LINEAR", {1, 1}, {0, 0, 0, 1, 0, 0});
+    CHECK_THROWS_AS(file.read(), InputError);
+  }
+  SECTION("too few values") {
+    file.animate(1, "translation", "CUBICSPLINE", {0, 1}, {0, 0, 0, 1, 0, 0});
+    CHECK_THROWS_AS(file.read(), InputError);
+  }
+  SECTION("a sampler that is not there") {
+    file.animate(1, "translation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0});
+    file.document["animations"][0]["channels"][0]["sampler"] = 7;
+    CHECK_THROWS_AS(file.read(), InputError);
+  }
+  SECTION("an accessor beyond its buffer") {
+    file.animate(1, "translation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0});
+    file.document["accessors"][1]["count"] = 1000;
+    CHECK_THROWS_AS(file.read(), InputError);
+  }
+}
+
+}  // namespace
 }  // namespace photile::test

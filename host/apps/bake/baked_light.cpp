@@ -67,7 +67,7 @@ glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t l
   return light;
 }
 
-/// The same of a plane of this normal.
+/// The irradiance of a plane of this normal.
 glm::vec3 turned(const Estimates& values, const NodeBlend& blend, std::size_t layer,
                  std::size_t layers, const glm::vec3& normal) {
   glm::vec4 by_normal(0.0f);
@@ -167,7 +167,7 @@ bool BakedLight::place_charts(double texel, std::uint32_t most_side) {
   return true;
 }
 
-/// Of a texel of the rectangle: metres from the chart's origin.
+/// The position of a texel of the rectangle: metres from the chart's origin.
 glm::dvec2 BakedLight::place(const Placed& placed, std::uint32_t x, std::uint32_t y) const {
   const cache::Chart& lattice = maps_.charts()[placed.chart];
   const glm::uvec2 within(std::clamp(x, border, placed.cells.x + border) - border,

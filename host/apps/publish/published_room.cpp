@@ -304,8 +304,8 @@ class PageWriter {
     }
   }
 
-  /// As the page looks it up: azimuths from south by west, north in the middle, rows from the
-  /// zenith.
+  /// The map as the page queries it: azimuths from south by west, north in the middle, rows from
+  /// the zenith.
   void add_environment(const trace::DistantLight& distant, std::uint32_t layer) {
     const EnvironmentMap& map = scene_.environments[distant.lamp().environment];
     const int width = std::clamp(map.width(), 4, most_surroundings), height = width / 2;

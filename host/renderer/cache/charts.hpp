@@ -79,8 +79,8 @@ class Charts {
   /// an edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
   ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
   Owner owner(const NodePlace& node, int levels) const;
-  /// The same of any place of the chart.
-  ///   place   metres from its origin, across and along
+  /// The surface that any position of the chart stands for.
+  ///   place   the position, metres from its origin, across and along
   ///   reach   metres: surface that lies so near is found fastest
   Owner owner(std::uint32_t chart, const glm::dvec2& place, double reach) const;
 

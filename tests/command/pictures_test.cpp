@@ -1,0 +1,361 @@
+// Pictures on the command line: compared, in false colours, and loaded by OpenImageIO.
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "box_scene.hpp"
+#include "child_process.hpp"
+#include "file_folder.hpp"
+#include "photile/image.hpp"
+#include "photile/layered_picture.hpp"
+#include "report/palette.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+
+// `photile compare`: figures, layers, the picture and refusals.
+
+std::string render_box(const FileFolder& folder, const std::string& name,
+                       const std::vector<std::string>& options = {},
+                       const std::string& size = "32x32") {
+  succeed(typed("render", write_box(folder), "-o", folder / name, "--photons 20k --size", size,
+                "--quality draft", options));
+  return folder / name;
+}
+
+nlohmann::json compare(const FileFolder& folder, const std::string& a, const std::string& b) {
+  const Outcome outcome =
+      succeed({"compare", a, b, "-o", folder / "compared.png", "--json", folder / "compared.json"});
+  CHECK_THAT(outcome.output, Contains("left"));
+  return nlohmann::json::parse(folder.read("compared.json"));
+}
+
+TEST_CASE("a picture with a value that is no number is refused by its name") {
+  const FileFolder folder;
+  Image image;
+  image.width = image.height = 2;
+  for (const char* name : {"R", "G", "B"}) image.add(name) = {1, 1, 1, 1};
+  write_exr(folder / "sound.exr", image);
+  image.channels.front()[2] = std::numeric_limits<float>::quiet_NaN();
+  write_exr(folder / "damaged.exr", image);
+  for (const auto& [a, b] : {std::pair("sound.exr", "damaged.exr"), {"damaged.exr", "sound.exr"}}) {
+    CHECK_THAT(only_error(run_photile({"compare", folder / a, folder / b}), bad_input),
+               Contains("damaged.exr") && Contains("1 of its values"));
+  }
+}
+
+TEST_CASE("a picture is equal to itself, and the drawing shows both and no difference") {
+  const FileFolder folder;
+  const std::string picture = render_box(folder, "a.exr");
+  const auto record = compare(folder, picture, picture);
+  CHECK(record["picture"]["relative_mse"] == 0);
+  CHECK(record["picture"]["mean_ratio"] == Approx(1));
+  CHECK(record["picture"]["psnr"].is_null());
+  REQUIRE(record["layers"].size() == 2);
+
+  const Image drawing = read_image(folder / "compared.png");
+  CHECK(drawing.width > 3 * 32);
+  const auto& red = *drawing.find("R");
+  const auto& blue = *drawing.find("B");
+  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * drawing.width + x); };
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const std::size_t first = at(x, 24 + y), second = at(44 + x, 24 + y),
+                        difference = at(88 + x, 24 + y);
+      CHECK(red[first] == red[second]);
+      CHECK(red[difference] > 0.98f);  // white: neither red nor blue
+      CHECK(blue[difference] > 0.98f);
+    }
+  }
+}
+
+TEST_CASE("a light that was doubled doubles its layer, and no other") {
+  const FileFolder folder;
+  const auto record = compare(folder, render_box(folder, "a.exr", {"--light", "left=x2"}),
+                              render_box(folder, "b.exr"));
+  CHECK(record["layers"][0]["light"] == "left");
+  CHECK(record["layers"][0]["mean_ratio"] == Approx(2).epsilon(1e-6));
+  CHECK(record["layers"][0]["worst_region"] == Approx(1).epsilon(1e-5));
+  CHECK(record["layers"][1]["relative_mse"] == 0);
+  const double ratio = record["picture"]["mean_ratio"];
+  CHECK(ratio > 1);
+  CHECK(ratio < 2);
+}
+
+TEST_CASE("a lamp that is off in the second, or a layer in one picture alone, is told") {
+  const FileFolder folder;
+  const std::string whole = render_box(folder, "a.exr");
+  const Outcome off =
+      succeed({"compare", whole, render_box(folder, "b.exr", {"--light", "left=off"})});
+  CHECK_THAT(off.output, Contains("luminance, mean") && Contains("lux") && Contains("ratio") &&
+                             Contains("0 W") && !Contains("error"));
+  const Outcome grouped =
+      succeed({"compare", whole, render_box(folder, "c.exr", {"--light-group", "*=both"})});
+  CHECK_THAT(grouped.output,
+             Contains("left: only in the first") && Contains("both: only in the second"));
+}
+
+TEST_CASE("two moods of a picture are compared by their levels") {
+  const FileFolder folder;
+  const std::string picture = render_box(folder, "a.exr");
+  const std::string moods = folder.write("a.moods.json", R"({"photile_moods": 1, "moods": {
+      "bright": {"left": {"power": 20, "unit": "W"}, "right": {"power": 0, "unit": "W", "on": false}},
+      "half": {"left": {"power": 10, "unit": "W"}, "right": {"power": 5, "unit": "W", "on": false}}}})");
+  const std::vector<std::string> two = typed("compare", picture, "--mood bright --mood half --json",
+                                             folder / "levels.json", "-o", folder / "two.png");
+  const Outcome outcome = succeed(two);  // the file beside the picture
+  const auto record = nlohmann::json::parse(folder.read("levels.json"));
+  CHECK(record["first"] == "bright");
+  REQUIRE(record["levels"].size() == 6);
+  for (const auto& level : record["levels"]) {
+    CHECK(level["first"].get<double>() == Approx(2 * level["second"].get<double>()).epsilon(1e-5));
+  }
+  CHECK(record["powers"][0]["first"] == 20);
+  CHECK(record["powers"][1]["second"] == 0);
+  CHECK_THAT(only_error(run_photile({"compare", picture, "--mood", "bright"}), 2),
+             Contains("--mood twice"));
+  CHECK_THAT(only_error(run_photile({"compare", picture, "--mood", "bright", "--mood", "dim"}), 2),
+             Contains("'dim'") && Contains("'half'"));
+  CHECK_THAT(only_error(run_photile({"compare", picture}), 2), Contains("second picture"));
+}
+
+TEST_CASE("a mood is the same in render, relight and measure as its powers by --light") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  folder.write("box.moods.json", R"({"photile_moods": 1, "moods": {"night": {
+      "left": {"power": 3, "unit": "W"}, "right": {"power": 9, "unit": "W", "on": false}}}})");
+  const std::vector<std::string> plain{"--light", "left=3", "--light", "right=off"};
+  const std::string by_mood = render_box(folder, "mood.exr", {"--mood", "night"});
+  const std::string by_light = render_box(folder, "light.exr", plain);
+  CHECK(read_image(by_mood).channels == read_image(by_light).channels);
+  const std::string whole = render_box(folder, "whole.exr");
+  succeed({"relight", whole, "--mood", "night", "-o", folder / "night.exr"});
+  const Image relit = read_image(folder / "night.exr"), rendered = read_image(by_light);
+  for (std::size_t i = 0; i < rendered.pixels(); ++i) {
+    REQUIRE((*relit.find("G"))[i] == Approx((*rendered.find("G"))[i]).epsilon(1e-5));
+  }
+  const auto measured = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"measure", scene, "--plane", "1", "--rays", "16", "--photons",
+                                     "10k", "--repeats", "2", "-q"});
+    return run_photile(options).output;
+  };
+  CHECK(measured({"--mood", "night"}) == measured(plain));
+  // --light goes on from a mood.
+  const std::string dimmer =
+      render_box(folder, "d.exr", {"--mood", "night", "--light", "left=x0.5"});
+  CHECK((*read_image(dimmer).find("G"))[500] ==
+        Approx(0.5 * (*read_image(by_light).find("G"))[500]).epsilon(1e-5));
+  CHECK_THAT(
+      only_error(run_photile({"render", scene, "-q", "-o", folder / "x.exr", "--mood", "day"}), 2),
+      Contains("'day'") && Contains("'night'"));
+  CHECK_THAT(only_error(run_photile({"render", scene, "-q", "-o", folder / "x.exr", "--mood", "day",
+                                     "--moods", folder / "none.json"}),
+                        2),
+             Contains("none.json"));
+}
+
+TEST_CASE("compare refuses what it cannot do with one line and the right exit code") {
+  const FileFolder folder;
+  const std::string picture = render_box(folder, "a.exr");
+  CHECK_THAT(only_error(run_photile({"compare", picture, folder / "none.exr"}), 3),
+             Contains("none.exr"));
+  const std::string wide = render_box(folder, "b.exr", {}, "33x32");
+  CHECK_THAT(only_error(run_photile({"compare", picture, wide}), 2), Contains("33x32"));
+  CHECK_THAT(only_error(run_photile({"compare", picture, picture, "-o", folder / "a.jpg"}), 2),
+             Contains(".png"));
+  CHECK_THAT(only_error(run_photile({"compare", picture, picture, "--json", picture}), 2),
+             Contains("input"));
+}
+
+// `--illuminance` and `--luminance` of `photile render` and `photile relight`.
+
+using Colour = std::array<std::uint8_t, 3>;
+
+Colour colour_at(const Image& png, int x, int y) {
+  Colour colour{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float code = png.channels[c][static_cast<std::size_t>(y * png.width + x)];
+    colour[c] = static_cast<std::uint8_t>(std::lround(255 * static_cast<double>(code)));
+  }
+  return colour;
+}
+
+/// An EXR of 3 x 1 pixels with 100, 200 and 400 lux by a lamp of 10 lm, and 25, 50 and 100 cd/m2.
+std::string write_picture(const FileFolder& folder) {
+  LightLayers layers(3, 1, std::vector<std::string>{"lamp"});
+  layers.layers[0].illuminance = {10, 20, 40};
+  layers.layers[0].radiance = {glm::vec3(2.5f), glm::vec3(5), glm::vec3(10)};
+  LightMix mix;
+  mix.lights.resize(1);
+  mix.lights[0].name = "lamp";
+  mix.lights[0].power = 10;
+  write_exr(folder / "lamp.exr", *mixed_picture(layers, mix));
+  return folder / "lamp.exr";
+}
+
+void run(const std::vector<std::string>& arguments) {
+  const Outcome outcome = succeed(arguments);
+  CHECK_THAT(outcome.errors, !Contains("warning"));
+}
+
+TEST_CASE("relight draws known lux and cd/m2 in their colours, as its changes leave them") {
+  const FileFolder folder;
+  const std::string picture = write_picture(folder);
+  const report::Palette palette("turbo");
+  const double factor = GENERATE(1.0, 2.0);
+  run({"relight", picture, "--light", factor == 1 ? "lamp=10" : "lamp=20", "--illuminance",
+       folder / "lux.png", "--luminance", folder / "luminance.png", "-s", "1000"});
+  const Image lux = read_image(folder / "lux.png");
+  const Image luminance = read_image(folder / "luminance.png");
+  const std::array values{100.0, 200.0, 400.0};
+  for (int x = 0; x < 3; ++x) {
+    INFO("pixel " << x << ", lamp x" << factor);
+    const double expected = factor * values[static_cast<std::size_t>(x)];
+    CHECK(colour_at(lux, x, 0) == palette.at(expected / 1000));
+    CHECK(colour_at(luminance, x, 0) == palette.at(expected / 4 / 1000));
+  }
+}
+
+TEST_CASE("relight takes the options of falsecolor") {
+  const FileFolder folder;
+  const std::string picture = write_picture(folder);
+  run({"relight", picture, "--illuminance", folder / "auto.png", "-s", "auto", "--pal", "viridis"});
+  CHECK(colour_at(read_image(folder / "auto.png"), 1, 0) == report::Palette("viridis").at(0.5));
+  run({"relight", picture, "--illuminance", folder / "log.png", "-s", "400", "--log", "1"});
+  CHECK(colour_at(read_image(folder / "log.png"), 1, 0) ==
+        report::Palette("turbo").at(1 + std::log10(0.5)));
+  run({"relight", picture, "--illuminance", folder / "steps.png", "--cp", "-n", "4"});
+  CHECK(colour_at(read_image(folder / "steps.png"), 2, 0) == report::Palette("turbo").at(0.375));
+}
+
+TEST_CASE("under an even sky of 500 lux a floor has the colour of 500 lux") {
+  const FileFolder folder;
+  folder.write("floor.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  const std::string scene = folder.write("floor.obj",
+                                         "mtllib floor.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\n"
+                                         "v -1 0 1\no floor\nusemtl grey\nf 4 3 2 1\n");
+  // Posterized in steps of 200 lux: a pixel would have to be off by 100 lux to have another colour.
+  run({"render", scene, "--sky", "uniform=500", "--size", "64x48", "--photons", "300k", "-k", "600",
+       "--quality", "draft", "-o", folder / "floor.exr"});
+  run({"relight", folder / "floor.exr", "--illuminance", folder / "lux.png", "--cp", "-n", "5"});
+  const Image lux = read_image(folder / "lux.png");
+  const report::Palette palette("turbo");
+  std::map<Colour, int> pixels;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) ++pixels[colour_at(lux, x, y)];
+  }
+  const int dark = pixels[palette.at(0.1)];  // where the sky is seen, which is no surface
+  const int lit = 64 * 48 - dark;
+  CHECK(lit > 200);
+  CHECK(pixels[palette.at(0.5)] > 0.8 * lit);  // the rest is the floor's border
+}
+
+TEST_CASE("what is drawn of a render is what its EXR holds, in scenes of watts as well") {
+  const FileFolder folder;
+  run({"render", write_box(folder), "--size", "24x16", "--photons", "20k", "--quality", "draft",
+       "-o", folder / "a.exr", "--illuminance", folder / "lux.png", "--luminance",
+       folder / "luminance.png", "-s", "3000"});
+  const Image exr = read_image(folder / "a.exr");
+  const Image lux = read_image(folder / "lux.png"), drawn = read_image(folder / "luminance.png");
+  const report::Palette palette("turbo");
+  const double efficacy = 683;
+  for (std::size_t pixel = 0; pixel < exr.pixels(); ++pixel) {
+    const auto value = [&](const char* channel) {
+      return static_cast<double>((*exr.find(channel))[pixel]);
+    };
+    const int x = static_cast<int>(pixel) % 24, y = static_cast<int>(pixel) / 24;
+    const double sum = value("Illuminance_left.Y") + value("Illuminance_right.Y");
+    CHECK(colour_at(lux, x, y) == palette.at(sum / 3000));
+    const double radiance = 0.2126 * value("R") + 0.7152 * value("G") + 0.0722 * value("B");
+    CHECK(colour_at(drawn, x, y) == palette.at(efficacy * radiance / 3000));
+  }
+}
+
+TEST_CASE("a drawing in false colour needs its values and a PNG") {
+  const FileFolder folder;
+  const std::string picture = write_picture(folder);
+  const auto error = [&](std::vector<std::string> arguments, int code) {
+    return only_error(run_photile(arguments), code);
+  };
+  CHECK_THAT(error({"relight", picture, "--illuminance", folder / "lux.exr"}, 2),
+             Contains("lux.exr") && Contains(".png"));
+  CHECK_THAT(error({"render", write_box(folder), "-q", "--luminance", folder / "a.jpg"}, 2),
+             Contains("a.jpg") && Contains(".png"));
+  CHECK_THAT(error({"relight", picture, "--illuminance", folder / "a.png", "--cl", "--cb"}, 2),
+             Contains("--c"));
+  CHECK_THAT(error({"relight", picture, "--illuminance", folder / "a.png", "-s", "-3"}, 2),
+             Contains("-3"));
+  // Light groups as other programs write them.
+  Image foreign;
+  foreign.width = foreign.height = 1;
+  for (const char* channel : {"Combined_key.R", "Combined_key.G", "Combined_key.B"}) {
+    foreign.add(channel) = {1};
+  }
+  write_exr(folder / "foreign.exr", foreign);
+  CHECK_THAT(error({"relight", folder / "foreign.exr", "-o", folder / "a.exr", "--illuminance",
+                    folder / "a.png"},
+                   3),
+             Contains("Combined_key"));
+  CHECK_THAT(error({"relight", folder / "foreign.exr", "--luminance", folder / "a.png"}, 3),
+             Contains("whiteLuminance"));
+  CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
+}
+
+// Who pays for OpenImageIO: the dynamic linker says what it loads.
+
+/// What the dynamic linker prints while a command runs.
+std::string loaded_by(const std::vector<std::string>& arguments) {
+  Run run;
+  run.arguments = arguments;
+  run.environment["LD_DEBUG"] = "files";
+  const Outcome outcome = succeed(run);
+  CHECK_THAT(outcome.errors, Catch::Contains("libOpenEXR"));
+  return outcome.errors;
+}
+
+TEST_CASE("OpenImageIO is loaded where a picture is read that is no EXR, and nowhere else") {
+  const FileFolder folder;
+  const std::string box = write_box(folder), picture = folder / "a.exr";
+  const std::vector<std::string> render =
+      typed("render", box, "-o", picture, "--size 16x12 --quality draft --photons 2k --quiet");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"--version"}, render,
+        std::vector<std::string>{"measure", box, "--plane", "floor+0.75", "--photons", "2k",
+                                 "--rays", "16", "--quiet"},
+        std::vector<std::string>{"relight", picture, "--light", "left=x2", "-o", folder / "b.exr"},
+        std::vector<std::string>{"compare", picture, picture}}) {
+    CHECK_THAT(loaded_by(command), !Catch::Contains("OpenImageIO"));
+  }
+  folder.write("rug.ppm", "P6 1 1 255\n\x80\x40\x20");
+  folder.write("box.mtl", box_mtl() + "newmtl rug\nmap_Kd rug.ppm\n");
+  folder.write("box.obj", box_obj() + "vt 0 0\nvt 1 0\nvt 1 1\nusemtl rug\nf 1/1 2/2 3/3\n");
+  const std::string texture = folder / "rug.ppm";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", box},
+        std::vector<std::string>{"compare", texture, texture}}) {
+    CHECK_THAT(loaded_by(command),
+               Catch::Contains("photile_openimageio.so") && Catch::Contains("libOpenImageIO.so"));
+  }
+}
+
+TEST_CASE("what libpng has to say about a picture stays out of the error line") {
+  const FileFolder folder;
+  // A header with a wrong checksum.
+  const std::string png(
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\0\0\0\0\0\0\0\0"
+      "\0\0\0\0IEND\xae\x42\x60\x82",
+      45);
+  const std::string file = folder.write("a.png", png);
+  CHECK_THAT(only_error(run_photile({"compare", file, file}), bad_input),
+             Catch::Contains("a.png: "));
+}
+
+}  // namespace
+}  // namespace photile::test

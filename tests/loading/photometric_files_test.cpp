@@ -1,0 +1,394 @@
+// IES LM-63 and EULUMDAT files.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "files/scene_files.hpp"
+#include "message_of.hpp"
+#include "photometric_texts.hpp"
+#include "photometry/photometric_file.hpp"
+
+namespace photile::test {
+namespace {
+
+using files::ResourceError;
+using photometry::read_ies;
+using std::numbers::pi;
+
+// LM-63 files against closed forms, their oddities, and files that are none.
+
+IntensityDistribution read_ies(const std::string& text) {
+  files::Warnings warnings;
+  return read_ies("lamp.ies", text, warnings);
+}
+
+std::string ies_refusal(const std::string& text) {
+  return message_of<ResourceError>([&] { read_ies(text); });
+}
+
+/// A direction at gamma from -z and at azimuth C from +x by +y.
+glm::dvec3 towards(double c, double gamma) {
+  const double radians = pi / 180;
+  return {std::sin(gamma * radians) * std::cos(c * radians),
+          std::sin(gamma * radians) * std::sin(c * radians), -std::cos(gamma * radians)};
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  text.replace(text.find(what), what.size(), by);
+  return text;
+}
+
+TEST_CASE("an even lamp of 100 cd emits 400 pi lm, whatever part of the circle was measured",
+          "[ies]") {
+  for (const auto& horizontal :
+       {std::vector<double>{0}, angles(0, 90, 3), angles(0, 180, 4), angles(90, 270, 4),
+        angles(0, 360, 8), angles(0, 345, 23), angles(-180, 180, 12)}) {
+    IesText file;
+    file.horizontal = horizontal;
+    const IntensityDistribution lamp = read_ies(file.str());
+    CAPTURE(horizontal.front(), horizontal.back());
+    CHECK(lamp.flux() == Approx(400 * pi).epsilon(1e-12));
+    for (const double c : {-170.0, 0.0, 45.0, 180.0, 352.5, 359.9999}) {
+      CHECK(lamp.intensity(towards(c, 77)) == Approx(100));
+    }
+  }
+}
+
+TEST_CASE("flux is the exact integral of what is interpolated", "[ies]") {
+  // I = 100 (1 - gamma / pi): 2 pi 100 (2 - 1).
+  IesText linear;
+  linear.vertical = {0, 180};
+  linear.candela = [](double, double v) { return 100 * (1 - v / 180); };
+  CHECK(read_ies(linear.str()).flux() == Approx(200 * pi).epsilon(1e-12));
+  CHECK(read_ies(linear.str()).intensity(towards(10, 45)) == Approx(75));
+  // Twice as bright on one half of the circle, linear between: I = 100 + 100 C / 180.
+  IesText turned;
+  turned.horizontal = {0, 180};
+  turned.candela = [](double h, double) { return 100 + 100 * h / 180; };
+  CHECK(read_ies(turned.str()).flux() == Approx(150 * 4 * pi).epsilon(1e-12));
+  CHECK(read_ies(turned.str()).intensity(towards(-45, 90)) == Approx(125));
+}
+
+TEST_CASE("a Lambertian lamp emits pi times its intensity, downwards only", "[ies]") {
+  IesText file;
+  file.vertical = angles(0, 90, 90);
+  file.candela = [](double, double v) { return 100 * std::cos(v * pi / 180); };
+  const IntensityDistribution lamp = read_ies(file.str());
+  CHECK(lamp.flux() == Approx(100 * pi).epsilon(1e-4));
+  CHECK(lamp.intensity({0, 0, -1}) == Approx(100));
+  CHECK(lamp.intensity(towards(200, 60)) == Approx(50));
+  CHECK(lamp.intensity(towards(200, 91)) == 0);
+}
+
+TEST_CASE("planes left out by symmetry are mirrored ones", "[ies]") {
+  const auto candela = [](double h, double v) { return h + v; };
+  IesText quarter;
+  quarter.vertical = {0, 90, 180};
+  quarter.candela = candela;
+  quarter.horizontal = angles(0, 90, 3);
+  IesText half = quarter, side = quarter, full = quarter;
+  half.horizontal = angles(0, 180, 6);
+  side.horizontal = angles(90, 270, 6);
+  full.horizontal = angles(0, 360, 12);
+  for (const double c : {0.0, 10.0, 80.0, 90.0, 100.0, 179.0, 181.0, 265.0, 300.0, 359.0}) {
+    CAPTURE(c);
+    const double to_half = c <= 180 ? c : 360 - c;
+    const double to_quarter = to_half <= 90 ? to_half : 180 - to_half;
+    const double to_side = c < 90 ? 180 - c : c <= 270 ? c : 540 - c;
+    CHECK(read_ies(quarter.str()).intensity(towards(c, 90)) == Approx(90 + to_quarter));
+    CHECK(read_ies(half.str()).intensity(towards(c, 90)) == Approx(90 + to_half));
+    CHECK(read_ies(side.str()).intensity(towards(c, 90)) == Approx(90 + to_side));
+    CHECK(read_ies(full.str()).intensity(towards(c, 90)) == Approx(90 + c));
+  }
+}
+
+TEST_CASE("types A and B turn about a pole above, or to the right", "[ies]") {
+  const double h = GENERATE(-30.0, 0.0, 60.0), v = GENERATE(-60.0, 0.0, 30.0);
+  IesText file;
+  file.vertical = file.horizontal = angles(-90, 90, 6);
+  file.candela = [&](double hh, double vv) { return hh == h && vv == v ? 500.0 : 0.0; };
+  const double radians = pi / 180;
+  const double ch = std::cos(h * radians), sh = std::sin(h * radians);
+  const double cv = std::cos(v * radians), sv = std::sin(v * radians);
+  // Aimed at -z with +x above: -y is to the right.
+  file.type = 2;
+  CHECK(read_ies(file.str()).intensity({ch * sv, -sh, -ch * cv}) == Approx(500));
+  file.type = 3;
+  CHECK(read_ies(file.str()).intensity({sv, -cv * sh, -cv * ch}) == Approx(500));
+}
+
+TEST_CASE("an even lamp of types A and B emits 2 pi lm per candela, also measured by a quarter",
+          "[ies]") {
+  for (const int type : {2, 3}) {
+    IesText file;
+    file.type = type;
+    file.vertical = file.horizontal = angles(-90, 90, 4);
+    CHECK(read_ies(file.str()).flux() == Approx(200 * pi).epsilon(1e-12));
+    file.vertical = file.horizontal = angles(0, 90, 2);
+    CHECK(read_ies(file.str()).flux() == Approx(200 * pi).epsilon(1e-12));
+    CHECK(read_ies(file.str()).intensity({0, 0, -1}) == Approx(100));
+    CHECK(read_ies(file.str()).intensity({0, 0, 1}) == 0);
+  }
+}
+
+TEST_CASE("the multiplier and the ballast factor multiply, the lumens and the size do not",
+          "[ies]") {
+  IesText file;
+  file.multiplier = 2.5;
+  file.ballast = "0.8 1 60";
+  file.lamps = "2 3000";
+  file.units = 1;
+  CHECK(read_ies(file.str()).intensity({0, 0, -1}) == Approx(200));
+}
+
+TEST_CASE("the ballast-lamp factor counts in files before 1995; later it means other things",
+          "[ies]") {
+  IesText file;
+  file.ballast = "1 1.10000 60";  // in 2019: made by simulation
+  const auto& [first_line, factor] = GENERATE(table<std::string, double>({
+      {"", 1.1},
+      {"IESNA91\n", 1.1},
+      {"IESNA:LM-63-1995\n", 1},
+      {"IESNA:LM-63-2002\n", 1},
+      {"IES:LM-63-2019\n", 1},
+  }));
+  file.first_line = first_line;
+  CHECK(read_ies(file.str()).intensity({0, 0, -1}) == Approx(100 * factor));
+}
+
+TEST_CASE("numbers may be wrapped, separated by commas and ended in any way", "[ies]") {
+  IesText file;
+  file.vertical = angles(0, 180, 18);
+  file.horizontal = angles(0, 360, 4);
+  file.candela = [](double h, double v) { return 1 + h / 100 + v; };
+  const double flux = read_ies(file.str()).flux();
+  for (const char* separator : {"\n", ", ", ",", "\r\n", "\r", "\t", "  \n \n"}) {
+    file.separator = separator;
+    CHECK(read_ies(file.str()).flux() == flux);
+  }
+  file.separator = " +";  // the sign of the next number
+  std::string text = file.str();
+  for (std::size_t at; (at = text.find("+\n")) != std::string::npos;) text.erase(at, 1);
+  CHECK(read_ies(text).flux() == flux);
+  CHECK(read_ies("\xEF\xBB\xBF" + file.first_line + "[MANUFAC] M\xFCller\n" + IesText().str())
+            .flux() == Approx(400 * pi));
+  CHECK(read_ies(IesText().str() + "\x1A").flux() == Approx(400 * pi));
+}
+
+TEST_CASE("tilt is read over, with a warning where it says something", "[ies]") {
+  const auto& [tilt, warned] = GENERATE(table<std::string, bool>({
+      {"TILT=NONE\n", false},
+      {"  TILT = NONE \r\n", false},
+      {"TILT=INCLUDE\n1\n3\n0 45 90\n1 1 1\n", false},
+      {"TILT=INCLUDE\n2 3 0 45\n90 1 0.95 0.9\n", true},
+      {"TILT=other.tlt\n", true},
+  }));
+  IesText file;
+  file.tilt = tilt;
+  files::Warnings warnings;
+  CHECK(read_ies("lamp.ies", file.str(), warnings).flux() == Approx(400 * pi));
+  CHECK(warnings.lines().empty() != warned);
+}
+
+TEST_CASE("what is wrong with a file is told with its line", "[ies]") {
+  const std::string sound = IesText().str();
+  const auto holds = [](const char* words) { return Catch::Contains(words); };
+  CHECK_THAT(ies_refusal(""), holds("TILT="));
+  CHECK_THAT(ies_refusal("not a lamp\n"), holds("TILT="));
+  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 100")), holds("ends before"));
+  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 1O0 100")),
+             holds("line 9: '1O0' is no number"));
+  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 nan 100")),
+             holds("'nan' is no number"));
+  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 1e400 100")), holds("is no number"));
+  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 1e39 100")), holds("1e+39 cd"));
+  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 -1 100")), holds("-1 cd"));
+  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 180 90")), holds("angles ascend"));
+  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 90 90")), holds("angles ascend"));
+  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 90 181")), holds("within 0 and 180"));
+  // Mirrored, these would be one.
+  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 1e-44 180")), holds("angles ascend"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 0 3 1 1")),
+             holds("multiplier is 0"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 1 1 1")),
+             holds("vertical angles is 1"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3.5 1 1")), holds("whole number"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3 0 1")),
+             holds("horizontal angles is 0"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3 1 4")),
+             holds("photometric type is 4"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3 1 2")), holds("type A or B"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 4e9 1 1")), holds("20000"));
+  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 20000 20000 1")), holds("limit"));
+  IesText odd;
+  odd.horizontal = angles(0, 270, 9);
+  CHECK_THAT(ies_refusal(odd.str()), holds("from 0 to 270"));
+}
+
+TEST_CASE("openings are rectangles, circles in the way of 1995 or of 2019, or ellipses", "[ies]") {
+  struct Opening {
+    const char* text;
+    double along_zero, along_quarter, below, aside;  ///< the last two m2, seen from there
+  };
+  const double c = pi / 4;
+  for (const Opening& o :
+       {Opening{"0.3 1.2 0", 1.2, 0.3, 0.36, 0}, Opening{"0.3 1.2 0.1", 1.2, 0.3, 0.36, 0.03},
+        Opening{"-0.2 -0.2 0", 0.2, 0.2, c * 0.04, 0}, Opening{"-0.2 0 0", 0.2, 0.2, c * 0.04, 0},
+        Opening{"0 -0.2 0", 0.2, 0.2, c * 0.04, 0},
+        Opening{"-0.2 -0.2 0.5", 0.2, 0.2, c * 0.04, 0.1},
+        Opening{"-0.2 -0.6 0", 0.6, 0.2, c * 0.12, 0}}) {
+    for (const auto& [units, metres] : {std::pair(1, 0.3048), std::pair(2, 1.0)}) {
+      CAPTURE(o.text, units);
+      IesText file;
+      file.opening = o.text;
+      file.units = units;
+      const IntensityDistribution lamp = read_ies(file.str());
+      CHECK(lamp.opening().along_zero == Approx(metres * o.along_zero));
+      CHECK(lamp.opening().along_quarter == Approx(metres * o.along_quarter));
+      CHECK(lamp.opening().projected_area(lamp.axes(), {0, 0, -1}) ==
+            Approx(metres * metres * o.below));
+      CHECK(lamp.opening().projected_area(lamp.axes(), lamp.axes().zero) ==
+            Approx(metres * metres * o.aside).margin(1e-12));
+    }
+  }
+}
+
+TEST_CASE("a file cut anywhere, or with bytes replaced at random, is read or refused", "[ies]") {
+  IesText file;
+  file.tilt = "TILT=INCLUDE\n1 2 0 90 1 0.9\n";
+  file.horizontal = angles(0, 90, 2);
+  const std::string sound = file.str();
+  const std::size_t needed = sound.find_last_of('1');  // cut within the last number it is another
+  for (std::size_t length = 0; length < sound.size(); ++length) {
+    const std::string message = ies_refusal(sound.substr(0, length));
+    if (length <= needed) REQUIRE_FALSE(message.empty());
+  }
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 20'000; ++trial) {
+    ies_refusal(damaged(sound, random));  // nothing but a ResourceError
+  }
+}
+
+// EULUMDAT files against closed forms, and files that are none.
+
+IntensityDistribution read_eulumdat(const std::string& text) {
+  files::Warnings warnings;
+  return photometry::read_eulumdat("lamp.ldt", text, warnings);
+}
+
+std::string eulumdat_refusal(const std::string& text) {
+  try {
+    read_eulumdat(text);
+  } catch (const files::ResourceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+glm::dvec3 level_towards(double c) { return {std::cos(c * pi / 180), std::sin(c * pi / 180), 0.0}; }
+
+TEST_CASE("intensities are per 1000 lm of the lamps, times the conversion factor") {
+  EulumdatText file;
+  file.intensity = [](double, double) { return 1000 / (4 * pi); };
+  CHECK(read_eulumdat(file.str()).flux() == Approx(2000).epsilon(1e-6));
+  file.conversion = 0.5;
+  CHECK(read_eulumdat(file.str()).flux() == Approx(1000).epsilon(1e-6));
+}
+
+TEST_CASE("decimal commas are points") {
+  EulumdatText file;
+  file.planes = 24;
+  file.gamma = angles(0, 90, 36);
+  file.lamp_flux = 1234.5;
+  file.intensity = [](double c, double g) { return c / 360 + std::cos(g * pi / 180); };
+  const double flux = read_eulumdat(file.str()).flux();
+  file.commas = true;
+  CHECK(read_eulumdat(file.str()).flux() == flux);
+}
+
+TEST_CASE("each symmetry leaves out the planes that mirrors give") {
+  EulumdatText file;
+  file.planes = 12;
+  file.lamp_flux = 1000;
+  file.intensity = [](double c, double) { return c; };
+  for (const double c : {0.0, 5.0, 30.0, 90.0, 100.0, 170.0, 185.0, 270.0, 280.0, 345.0}) {
+    CAPTURE(c);
+    const auto at = [&](int symmetry) {
+      EulumdatText asked = file;
+      asked.symmetry = symmetry;
+      if (symmetry == 3) {  // ascends from C270 through C0
+        asked.intensity = [](double angle, double) { return angle < 180 ? angle + 360 : angle; };
+      }
+      return read_eulumdat(asked.str()).intensity(level_towards(c));
+    };
+    const double to_half = c <= 180 ? c : 360 - c;
+    const double to_quarter = to_half <= 90 ? to_half : 180 - to_half;
+    const double to_side = c <= 90 ? 360 + c : c <= 270 ? 540 - c : c;
+    CHECK(at(0) == Approx(c <= 330 ? c : 330 * (360 - c) / 30));
+    CHECK(at(1) == Approx(0).margin(1e-9));
+    CHECK(at(2) == Approx(to_half).margin(1e-9));
+    CHECK(at(3) == Approx(to_side));
+    CHECK(at(4) == Approx(to_quarter).margin(1e-9));
+  }
+}
+
+TEST_CASE("of several sets of lamps the first counts, and a warning says so") {
+  EulumdatText file;
+  file.sets = 3;
+  files::Warnings warnings;
+  const auto lamp = photometry::read_eulumdat("lamp.ldt", file.str(), warnings);
+  CHECK(lamp.flux() == Approx(50 * 2 * 4 * pi));
+  CHECK(warnings.lines().size() == 1);
+}
+
+TEST_CASE("what is wrong with a EULUMDAT file is told with its line") {
+  EulumdatText file;
+  CHECK_THAT(eulumdat_refusal(""), Catch::Contains("ends before the symmetry"));
+  CHECK_THAT(eulumdat_refusal("a\nb\nc\n"), Catch::Contains("line 3: no number"));
+  file.symmetry = 5;
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("line 3: the symmetry indicator is 5"));
+  file.symmetry = 4;
+  file.planes = 6;
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("6 C planes cannot have symmetry 4"));
+  file = {};
+  file.lamp_flux = 0;
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("not above 0"));
+  file = {};
+  file.gamma = {0, 90, 90};
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("angles ascend"));
+  file = {};
+  file.intensity = [](double, double) { return -1.0; };
+  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("-2 cd"));
+  std::string text = EulumdatText().str();
+  text.replace(text.find("\n1\n0\r\n4\r\n"), 9, "\n1\n0\r\n4e9\r");
+  CHECK_THAT(eulumdat_refusal(text), Catch::Contains("4000000000"));
+}
+
+TEST_CASE("openings are millimetres: length along C90, width 0 of round ones") {
+  EulumdatText file;
+  file.sizes = {1300, 400, 80, 1200, 300, 40, 40, 40, 40};
+  const LuminousOpening linear = read_eulumdat(file.str()).opening();
+  CHECK(linear.along_quarter == Approx(1.2));
+  CHECK(linear.along_zero == Approx(0.3));
+  CHECK(linear.height == Approx(0.04));
+  CHECK_FALSE(linear.round);
+  file.sizes = {250, 0, 80, 200, 0, 0, 0, 0, 0};
+  const IntensityDistribution round = read_eulumdat(file.str());
+  CHECK(round.opening().round);
+  CHECK(round.opening().projected_area(round.axes(), {0, 0, -1}) == Approx(pi * 0.01));
+}
+
+TEST_CASE("a EULUMDAT file cut anywhere, or with bytes replaced at random, is read or refused") {
+  const std::string sound = EulumdatText().str();
+  for (std::size_t length = 0; length + 4 < sound.size(); ++length) {
+    REQUIRE_FALSE(eulumdat_refusal(sound.substr(0, length)).empty());
+  }
+  std::mt19937 random(8);
+  for (int trial = 0; trial < 20'000; ++trial) {
+    eulumdat_refusal(damaged(sound, random));  // nothing but a ResourceError
+  }
+}
+
+}  // namespace
+}  // namespace photile::test

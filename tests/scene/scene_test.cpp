@@ -1,0 +1,559 @@
+// Scenes in memory: made from arrays, named, hashed, measured and looked at.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "common/content_hash.hpp"
+#include "message_of.hpp"
+#include "photile/camera.hpp"
+#include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "photile/photile.hpp"
+#include "photile/scene_builder.hpp"
+#include "scene/light_emission.hpp"
+#include "scene/light_names.hpp"
+#include "scene/scene_queries.hpp"
+#include "scene_invariants.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using Catch::Contains;
+using std::numbers::pi;
+
+// Scenes made from arrays: what is filled, and what is refused.
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// A tetrahedron of 1 m, fronts outwards, as arrays.
+struct Tetrahedron {
+  std::vector<glm::vec3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<glm::uvec3> triangles{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+
+  MeshArrays arrays() const { return {.vertices = vertices, .triangles = triangles}; }
+};
+
+Texture grey_texture() { return {"grey", 1, 1, {{128, 128, 128, 255}}}; }
+
+Material textured(std::uint32_t texture) {
+  Material material = diffuse(glm::vec3(0.5f));
+  material.name = "paper";
+  material.diffuse_texture = texture;
+  return material;
+}
+
+TEST_CASE("a mesh of arrays becomes a scene with every array filled") {
+  SceneBuilder builder("tetrahedron");
+  builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t red = builder.add(diffuse({0.5f, 0.1f, 0.1f}));
+  const std::uint32_t lamp = builder.add(area_light("lamp", 100));
+  const Tetrahedron shape;
+  const std::vector<std::uint32_t> materials{0, red, 0, red}, lights{none, none, lamp, none};
+  MeshArrays mesh = shape.arrays();
+  mesh.materials = materials;
+  mesh.lights = lights;
+  const std::vector<std::uint32_t> numbers = builder.add(mesh);
+  CHECK(numbers == std::vector<std::uint32_t>{0, 1, 2, 3});
+  const Scene scene = builder.build();
+  test::check_invariants(scene);
+  CHECK(scene.vertices.size() == 4);
+  CHECK(scene.triangle_material == materials);
+  CHECK(scene.triangle_light == lights);
+  CHECK(scene.lights[lamp].triangles == std::vector<std::uint32_t>{2});
+  CHECK(scene.cameras.size() == 1);
+  for (std::uint32_t t = 0; t < 4; ++t) {
+    const glm::dvec3 outwards = sided_normal(scene, sided(t, scene.front_side[t]));
+    CHECK(glm::dot(outwards, glm::dvec3(scene.corners(t)[0]) - glm::dvec3(0.2)) > 0);
+  }
+}
+
+TEST_CASE("triangles without area and those upon others are left out, and have no number") {
+  SceneBuilder builder;
+  builder.add(diffuse(glm::vec3(0.5f)));
+  Tetrahedron shape;
+  shape.triangles = {{0, 1, 2}, {1, 1, 2}, {2, 1, 0}, {0, 1, 3}};
+  CHECK(builder.add(shape.arrays()) == std::vector<std::uint32_t>{0, none, none, 1});
+  const Scene scene = builder.build();
+  CHECK(scene.report.degenerate_triangles == 1);
+  CHECK(scene.report.duplicate_triangles == 1);
+}
+
+TEST_CASE("coordinates and normals follow the corners, and only those that materials need stay") {
+  SceneBuilder builder;
+  const std::uint32_t plain = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.triangle({5, 0, 0}, {6, 0, 0}, {5, 1, 0}, plain);
+  const std::uint32_t paper = builder.add(textured(builder.add(grey_texture())));
+  const Tetrahedron shape;
+  std::vector<glm::vec2> uv;
+  for (const glm::vec3& p : shape.vertices) uv.emplace_back(p.x + 2 * p.y, p.z);
+  MeshArrays mesh = shape.arrays();
+  mesh.uv = uv;
+  mesh.normals = shape.vertices;
+  mesh.material = paper;
+  builder.add(mesh);
+  const Scene scene = builder.build();
+  REQUIRE(scene.corner_uv.size() == 5);
+  CHECK(scene.corner_uv[0] == std::array<glm::vec2, 3>{});
+  for (std::size_t t = 1; t < 5; ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const glm::vec3 p = scene.corners(t)[c];
+      CHECK(scene.corner_uv[t][c] == glm::vec2(p.x + 2 * p.y, p.z));
+    }
+  }
+  CHECK(scene.corner_normal.size() == 5);  // they bend a matt surface
+  CHECK(scene.corner_tangent.empty());
+}
+
+TEST_CASE("normals of the triangles stay for materials that ask for a frame alone") {
+  SceneBuilder builder;
+  const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<glm::vec3> up(3, glm::vec3(0, 0, 2));
+  const std::vector<glm::uvec3> triangle{{0, 1, 2}};
+  builder.add({.vertices = corners,
+               .triangles = triangle,
+               .normals = up,
+               .material = builder.add(diffuse(glm::vec3(0.5f)))});
+  CHECK(builder.build().corner_normal.empty());
+  builder.add(mirror(glm::vec3(0.9f)));
+  CHECK(builder.build().corner_normal.size() == 1);
+}
+
+TEST_CASE("lights get the flux that the closed forms say") {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.box(glm::vec3(-1), glm::vec3(1), white, true);
+  const double disc = glm::pi<double>() * 3;  // of the sphere through the corners, squared metres
+  Light sun;
+  sun.name = "sun";
+  sun.direction = {0, -3, 0};
+  sun.color = {2, 2, 2};
+  const std::uint32_t parallel = builder.add_distant(sun, 1000);
+  sun.angular_diameter = 1.5f;
+  const std::uint32_t wide = builder.add_distant(sun, 1000);
+  const std::uint32_t sky =
+      builder.add_surroundings("sky", EnvironmentMap("even", 4, 2, std::vector(8, glm::vec3(2))));
+  const Scene scene = builder.build();
+  CHECK(scene.lights[parallel].power == Approx(1000 * disc));
+  CHECK(scene.lights[parallel].direction == glm::vec3(0, -1, 0));
+  CHECK(scene.lights[parallel].color == glm::vec3(1));
+  // Radiance L over the disc: irradiance L pi sin^2, flux per area L 2 pi (1 - cos).
+  const double half = 0.75;
+  CHECK(scene.lights[wide].power ==
+        Approx(1000 * disc * 2 * (1 - std::cos(half)) / std::pow(std::sin(half), 2)));
+  CHECK(scene.lights[sky].power == Approx(2 * 4 * glm::pi<double>() * disc));
+  CHECK(scene.lights[wide].name == "sun_2");
+}
+
+TEST_CASE("a textured area light emits its power, where its texture is bright") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  Light lamp = area_light("window", 50);
+  lamp.emission_texture = builder.add(grey_texture());
+  lamp.color = {1, 0, 0};
+  const std::uint32_t light = builder.add(lamp);
+  const Tetrahedron shape;
+  const std::vector<glm::vec2> uv(4, glm::vec2(0.5f));
+  MeshArrays mesh = shape.arrays();
+  mesh.emission_uv = uv;
+  mesh.light = light;
+  mesh.material = black;
+  builder.add(mesh);
+  const Scene scene = builder.build();
+  CHECK(scene.lights[light].power == 50);
+  // pi A x radiance = 1 over the surface, of texels that are 0.2159 of white.
+  const double area = 1.5 + std::sqrt(3) / 2;
+  const double texel = std::pow((128 / 255.0 + 0.055) / 1.055, 2.4);
+  CHECK(scene.lights[light].texel_radiance.r * 0.2126 * texel * std::numbers::pi * area ==
+        Approx(1).epsilon(1e-5));
+  CHECK(scene.lights[light].color.g == 0);
+}
+
+TEST_CASE("what is wrong with a mesh or a light is said in one line that names the scene") {
+  SceneBuilder builder("kitchen");
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t paper = builder.add(textured(builder.add(grey_texture())));
+  const std::uint32_t bulb = builder.add(point_light("bulb", {0, 0, 1}));
+  Tetrahedron shape;
+  const auto refusal = [&](const std::function<void(MeshArrays&)>& change) {
+    MeshArrays mesh = shape.arrays();
+    mesh.material = white;
+    change(mesh);
+    return message_of<InputError>([&] { builder.add(mesh); });
+  };
+  const std::vector<std::uint32_t> two{0, 0}, unknown{0, 0, 9, 0};
+  const std::vector<glm::vec2> short_uv(3);
+  const std::vector<glm::vec3> bad_normals{{0, 0, 1}, {0, nan, 0}, {0, 0, 1}, {0, 0, 1}};
+  CHECK(refusal([&](auto& m) { m.materials = two; }) ==
+        "kitchen: a mesh has 2 materials; it must have none or 4");
+  CHECK_THAT(refusal([&](auto& m) { m.materials = unknown; }),
+             Contains("kitchen: a triangle has material 9, and there are 2"));
+  CHECK_THAT(refusal([&](auto& m) { m.uv = short_uv; }), Contains("3 uv; it must have none or 4"));
+  CHECK_THAT(refusal([&](auto& m) { m.normals = bad_normals; }), Contains("normal of vertex 1"));
+  CHECK_THAT(refusal([&](auto& m) { m.light = 7; }), Contains("light 7, and there are 1"));
+  CHECK_THAT(refusal([&](auto& m) { m.light = bulb; }), Contains("'bulb', which is no area light"));
+  CHECK_THAT(refusal([&](auto& m) { m.material = paper; }),
+             Contains("without uv") && Contains("'paper'"));
+  shape.triangles[3].y = 4;
+  CHECK(refusal([](auto&) {}) ==
+        "kitchen: triangle 3 of a mesh has the corners 1, 4, 3 of 4 vertices");
+  shape.triangles[3].y = 2;
+  shape.vertices[2].z = nan;
+  CHECK_THAT(refusal([](auto&) {}), Contains("kitchen: vertex 2 of a mesh lies at (0, 1, nan)"));
+  shape.vertices[2].z = 1e13f;
+  CHECK_THAT(refusal([](auto&) {}), Contains("vertex 2 of a mesh"));
+
+  const auto refuse_light = [&](const std::function<void(Light&)>& change, const char* reason) {
+    Light light = point_light("lamp", {0, 0, 0});
+    change(light);
+    CHECK_THROWS_WITH(builder.add(light), Contains("kitchen: light 'lamp' ") && Contains(reason));
+  };
+  refuse_light([](Light& l) { l.power = 0; }, "power 0; it must be above 0");
+  refuse_light([](Light& l) { l.power = -5; }, "power -5");
+  refuse_light([](Light& l) { l.power = std::numeric_limits<double>::quiet_NaN(); }, "power nan");
+  refuse_light([](Light& l) { l.color = glm::vec3(0); }, "no colour");
+  refuse_light([](Light& l) { l.color = {1, -1, 1}; }, "no colour");
+  refuse_light([](Light& l) { l.direction = glm::vec3(0); }, "no direction");
+  refuse_light([](Light& l) { l.distribution = 0; }, "distribution 0 of 0");
+  refuse_light([](Light& l) { l.emission_texture = 0; }, "emission texture");
+  refuse_light(
+      [](Light& l) {
+        l.kind = LightKind::spot;
+        l.inner_cone_angle = 1;
+        l.outer_cone_angle = 0.5f;
+      },
+      "cone angles");
+}
+
+TEST_CASE("a scene without triangles, or a lamp without any, is refused") {
+  SceneBuilder builder("empty");
+  CHECK_THROWS_WITH(builder.build(), "empty: no triangle has an area; add a mesh");
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.box(glm::vec3(0), glm::vec3(1), white, true);
+  builder.add(area_light("panel"));
+  CHECK_THROWS_WITH(builder.build(), Contains("'panel' is an area light without triangles"));
+}
+
+TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, and no crash") {
+  const auto broken = [](const std::function<void(Scene&)>& change) {
+    Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+    change(scene);
+    return scene;
+  };
+  const Scene whole = broken([](Scene&) {});
+  const Photons photons = trace_photons(RayScene(whole), {.emitted_photons = 100}).photons;
+  const NeighbourGroups groups = find_neighbour_groups(whole, {.radius = 0.1});
+  const auto check_stages = [&](const Scene& scene, const char* reason) {
+    INFO(reason);
+    const auto refuses = [&](const auto& stage) {
+      CHECK_THROWS_WITH(stage(), Contains("closed box: ") && Contains(reason));
+      CHECK_THROWS_AS(stage(), InputError);
+    };
+    refuses([&] { check_scene(scene); });
+    refuses([&] { RayScene rays(scene); });
+    refuses([&] { find_neighbour_groups(scene, {.radius = 0.1}); });
+    refuses([&] { find_patches(scene, 0.1, MapMode::patch); });
+    refuses([&] { find_map_groups(scene, photons, MapMode::automatic, {.radius = 0.1}); });
+    refuses([&] { index_surface(scene, std::vector<std::uint32_t>(24), 0.1, 60); });
+    refuses([&] { PhotonMaps(device(), scene, photons, groups, {.radius = 0.1}); });
+    refuses([&] { trace_paths(scene, Camera(), {.width = 2, .height = 2}); });
+    refuses([&] { render(scene, Camera(), device(), {}); });
+  };
+  const auto stages_refuse = [&](const std::function<void(Scene&)>& change, const char* reason) {
+    check_stages(broken(change), reason);
+  };
+  stages_refuse([](Scene& s) { s.front_side.clear(); }, "front_side has 0 elements for 12");
+  stages_refuse([](Scene& s) { s.triangle_light.clear(); }, "triangle_light has 0 elements");
+  stages_refuse([](Scene& s) { s.triangle_material.pop_back(); }, "triangle_material has 11");
+  stages_refuse([](Scene& s) { s.corner_uv.resize(3); }, "corner_uv has 3");
+  stages_refuse([](Scene& s) { s.triangles[4].z = 8; }, "of 8 vertices");
+  stages_refuse([](Scene& s) { s.vertices[3].y = nan; }, "vertex 3 lies at");
+  stages_refuse([](Scene& s) { s.triangle_material[5] = 1; }, "triangle 5 has material 1 of 1");
+  stages_refuse([](Scene& s) { s.triangle_light[5] = 0; }, "light 0, which is no area light");
+  stages_refuse([](Scene& s) { s.materials[0].diffuse_texture = 0; }, "has texture 0 of 0");
+  stages_refuse([](Scene& s) { s.materials[0].diffuse.g = nan; }, "reflectances lie in [0, 1]");
+  stages_refuse([](Scene& s) { s.lights[0].power = nan; }, "has the power nan");
+  stages_refuse([](Scene& s) { s.lights[0].distribution = 2; }, "has distribution 2 of 0");
+  stages_refuse([](Scene& s) { s.lights[0].kind = LightKind::environment; }, "surroundings");
+  stages_refuse([](Scene& s) { s.instances.emplace_back(); }, "instance of mesh 0");
+}
+
+TEST_CASE("photons that do not fit the scene are an error of the maps, and no crash") {
+  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const NeighbourGroups groups = find_neighbour_groups(scene, {.radius = 0.1});
+  const Photons whole = trace_photons(RayScene(scene), {.emitted_photons = 100}).photons;
+  const auto refuse = [&](const std::function<void(Photons&)>& change, const char* reason) {
+    Photons photons = whole;
+    change(photons);
+    CHECK_THROWS_WITH(PhotonMaps(device(), scene, photons, groups, {.radius = 0.1}),
+                      Contains("photons of closed box: ") && Contains(reason));
+  };
+  refuse([](Photons& p) { p.flux.pop_back(); }, "different lengths");
+  refuse([](Photons& p) { p.first_of.clear(); }, "order of their triangles");
+  refuse([](Photons& p) { std::reverse(p.sided_triangle.begin(), p.sided_triangle.end()); },
+         "order of their triangles");
+  refuse([](Photons& p) { p.position[7].x = nan; }, "NaN or infinite");
+  CHECK_THROWS_WITH(
+      PhotonMaps(device(), plate(diffuse(glm::vec3(0.5f)), 1), Photons{}, groups, {.radius = 0.1}),
+      Contains("plate"));
+}
+
+// The hash that tells saved photon maps of one scene from those of another knows every light.
+
+std::string hash_of(const Scene& scene) {
+  ContentHash hash;
+  scene::add_scene(scene, hash);
+  return hash.hex();
+}
+
+/// A scene of one light of every kind that needs data of its own.
+Scene scene_with(float texel, double rotation, float candela) {
+  Scene scene;
+  scene.environments.emplace_back(
+      "sky", 2, 1, std::vector<glm::vec3>{glm::vec3(1.0f), glm::vec3(texel)}, rotation);
+  scene.distributions.emplace_back("lamp", PhotometricAxes{}, std::vector<double>{0, 90},
+                                   std::vector<double>{0, 360},
+                                   std::vector<float>{1, candela, 1, candela});
+  scene.lights.resize(2);
+  return scene;
+}
+
+TEST_CASE("scenes whose lights differ in anything have different hashes") {
+  std::set<std::string> hashes{hash_of(scene_with(2, 0, 3)), hash_of(scene_with(2.001f, 0, 3)),
+                               hash_of(scene_with(2, 1, 3)), hash_of(scene_with(2, 0, 3.001f))};
+  const std::vector<std::function<void(Light&)>> changes{
+      [](Light& light) { light.distribution = 0; },
+      [](Light& light) { light.environment = 0; },
+      [](Light& light) { light.angular_diameter = 0.01f; },
+      [](Light& light) {
+        light.x_axis = {0, 1, 0};
+      },
+      [](Light& light) { light.emission_texture = 0; },
+      [](Light& light) { light.texel_radiance.g = 1; },
+  };
+  for (const auto& change : changes) {
+    Scene scene = scene_with(2, 0, 3);
+    change(scene.lights[1]);
+    hashes.insert(hash_of(scene));
+  }
+  CHECK(hashes.size() == 4 + changes.size());
+}
+
+TEST_CASE("light names lose the bytes that separate EXR channels and command-line parts") {
+  CHECK(scene::clean_light_name("Area.001", 50) == "Area_001");
+  CHECK(scene::clean_light_name("key lamp=3,a/b\n", 50) == "key_lamp_3_a_b_");
+  CHECK(scene::clean_light_name("", 50) == "light");
+}
+
+TEST_CASE("light names keep valid UTF-8 and are cut between characters") {
+  CHECK(scene::clean_light_name("Küche", 50) == "Küche");
+  CHECK(scene::clean_light_name("Küche", 2) == "K");    // ü has two bytes
+  CHECK(scene::clean_light_name("K\xC3", 50) == "K_");  // half a character
+}
+
+TEST_CASE("equal light names are numbered and stay within the limit") {
+  std::vector<Light> lights(3);
+  for (Light& light : lights) light.name = std::string(80, 'x');
+  scene::make_light_names_unique(lights);
+  CHECK(lights[0].name == std::string(50, 'x'));
+  CHECK(lights[1].name == std::string(48, 'x') + "_2");
+  CHECK(lights[2].name == std::string(48, 'x') + "_3");
+}
+
+TEST_CASE("a numbered light name does not collide with a name of the file") {
+  std::vector<Light> lights(3);
+  lights[0].name = lights[2].name = "lamp";
+  lights[1].name = "lamp_2";
+  scene::make_light_names_unique(lights);
+  CHECK(lights[0].name == "lamp");
+  CHECK(lights[1].name == "lamp_2");
+  CHECK(lights[2].name == "lamp_3");
+}
+
+/// The spot falloff of KHR_lights_punctual, integrated over the sphere by the midpoint rule.
+double integrated_spot_flux(double intensity, double inner, double outer) {
+  constexpr int steps = 200'000;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double angle = outer * (i + 0.5) / steps;
+    const double ramp = (std::cos(angle) - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
+    const double attenuation = std::clamp(ramp, 0.0, 1.0);
+    sum += 2.0 * pi * std::sin(angle) * attenuation * attenuation * intensity * outer / steps;
+  }
+  return sum;
+}
+
+TEST_CASE("spot flux is the integral of its falloff over the sphere") {
+  CHECK(scene::spot_flux(3.0, 0.0, 0.7853981634) ==
+        Approx(integrated_spot_flux(3.0, 0.0, 0.7853981634)).epsilon(1e-6));
+  CHECK(scene::spot_flux(3.0, 0.4, 1.2) ==
+        Approx(integrated_spot_flux(3.0, 0.4, 1.2)).epsilon(1e-6));
+}
+
+TEST_CASE("a spot without a ramp over the half sphere has half the flux of a point light") {
+  CHECK(2.0 * scene::spot_flux(5.0, pi / 2, pi / 2) == Approx(scene::point_flux(5.0)));
+}
+
+TEST_CASE("fluxes of area, point and directional lights are their closed forms") {
+  CHECK(scene::area_flux(10.0, 2.0, false) == Approx(20.0 * pi));
+  CHECK(scene::area_flux(10.0, 2.0, true) == Approx(40.0 * pi));
+  CHECK(scene::point_flux(1.0) == Approx(4.0 * pi));
+  CHECK(scene::directional_flux(1000.0, 3.0) == Approx(9000.0 * pi));
+}
+
+// Where glass encloses a volume, and where it is a sheet.
+
+constexpr std::uint32_t pane = 1;  // material of the glass
+
+/// A room at some distance from the world's origin, and what `add` puts into it.
+template <class Add>
+std::uint32_t open_edges(bool thin, const Add& add) {
+  SceneBuilder builder;
+  builder.add(diffuse(glm::vec3(0.5f)));
+  builder.add(glass(1.5f, thin));
+  builder.add(point_light("lamp", {101, 1, 2.5f}));
+  builder.box({99, -1, 0}, {104, 4, 3}, 0, true);
+  add(builder);
+  const auto open = scene::open_edges_of_glass(builder.build());
+  CHECK(open[0] == 0);
+  return open[pane];
+}
+
+TEST_CASE("a box of glass has no open edge, whatever its number of quads") {
+  const int cells = GENERATE(1, 3);
+  CHECK(open_edges(false, [&](SceneBuilder& builder) {
+          builder.box({100, 0, 1}, {101.3f, 1, 1.7f}, pane, false, cells);
+        }) == 0);
+}
+
+TEST_CASE("a sheet of solid glass is open along its outline, and thin glass may be a sheet") {
+  const auto sheet = [](SceneBuilder& builder) {
+    builder.grid({100, 0, 1}, {1, 0, 0}, {0, 0.3f, 1}, 2, pane);
+  };
+  CHECK(open_edges(false, sheet) == 8);
+  CHECK(open_edges(true, sheet) == 0);
+}
+
+TEST_CASE("a box of glass without a lid is open along its rim") {
+  CHECK(open_edges(false, [](SceneBuilder& builder) {
+          builder.grid({100, 0, 1}, {0, 1, 0}, {1, 0, 0}, 1, pane);
+          builder.grid({100, 0, 1}, {1, 0, 0}, {0, 0, 1}, 1, pane);
+          builder.grid({100, 1, 1}, {0, 0, 1}, {1, 0, 0}, 1, pane);
+          builder.grid({100, 0, 1}, {0, 0, 1}, {0, 1, 0}, 1, pane);
+          builder.grid({101, 0, 1}, {0, 1, 0}, {0, 0, 1}, 1, pane);
+        }) == 4);
+}
+
+TEST_CASE("six quads that share neither corners nor their cuts are a closed box") {
+  // Some 15 microns apart, and cut into 1 to 6 x 6 cells each, so that no corner meets another's.
+  CHECK(open_edges(false, [](SceneBuilder& builder) {
+          const float gap = 1.5e-5f;
+          builder.grid({100, 0, 1 - gap}, {0, 1, 0}, {1, 0, 0}, 1, pane);
+          builder.grid({100, 0, 2 + gap}, {1, 0, 0}, {0, 1, 0}, 2, pane);
+          builder.grid({100, -gap, 1}, {1, 0, 0}, {0, 0, 1}, 3, pane);
+          builder.grid({100, 1 + gap, 1}, {0, 0, 1}, {1, 0, 0}, 4, pane);
+          builder.grid({100 - gap, 0, 1}, {0, 0, 1}, {0, 1, 0}, 5, pane);
+          builder.grid({101 + gap, 0, 1}, {0, 1, 0}, {0, 0, 1}, 6, pane);
+        }) == 0);
+}
+
+// Where the projections of a camera look.
+
+Camera camera_of(Projection projection, double degrees = 180) {
+  Camera camera;  // along -z, y up
+  camera.projection = projection;
+  camera.vertical_field_of_view = glm::radians(degrees);
+  return camera;
+}
+
+/// Right and up from the middle, 1 at the right and upper border of a square picture.
+glm::dvec3 seen(const Camera& camera, double right, double up) {
+  return camera.direction(50 + 50 * right, 50 - 50 * up, 100, 100);
+}
+
+double angle_to_axis(const glm::dvec3& direction) { return std::acos(-direction.z); }
+
+TEST_CASE("a camera whose rays would be no numbers is refused") {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](const Camera& camera) {
+    CHECK_THROWS_AS(camera.directions(4, 4), UsageError);
+  };
+  for (const double far : {1e20, none}) {
+    Camera camera = camera_of(Projection::perspective, 60);
+    camera.position.y = far;
+    refused(camera);
+  }
+  for (const double degrees : {0.0, -60.0, 361.0, none}) {
+    refused(camera_of(Projection::perspective, degrees));
+  }
+  Camera parallel = camera_of(Projection::orthographic);
+  for (const double height : {0.0, 1e19, none}) {
+    parallel.orthographic_height = height;
+    refused(parallel);
+  }
+  Camera tilted = camera_of(Projection::perspective, 60);
+  tilted.up = {0, none, 0};
+  refused(tilted);
+}
+
+TEST_CASE("in the angular projection the radius is the angle") {
+  for (const double degrees : {90.0, 180.0, 300.0}) {
+    const Camera camera = camera_of(Projection::angular, degrees);
+    for (const double radius : {0.0, 0.3, 0.9}) {
+      const glm::dvec3 aside = seen(camera, radius, 0), above = seen(camera, 0, radius);
+      CHECK(angle_to_axis(aside) == Approx(glm::radians(0.5 * degrees) * radius).margin(1e-7));
+      CHECK(angle_to_axis(above) == Approx(angle_to_axis(aside)).margin(1e-7));
+      CHECK(aside.x >= 0);
+      CHECK(above.y >= 0);
+    }
+  }
+  CHECK(seen(camera_of(Projection::angular), 0.8, 0.8) == glm::dvec3(0));  // beyond the circle
+}
+
+TEST_CASE("in the hemispherical projection the radius is the sine") {
+  const Camera camera = camera_of(Projection::fisheye);
+  CHECK(angle_to_axis(seen(camera, 0.5, 0)) == Approx(glm::pi<double>() / 6));
+  CHECK(angle_to_axis(seen(camera, 0, -0.5)) == Approx(glm::pi<double>() / 6));
+  CHECK(glm::length(seen(camera, 0.6, 0.6)) == Approx(1));
+  CHECK(seen(camera, 0.8, 0.8) == glm::dvec3(0));
+  const Camera half = camera_of(Projection::fisheye, 60);
+  CHECK(angle_to_axis(seen(half, 1, 0)) == Approx(glm::pi<double>() / 6));
+}
+
+TEST_CASE("an equirectangular picture is the whole sphere") {
+  const Camera camera = camera_of(Projection::equirectangular);
+  const auto close = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::distance(a, b) < 1e-12;
+  };
+  CHECK(close(seen(camera, 0, 0), {0, 0, -1}));
+  CHECK(close(seen(camera, 0.5, 0), {1, 0, 0}));
+  CHECK(close(seen(camera, -0.5, 0), {-1, 0, 0}));
+  CHECK(close(seen(camera, 1, 0), {0, 0, 1}));
+  CHECK(close(seen(camera, 0.3, 1), {0, 1, 0}));
+  CHECK(close(seen(camera, 0.3, -1), {0, -1, 0}));
+}
+
+TEST_CASE("orthographic rays are parallel and start beside each other") {
+  Camera camera = camera_of(Projection::orthographic);
+  camera.orthographic_height = 6;
+  const FilmDirections film = camera.directions(200, 100);
+  CHECK(film(3, 7) == glm::dvec3(0, 0, -1));
+  CHECK(film.offset(0, 0) == glm::dvec3(-6, 3, 0));
+  CHECK(film.offset(200, 100) == glm::dvec3(6, -3, 0));
+  CHECK(camera_of(Projection::perspective, 90).directions(9, 9).offset(0, 0) == glm::dvec3(0));
+}
+
+TEST_CASE("a pinhole is as it was") {
+  const glm::dvec3 corner = seen(camera_of(Projection::perspective, 90), 1, 1);
+  CHECK(glm::distance(corner, glm::normalize(glm::dvec3(1, 1, -1))) < 1e-12);
+}
+
+}  // namespace
+}  // namespace photile::test

@@ -1,0 +1,522 @@
+// What rays hit.
+#include <malloc.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "photile/errors.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
+#include "photon_sets.hpp"
+#include "statistical_tests.hpp"
+#include "test_scenes.hpp"
+#include "trace/hit_batch.hpp"
+#include "trace/ray_scene.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+#include "uniform.hpp"
+
+namespace photile::test {
+namespace {
+
+using namespace photile::trace;
+
+// What the camera sees, against geometry worked out by hand.
+
+/// 2 m above the origin, looking down; up in the picture is +y, right is +x. The film spans 2 x 2 m
+/// of the plane z = 0.
+Camera camera_above() {
+  Camera camera;
+  camera.position = {0, 0, 2};
+  camera.forward = {0, 0, -1};
+  camera.up = {0, 1, 0};
+  camera.right = {1, 0, 0};
+  camera.vertical_field_of_view = 2 * std::atan(0.5);
+  return camera;
+}
+
+PrimaryHitBatch photograph(const Scene& scene, const PrimaryHitParameters& film) {
+  return trace_primary_hits(RayScene(scene), camera_above(), film, 0, film.height);
+}
+
+glm::dvec3 total_emission(const PrimaryHitBatch& batch) {
+  glm::dvec3 sum(0.0);
+  for (const SeenEmission& seen : batch.emission) sum += seen.radiance;
+  return sum;
+}
+
+TEST_CASE("Each sample of a pixel hits the plate in that pixel's own square, in its own stratum") {
+  const Scene scene = plate(diffuse({0.2f, 0.4f, 0.6f}), 4);
+  const PrimaryHitParameters film{.width = 10, .height = 10, .samples_per_pixel = 4};
+  const PrimaryHitBatch batch = photograph(scene, film);
+  REQUIRE(batch.hits.size() == 400);
+  CHECK(batch.rays == 400);
+  CHECK(batch.emission.empty());
+  std::set<std::array<int, 2>> strata;
+  for (std::size_t i = 0; i < batch.hits.size(); ++i) {
+    const glm::vec3 p = batch.hits.position[i];
+    const double x = (p.x + 1) * 5, y = (1 - p.y) * 5;  // film coordinates, y down
+    const auto pixel = static_cast<int>(batch.hits.pixel[i]);
+    CHECK(x == Approx(pixel % 10 + 0.5).margin(0.5 + 1e-5));
+    CHECK(y == Approx(pixel / 10 + 0.5).margin(0.5 + 1e-5));
+    strata.insert({static_cast<int>(2 * x), static_cast<int>(2 * y)});
+    CHECK(p.z == 0.0f);
+    CHECK(batch.hits.throughput[i] == glm::vec3(0.25f));
+    CHECK(batch.hits.diffuse_albedo[i] == glm::vec3(0.2f, 0.4f, 0.6f));
+    CHECK(sided_normal(scene, batch.hits.sided_triangle[i]).z == 1.0);
+  }
+  CHECK(strata.size() == 400);
+  CHECK(batch.hits.outgoing.empty());
+  CHECK(batch.hits.lobe.empty());
+}
+
+TEST_CASE("Samples fall evenly over a pixel, and rays beside the plate hit nothing") {
+  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);  // a quarter of the film
+  const PrimaryHitBatch batch =
+      photograph(scene, {.width = 1, .height = 1, .samples_per_pixel = 40'000});
+  CHECK(batch.rays == 40'000);
+  // With 200 x 200 strata only those on the border vary.
+  CHECK(static_cast<double>(batch.hits.size()) == Approx(10'000).margin(200));
+  std::vector<double> counts(64, 0.0);
+  for (const glm::vec3& p : batch.hits.position)
+    ++counts[static_cast<std::size_t>(8 * (p.x + 0.5f)) * 8 +
+             static_cast<std::size_t>(8 * (p.y + 0.5f))];
+  CHECK_VERDICT(
+      counts_agree(counts, std::vector<double>(64, static_cast<double>(batch.hits.size()) / 64)));
+}
+
+TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
+  const Scene scene = furnished_room(2);
+  const RayScene rays(scene);
+  Camera camera = camera_above();
+  camera.position = {2, 1.5, 2.3};
+  camera.vertical_field_of_view = 2.0;
+  const PrimaryHits hits =
+      trace_primary_hits(rays, camera, {.width = 64, .height = 48}, 0, 48).hits;
+  REQUIRE(hits.size() > 10'000);
+  const trace::HitCells cells(impl_of(rays).bounds);
+  const auto key = [&](std::size_t i) {
+    return std::pair{hits.sided_triangle[i], cells.morton_code(hits.position[i])};
+  };
+  for (std::size_t i = 1; i < hits.size(); ++i) REQUIRE(key(i - 1) <= key(i));
+}
+
+TEST_CASE("The Morton code interleaves the bits of the cells of the three axes") {
+  // Cells of 1 m.
+  constexpr float side = 1 << trace::HitCells::bits_per_axis;
+  const trace::HitCells cells({glm::vec3(0.0f), glm::vec3(side)});
+  CHECK(cells.morton_code({0.0f, 0.0f, 0.0f}) == 0);
+  CHECK(cells.morton_code({1.0f, 0.0f, 0.0f}) == 1);
+  CHECK(cells.morton_code({0.0f, 1.0f, 0.0f}) == 2);
+  CHECK(cells.morton_code({0.0f, 0.0f, 1.0f}) == 4);
+  CHECK(cells.morton_code({5.0f, 3.0f, 0.0f}) == 0b001'010'011);
+  constexpr std::uint64_t last = (1ull << 3 * trace::HitCells::bits_per_axis) - 1;
+  CHECK(cells.morton_code(glm::vec3(side)) == last);
+  CHECK(cells.morton_code(glm::vec3(side + 10)) == last);
+  CHECK(cells.morton_code(glm::vec3(-10)) == 0);
+  const trace::HitCells flat({glm::vec3(0.0f), {side, 0.0f, side}});
+  CHECK(flat.morton_code({1.0f, 0.0f, 1.0f}) == 0b101);
+}
+
+TEST_CASE("Glossy scenes tell the direction to the eye and the lobe of each hit") {
+  Scene scene = plate(glossy(glm::vec3(0.3f), {0.1f, 0.2f, 0.3f}, 0.4f), 4);
+  const glm::vec3 tilted = glm::normalize(glm::vec3(0.1f, 0.0f, 1.0f));
+  // Shading normals lie on the front; the lobe's lies on the side of the eye.
+  const bool seen_from_front = GENERATE(true, false);
+  const glm::vec3 on_front = seen_from_front ? tilted : -tilted;
+  scene.corner_normal.assign(scene.triangle_count(), {on_front, on_front, on_front});
+  scene = rewound(scene, [&](std::size_t) { return !seen_from_front; });
+  const PrimaryHits hits = photograph(scene, {.width = 4, .height = 4}).hits;
+  REQUIRE(hits.lobe.size() == 64);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const glm::vec3 to_eye = glm::normalize(glm::vec3(0, 0, 2) - hits.position[i]);
+    CHECK(glm::distance(hits.outgoing[i], to_eye) < 1e-6f);
+    CHECK(glm::distance(hits.lobe[i].normal, tilted) < 1e-6f);
+    CHECK(hits.lobe[i].specular == glm::vec3(0.1f, 0.2f, 0.3f));
+    CHECK(hits.lobe[i].roughness == 0.4f);
+  }
+}
+
+TEST_CASE("A lamp in view is seen from its front only, at 1 / (pi A), and reflects as well") {
+  const bool two_sided = GENERATE(false, true);
+  const bool facing = GENERATE(false, true);
+  SceneBuilder builder;
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  Light light = area_light("lamp", 70, two_sided);
+  light.color = glm::vec3(2.0f, 1.0f, 0.5f) / static_cast<float>(luminance({2.0, 1.0, 0.5}));
+  const std::uint32_t lamp = builder.add(light);
+  const glm::vec3 u(4, 0, 0), v(0, 4, 0), corner(-2, -2, 0);
+  builder.grid(corner, facing ? u : v, facing ? v : u, 2, grey, lamp);
+  const Scene scene = builder.build();
+  const PrimaryHitBatch batch = photograph(scene, {.width = 8, .height = 8});
+  CHECK(batch.hits.size() == 8 * 8 * 4);
+  const glm::dvec3 radiance = facing || two_sided
+                                  ? glm::dvec3(light.color) / (M_PI * 16 * (two_sided ? 2 : 1))
+                                  : glm::dvec3(0.0);
+  CHECK(glm::distance(total_emission(batch) / 64.0, radiance) < 1e-6);
+  CHECK(batch.emission.size() == (facing || two_sided ? batch.hits.size() : 0));
+  CHECK(glm::distance(glm::dvec3(emitted_radiance_at_unit_power(scene)[0]),
+                      glm::dvec3(light.color) / (M_PI * 16 * (two_sided ? 2 : 1))) < 1e-6);
+}
+
+TEST_CASE("A mirror shows the lamp above it, tinted, and stores no hit of its own") {
+  SceneBuilder builder;
+  const std::uint32_t silver = builder.add(mirror({0.9f, 0.8f, 0.7f}));
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, silver);
+  // Behind the camera, facing down, and large enough to fill the mirror.
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))), lamp);
+  const PrimaryHitBatch batch = photograph(builder.build(), {.width = 8, .height = 8});
+  CHECK(batch.rays == 2 * 8 * 8 * 4);
+  REQUIRE(batch.hits.size() == 8 * 8 * 4);
+  for (std::size_t i = 0; i < batch.hits.size(); ++i) {
+    CHECK(batch.hits.position[i].z == 3.0f);
+    CHECK(glm::distance(batch.hits.throughput[i], 0.25f * glm::vec3(0.9f, 0.8f, 0.7f)) < 1e-6f);
+  }
+  const glm::dvec3 seen = total_emission(batch) / 64.0;
+  CHECK(glm::distance(seen, glm::dvec3(0.9, 0.8, 0.7) / (M_PI * 100)) < 1e-6);
+}
+
+TEST_CASE("A window splits rays by Fresnel's probability and conserves their number") {
+  SceneBuilder builder;
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(glass(1.5f, true)));
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const PrimaryHits hits =
+      trace_primary_hits(RayScene(builder.build()), camera,
+                         {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64)
+          .hits;
+  const double all = 64 * 64 * 16;
+  double reflected = 0;
+  for (const glm::vec3& p : hits.position) reflected += p.z > 2;
+  CHECK(static_cast<double>(hits.size()) == all);
+  const double reflectance = 2 * 0.04 / 1.04;
+  CHECK_VERDICT(
+      counts_agree({reflected, all - reflected}, {all * reflectance, all * (1 - reflectance)}));
+}
+
+TEST_CASE("A window parts rays by Fresnel's shares, where it is not left to chance") {
+  const bool thin = GENERATE(true, false);
+  SceneBuilder builder;
+  const std::uint32_t pane = builder.add(glass(1.5f, thin));
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, pane);
+  if (!thin) builder.grid({-2, -2, 0.5f}, {0, 4, 0}, {4, 0, 0}, 1, pane);
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const int samples = 32 * 32 * 16;
+  const PrimaryHits hits =
+      trace_primary_hits(
+          RayScene(builder.build()), camera,
+          {.width = 32, .height = 32, .samples_per_pixel = 16, .part_at_glass = true}, 0, 32)
+          .hits;
+  double reflected = 0, transmitted = 0, shares = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    (hits.position[i].z > 2 ? reflected : transmitted) += double{hits.throughput[i].x} * 16;
+    shares += double{hits.share[i]};
+  }
+  const double reflectance = 2 * 0.04 / 1.04;
+  // A slab reflects at once, or after one way in it and back; where that is seen again is left to
+  // chance, and 0.04 x 0.04 of the light.
+  const double left_to_chance = thin ? 1e-6 : 2.5e-4;
+  CHECK(reflected / samples == Approx(reflectance).margin(left_to_chance));
+  CHECK(transmitted / samples == Approx(1 - reflectance).margin(left_to_chance));
+  CHECK(hits.size() == static_cast<std::size_t>(thin ? 2 : 3) * samples);
+  CHECK(shares / samples == Approx(1).epsilon(1e-6));
+}
+
+TEST_CASE("A lamp under water is seen from above by its radiance over the squared index") {
+  const bool closed = GENERATE(false, true);  // the lamp is in the glass, or below it
+  SceneBuilder builder;
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  const std::uint32_t solid = builder.add(glass(1.5f));
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, solid);
+  if (closed) builder.grid({-2, -2, 0.5f}, {0, 4, 0}, {4, 0, 0}, 1, solid);
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))), lamp);
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const PrimaryHitBatch batch =
+      trace_primary_hits(RayScene(builder.build()), camera,
+                         {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64);
+  // A lamp below a slab of glass is seen as without it, but for what its faces reflect.
+  const double expected = (closed ? 1.0 : 1 / 2.25) / (M_PI * 16);
+  for (const SeenEmission& seen : batch.emission) {
+    CHECK(double{seen.radiance.x} == Approx(expected / 16).epsilon(1e-6));
+  }
+  const double passes = closed ? 1 - 2 * 0.04 / 1.04 : 0.96;
+  CHECK(static_cast<double>(batch.emission.size()) == Approx(64 * 64 * 16 * passes).epsilon(0.01));
+}
+
+TEST_CASE("A ray between two mirrors ends at the bound on its depth") {
+  SceneBuilder builder;
+  const std::uint32_t silver = builder.add(mirror(glm::vec3(1.0f)));
+  builder.grid({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1, silver);
+  builder.grid({-50, -50, 3}, {0, 100, 0}, {100, 0, 0}, 1, silver);
+  const PrimaryHitBatch batch = photograph(
+      builder.build(), {.width = 2, .height = 2, .samples_per_pixel = 1, .max_specular_depth = 7});
+  CHECK(batch.hits.size() == 0);
+  CHECK(batch.rays == 4 * 8);
+}
+
+TEST_CASE("Films and rows out of range are refused") {
+  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);
+  const RayScene rays(scene);
+  const auto traced = [&](const PrimaryHitParameters& film, int first, int last) {
+    trace_primary_hits(rays, camera_above(), film, first, last);
+  };
+  CHECK_THROWS_AS(traced({.width = 0}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.height = 100'000}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.samples_per_pixel = 0}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.max_specular_depth = -1}, 0, 1), UsageError);
+  CHECK_THROWS_AS(traced({.height = 10}, 3, 2), UsageError);
+  CHECK_THROWS_AS(traced({.height = 10}, 0, 11), UsageError);
+}
+
+TEST_CASE("what comes by reflection and what is left out are the whole") {
+  // A plate under the camera, half of it a mirror that sees a lamp above, a quarter glossy.
+  test::SceneBuilder builder;
+  const auto matt = builder.add(test::diffuse(glm::vec3(0.5f)));
+  const auto shining = builder.add(test::glossy(glm::vec3(0.4f), glm::vec3(0.04f), 0.3f));
+  const auto mirror = builder.add(test::mirror(glm::vec3(0.9f)));
+  builder.quad({-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, matt);
+  builder.quad({-1, -1, 0}, {0, -1, 0}, {0, 0, 0}, {-1, 0, 0}, shining);
+  builder.quad({0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0}, mirror);
+  Light lamp;
+  lamp.name = "lamp";
+  lamp.power = 10;
+  const auto light = builder.add(lamp);
+  builder.quad({-9, 9, 5}, {9, 9, 5}, {9, -9, 5}, {-9, -9, 5}, matt, light);  // faces down
+  const Scene scene = builder.build();
+  const PrimaryHitParameters film{.width = 16, .height = 16, .samples_per_pixel = 4};
+  const RayScene rays(scene);
+  const PrimaryHitBatch all = trace_primary_hits(rays, camera_above(), film, 0, 16);
+  const PrimaryHitBatch reflected = trace::trace_reflected_hits(rays, camera_above(), film, 0, 16);
+
+  // The mirror fills the right half: all that it shows is there, hits and lamp.
+  REQUIRE(reflected.emission.size() == all.emission.size());
+  CHECK(total_emission(reflected) == total_emission(all));
+  std::size_t behind_mirror = 0, lobes = 0;
+  for (std::size_t i = 0; i < reflected.hits.size(); ++i) {
+    const bool right = reflected.hits.pixel[i] % 16 >= 8;
+    const bool lower = reflected.hits.pixel[i] / 16 >= 8;
+    CHECK((right || lower));  // the matt quarter reflects nothing
+    ++(right ? behind_mirror : lobes);
+    if (right) {
+      CHECK(reflected.hits.diffuse_albedo[i] == glm::vec3(0.5f));
+    } else {
+      CHECK(reflected.hits.diffuse_albedo[i] == glm::vec3(0.0f));
+      CHECK(reflected.hits.lobe[i].specular == glm::vec3(0.04f));
+    }
+  }
+  CHECK(behind_mirror == 8 * 16 * 4);
+  CHECK(lobes == 8 * 8 * 4);
+}
+
+TEST_CASE("what lies behind a pane of thin glass is seen, and not reflected") {
+  test::SceneBuilder builder;
+  const auto matt = builder.add(test::diffuse(glm::vec3(0.5f)));
+  const auto pane = builder.add(test::glass(1.0f, true));  // of index 1: it reflects nothing
+  builder.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, matt);
+  builder.quad({-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}, pane);
+  const Scene scene = builder.build();
+  const PrimaryHitParameters film{.width = 8, .height = 8, .samples_per_pixel = 1};
+  const RayScene rays(scene);
+  CHECK(trace_primary_hits(rays, camera_above(), film, 0, 8).hits.size() == 64);
+  CHECK(trace::trace_reflected_hits(rays, camera_above(), film, 0, 8).hits.size() == 0);
+}
+
+// Intersections and the points they give.
+
+TEST_CASE("A ray hits the point of the plate below it, on the side that it comes from") {
+  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 2, 8);
+  const RayScene rays(scene);
+  Uniform uniform(1);
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 1.9f * uniform() - 0.95f, y = 1.9f * uniform() - 0.95f;
+    for (const float z : {-1.0f, 1.0f}) {
+      const glm::vec3 direction(0, 0, -z);
+      const auto hit = impl_of(rays).intersect({x, y, z}, direction);
+      REQUIRE(hit);
+      const SurfacePoint point = surface_hit(scene, *hit, direction);
+      CHECK(glm::distance(point.position, glm::vec3(x, y, 0)) < 1e-6f);
+      CHECK(point.normal == glm::vec3(0, 0, z));
+      CHECK(glm::dvec3(point.normal) == sided_normal(scene, point.sided_triangle()));
+      CHECK(on_front(scene, point) == (z > 0));
+    }
+  }
+}
+
+TEST_CASE("The weights of a place on a triangle are found, and beside it those of a point within") {
+  Uniform uniform(2);
+  for (int i = 0; i < 1000; ++i) {
+    Scene scene = empty_scene();
+    add_triangle(scene, uniform.direction(), uniform.direction(), uniform.direction());
+    if (triangle_area(scene, 0) < 0.1) continue;
+    const float u = uniform();
+    const glm::vec2 uv = sample_triangle(u, uniform());
+    const auto [a, b, c] = scene.corners(0);
+    const trace::TriangleHit found = nearest_on_triangle(
+        scene, 0,
+        glm::dvec3(a) + double{uv.x} * glm::dvec3(b - a) + double{uv.y} * glm::dvec3(c - a));
+    CHECK(found.u == Approx(uv.x).margin(1e-5));
+    CHECK(found.v == Approx(uv.y).margin(1e-5));
+    const trace::TriangleHit within =
+        nearest_on_triangle(scene, 0, 2.0 * glm::dvec3(uniform.direction()));
+    CHECK(within.u >= 0);
+    CHECK(within.v >= 0);
+    CHECK(within.u + within.v < 1 + 1e-6);
+  }
+}
+
+TEST_CASE("Rays with a NaN or an infinity hit nothing") {
+  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const RayScene rays(scene);
+  REQUIRE(impl_of(rays).intersect(glm::vec3(0.5f), glm::vec3(0, 0, 1)));
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
+                          std::numeric_limits<float>::infinity(), -1.0f / 0.0f})
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::vec3 origin(0.5f), direction(0, 0, 1);
+      origin[axis] = bad;
+      CHECK_FALSE(impl_of(rays).intersect(origin, direction));
+      origin[axis] = 0.5f;
+      direction[axis] = bad;
+      CHECK_FALSE(impl_of(rays).intersect(origin, direction));
+    }
+}
+
+TEST_CASE("A ray that leaves a triangle never meets it again, at any size, place and orientation") {
+  Uniform uniform(7);
+  for (const float size : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f})
+    for (const glm::vec3& offset : {glm::vec3(0.0f), glm::vec3(20.0f, -3.0f, 1.0f),
+                                    glm::vec3(148376.0f, 1234.0f, -223423.0f)}) {
+      // A triangle smaller than the rounding of its place is a line or a point.
+      if (size < 1e-4f * glm::length(offset)) continue;
+      for (int t = 0; t < 100; ++t) {
+        SceneBuilder builder;
+        const std::uint32_t material = builder.add(diffuse(glm::vec3(0.5f)));
+        const auto corner = [&] { return offset + size * uniform.direction(); };
+        const glm::vec3 a = corner(), b = corner(), c = corner();
+        builder.triangle(a, b, c, material);
+        const Scene scene = builder.build();
+        const RayScene rays(scene);
+        for (int r = 0; r < 100; ++r) {
+          const float u = uniform();
+          const glm::vec2 uv = sample_triangle(u, uniform());
+          const SurfacePoint point = surface_point(scene, {0, uv.x, uv.y}, r % 2);
+          glm::vec3 direction = uniform.direction();
+          CAPTURE(size, t, r);
+          REQUIRE_FALSE(impl_of(rays).intersect(point.origin_towards(direction), direction));
+          // Nearly along the surface, where the offset has least to spare.
+          direction =
+              glm::normalize(direction - 0.999f * glm::dot(direction, point.normal) * point.normal);
+          REQUIRE_FALSE(impl_of(rays).intersect(point.origin_towards(direction), direction));
+        }
+      }
+    }
+}
+
+TEST_CASE("The clearance of a room's surfaces is below a twentieth of a millimetre") {
+  const Scene scene = furnished_room(4);
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t)
+    CHECK(surface_point(scene, {t, 0.3f, 0.3f}, 0).clearance < 5e-5f);
+}
+
+TEST_CASE("No ray from inside a closed room of many triangles escapes through its seams") {
+  Scene scene = closed_box(diffuse(glm::vec3(0.5f)), 40);
+  for (const glm::vec3& offset : {glm::vec3(0.0f), glm::vec3(100.0f, -77.0f, 3.0f)}) {
+    for (glm::vec3& vertex : scene.vertices) vertex += offset;
+    const RayScene rays(scene);
+    Uniform uniform(11);
+    int escaped = 0;
+    for (int i = 0; i < 200'000; ++i)
+      escaped += !impl_of(rays).intersect(offset + 0.5f, uniform.direction());
+    CHECK(escaped == 0);
+    for (glm::vec3& vertex : scene.vertices) vertex -= offset;
+  }
+}
+
+TEST_CASE("Any number of lines of sight at once are hidden as each is alone") {
+  const Scene scene = furnished_room();
+  const RayScene rays(scene);
+  Uniform uniform(5);
+  const auto point = [&] {
+    const float x = uniform(), y = uniform();
+    return glm::vec3(4.0f * x, 3.0f * y, 2.5f * uniform());
+  };
+  std::size_t hidden_of_all = 0, all = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (const std::size_t count : {1u, 15u, 16u, 17u, 33u}) {
+      std::vector<LineOfSight> lines(count);
+      for (LineOfSight& line : lines) line = {point(), point()};
+      std::vector<std::uint8_t> hidden(count, 2), expected;
+      occluded(rays, lines, hidden);
+      for (const LineOfSight& line : lines) expected.push_back(occluded(rays, line.from, line.to));
+      CHECK(hidden == expected);
+      hidden_of_all += static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), 1));
+      all += count;
+    }
+  }
+  CHECK(hidden_of_all > all / 20);
+  CHECK(hidden_of_all < all / 2);
+}
+
+TEST_CASE("Embree's memory is counted and grows with the scene") {
+  const Scene small = closed_box(diffuse(glm::vec3(0.5f)));
+  const Scene large = closed_box(diffuse(glm::vec3(0.5f)), 60);
+  const RayScene small_rays(small), large_rays(large);
+  // 43,200 triangles and their vertices cannot take less than the vertices alone.
+  CHECK(large_rays.bytes() > large.vertices.size() * sizeof(glm::vec3));
+  CHECK(large_rays.bytes() > small_rays.bytes());
+}
+
+TEST_CASE("A ray scene gives its memory back") {
+  const auto in_use = [] {  // bytes of the heap
+    const auto info = ::mallinfo2();
+    return info.uordblks + info.hblkhd;
+  };
+  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)), 40);
+  const std::uint64_t of_one = RayScene(scene).bytes();
+  const std::size_t before = in_use();
+  for (int i = 0; i < 10; ++i) RayScene{scene};
+  CHECK(in_use() < before + of_one);
+}
+
+// A sort by more bits than a number has is no sort: the map `none`, above all others, asked for it.
+TEST_CASE("Hits are sorted by map and cell, those on triangles without a map last") {
+  const std::vector<std::uint32_t> map_of{5, none, 0, 2, none, 1'000'000, 5};
+  const geometry::Box box{glm::vec3(0.0f), glm::vec3(1.0f)};
+  const trace::HitCells cells(box);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform;
+  std::vector<trace::EyeRecord> records(50);
+  for (trace::EyeRecord& record : records) {
+    for (int i = 0; i < 40; ++i) {
+      trace::EyeHit hit{};
+      hit.position = {uniform(random), uniform(random), uniform(random)};
+      hit.sided_triangle = static_cast<std::uint32_t>(random() % map_of.size());
+      record.hits.push_back(hit);
+    }
+  }
+  const std::vector<trace::HitPlace> places = trace::sorted_places(records, box, map_of);
+  REQUIRE(places.size() == 2'000);
+  const auto order_of = [&](const trace::HitPlace& place) {
+    const trace::EyeHit& hit = records[place.record].hits[place.index];
+    return std::tuple(map_of[hit.sided_triangle], cells.morton_code(hit.position), place.record,
+                      place.index);
+  };
+  CHECK(std::is_sorted(places.begin(), places.end(),
+                       [&](const auto& a, const auto& b) { return order_of(a) < order_of(b); }));
+}
+
+}  // namespace
+}  // namespace photile::test
