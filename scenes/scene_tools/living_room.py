@@ -394,7 +394,7 @@ def _pictures(room):
     fitting = cylinder(0.045, 0.018, 32).moved(spot[0] + 0.05, HEIGHT - 0.018 - GAP, spot[2])
     fitting.add(tube([(spot[0] + 0.05, HEIGHT - 0.02, spot[2]), (spot[0] + 0.05, HEIGHT - 0.16, spot[2])], 0.006, 12))
     away = math.degrees(math.atan2(spot[0], spot[1] - target[1]))
-    head = cylinder(0.034, 0.12, 32).turned("z", away).moved(spot[0] + 0.012, spot[1] + 0.008, spot[2])
+    head = cylinder(0.034, 0.12, 32).turned("z", -away).moved(spot[0] + 0.012, spot[1] + 0.008, spot[2])
     room.add("picture spot fitting", (room.black_steel, fitting.add(head)))
     d.spot("picture_spot", spot, target, 700, blackbody_rgb(3000), 15, 28)
 

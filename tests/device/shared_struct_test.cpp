@@ -38,6 +38,7 @@ std::string source_of(const std::vector<LayoutNumber>& numbers) {
 #define SHARED_HEADER(path) includes += "#include \"" #path "\"\n";
 #define SHARED_STRUCT(name) structs += "  " #name " of_" #name ";\n";
 #define SHARED_MEMBER(name, member)
+#include "shared_structs.inc"
 #undef SHARED_HEADER
 #undef SHARED_STRUCT
 #undef SHARED_MEMBER

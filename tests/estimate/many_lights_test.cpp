@@ -138,7 +138,8 @@ TEST_CASE("a hit keeps the lights that reach it, each once, however many there a
   }
 }
 
-TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to their buffers") {
+TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to their buffers",
+          "[buffers]") {
   // Levels of k and later passes share kernels with a larger k. Lights around the limits of dense
   // layers, of k and of the hash table; behind the fence an index too far ends the process.
   constexpr int compiled = 20;
@@ -171,7 +172,8 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
   }
 }
 
-TEST_CASE("any number of lights up to 70 and any level of k keep to their buffers", "[slow]") {
+TEST_CASE("any number of lights up to 70 and any level of k keep to their buffers",
+          "[buffers][slow]") {
   constexpr int compiled = 50;
   const auto lights = static_cast<std::size_t>(GENERATE(range(1, 71)));
   const Scene scene = plate(lights, false);

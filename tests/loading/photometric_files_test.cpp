@@ -260,14 +260,20 @@ TEST_CASE("a file cut anywhere, or with bytes replaced at random, is read or ref
   file.horizontal = angles(0, 90, 2);
   const std::string sound = file.str();
   const std::size_t needed = sound.find_last_of('1');  // cut within the last number it is another
+  const auto is_read = [](const std::string& text) {
+    try {
+      read_ies(text);
+    } catch (const files::ResourceError&) {  // nothing else is thrown
+      return false;
+    }
+    return true;
+  };
   for (std::size_t length = 0; length < sound.size(); ++length) {
-    const std::string message = ies_refusal(sound.substr(0, length));
-    if (length <= needed) REQUIRE_FALSE(message.empty());
+    const bool read = is_read(sound.substr(0, length));
+    if (length <= needed) REQUIRE_FALSE(read);
   }
   std::mt19937 random(7);
-  for (int trial = 0; trial < 20'000; ++trial) {
-    ies_refusal(damaged(sound, random));  // nothing but a ResourceError
-  }
+  for (int trial = 0; trial < 20'000; ++trial) is_read(damaged(sound, random));
 }
 
 // EULUMDAT files against closed forms, and files that are none.
