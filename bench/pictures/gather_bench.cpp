@@ -85,7 +85,7 @@ struct Truth {
 
 Truth by_paths(const RayScene& rays, const PrimaryHits& points, std::span<const double> powers,
                int paths) {
-  const reference::PathEstimator estimator(rays, 2);
+  const PathEstimator estimator(rays, 2);
   Truth truth{std::vector<double>(points.size(), 0.0), std::vector<double>(points.size(), 0.0)};
   std::vector<std::uint64_t> number(points.size());
   for (int path = 0; path < paths; ++path) {

@@ -37,8 +37,8 @@ class Room:
         self.accent_paint = d.matte("accent paint", (0.23, 0.29, 0.25))
         self.ceiling_paint = d.matte("ceiling paint", (0.84, 0.84, 0.83))
         self.white_wood = d.glossy("white wood", (0.80, 0.79, 0.76), 0.45)
-        self.oak = d.glossy("oak", (1, 1, 1), 0.45, "oak.png")
-        self.walnut = d.glossy("walnut", (1, 1, 1), 0.40, "walnut.png")
+        self.oak = d.matte("oak", (1, 1, 1), "oak.png")
+        self.walnut = d.matte("walnut", (1, 1, 1), "walnut.png")
         self.black_steel = d.glossy("black steel", (0.04, 0.04, 0.045), 0.4)
         self.brass = d.metal("brass", (0.85, 0.62, 0.25), 0.3)
         self.linen = d.matte("linen", (0.72, 0.66, 0.55), normals="weave-normals.png", bumps=0.5)
@@ -89,7 +89,7 @@ def _mean_radiance(shape, picture, rgb, steps=24):
 
 def _shell(room):
     d = room.document
-    floor = d.glossy("oak floor", (0.92, 0.92, 0.92), 0.42, "floor.png", "floor-normals.png")
+    floor = d.glossy("oak floor", (0.92, 0.92, 0.92), 0.65, "floor.png", "floor-normals.png")
     slab = rectangle((0, 0, DEPTH), (WIDTH, 0, 0), (0, 0, -DEPTH))
     c = math.sqrt(0.5) / FLOOR_TILE  # the herringbone runs along the walls where its blocks lie across them
     slab.uvs = [(c * (p[0] + p[2]), c * (p[2] - p[0])) for p in slab.positions]

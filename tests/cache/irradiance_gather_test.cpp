@@ -67,7 +67,7 @@ PathReference by_paths(const RayScene& rays, const std::vector<Sensor>& sensors,
                        std::vector<double>(sensors.size() * lights)};
   const PrimaryHits hits = trace::sensor_hits(rays, sensors);
   std::vector<double> squares(result.lux.size(), 0.0);
-  const reference::PathEstimator estimator(rays, 7);
+  const PathEstimator estimator(rays, 7);
   for (int path = 0; path < paths; ++path) {
     std::vector<std::uint64_t> number = numbers(sensors.size());
     for (std::uint64_t& one : number) one = one * static_cast<std::uint64_t>(paths) + path;

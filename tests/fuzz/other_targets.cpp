@@ -213,7 +213,7 @@ bool fuzz_points(Bytes bytes) {
   return accepts([&] {
     const measuring::SensorGrid points = measuring::read_points(file);
     check_sensors(points);
-    for (const auto& observer : glare::observers_at(points, measuring::PlanAxes())) {
+    for (const auto& observer : glare::observers_at(points, trace::PlanAxes())) {
       require(std::abs(glm::length(observer.up) - 1) < 1e-6, "an observer without an up");
       require(std::abs(glm::dot(observer.up, observer.forward)) < 1e-6, "an up that leans");
     }

@@ -209,7 +209,7 @@ TEST_CASE("a threshold up to 100 counts in mean luminances, and an index is at m
 
 TEST_CASE("a grid has its directions along the axes of the plan, clockwise from ahead") {
   measuring::SensorGrid grid{"point", {{{1, 1.2, 2}, {0, 1, 0}}, {{2, 1.2, 2}, {0, 1, 0}}}, {}};
-  const auto all = observers_on(grid, measuring::PlanAxes(), 4);
+  const auto all = observers_on(grid, trace::PlanAxes(), 4);
   REQUIRE(all.size() == 8);
   CHECK(all[0].name == "point 1, 0 degrees");
   CHECK(all[7].name == "point 2, 270 degrees");

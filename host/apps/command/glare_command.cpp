@@ -44,7 +44,7 @@ struct GlareOptions {
 
 std::vector<glare::Observer> observers_of(const GlareOptions& options, const Scene& scene,
                                           Progress& progress) {
-  const auto axes = measuring::PlanAxes::in_world(scene);
+  const auto axes = trace::PlanAxes::in_world(scene);
   std::vector<glare::Observer> all;
   const auto add = [&](const std::vector<glare::Observer>& more) {
     all.insert(all.end(), more.begin(), more.end());
@@ -74,12 +74,11 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
 /// no such room.
 double coverage_of(const GlareOptions& options, const Scene& scene,
                    const glare::Observer& observer) {
-  const measuring::PlanAxes axes;
+  const trace::PlanAxes axes;
   const RayScene rays(scene);
   const double area = glare::Luminaires(rays, options.parameters.looks).large_area(axes.up);
   if (!(area > 0)) return 1;
-  const auto room =
-      measuring::Room::around(rays, axes, position_in_scene(scene, observer.position));
+  const auto room = trace::Room::around(rays, axes, position_in_scene(scene, observer.position));
   if (!room) return 1;
   return area / (static_cast<double>(room->places().size()) * room->cell_area());
 }

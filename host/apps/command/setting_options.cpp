@@ -28,7 +28,7 @@ std::vector<std::string> option_names(const Setting& setting) {
   return names;
 }
 
-/// The placeholder of a value in the help: "N", "X", "naive|triangle|patch|auto".
+/// What stands for a value in the help: "N", "X", "naive|triangle|patch|auto".
 std::string type_name(const ValueRange& range) {
   if (const auto* words = std::get_if<Words>(&range)) {
     return fmt::format("{}", fmt::join(words->words, "|"));

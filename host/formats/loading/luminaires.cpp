@@ -106,9 +106,9 @@ LampKind kind_of(const std::filesystem::path& file, const JsonObject& object, Sh
 std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
-  const auto axes = measuring::PlanAxes();
+  const auto axes = trace::PlanAxes();
   const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
-  const auto room = measuring::Room::of_camera(rays, axes, camera);
+  const auto room = trace::Room::of_camera(rays, axes, camera);
   if (!room) return std::nullopt;
   const glm::dvec2 plan = 0.5 * (room->low() + room->high());
   const auto places = room->places();

@@ -145,7 +145,7 @@ std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Obs
 }
 
 std::vector<Observer> observers_at(const measuring::SensorGrid& points,
-                                   const measuring::PlanAxes& axes) {
+                                   const trace::PlanAxes& axes) {
   std::vector<Observer> observers;
   for (std::size_t i = 0; i < points.sensors.size(); ++i) {
     const Sensor& point = points.sensors[i];
@@ -155,8 +155,8 @@ std::vector<Observer> observers_at(const measuring::SensorGrid& points,
   return observers;
 }
 
-std::vector<Observer> observers_on(const measuring::SensorGrid& plane,
-                                   const measuring::PlanAxes& axes, int directions) {
+std::vector<Observer> observers_on(const measuring::SensorGrid& plane, const trace::PlanAxes& axes,
+                                   int directions) {
   std::vector<Observer> observers;
   for (std::size_t i = 0; i < plane.sensors.size(); ++i) {
     for (int direction = 0; direction < directions; ++direction) {

@@ -37,7 +37,7 @@ struct Piece {
   double covered = 0, open = 0;  ///< area with room above it, under something or not
 };
 
-std::vector<Piece> horizontal_pieces(const Scene& scene, const PlanAxes& axes) {
+std::vector<Piece> horizontal_pieces(const Scene& scene, const trace::PlanAxes& axes) {
   std::vector<Piece> pieces;
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
     if (std::abs(glm::dot(sided_normal(scene, sided(t, 0)), axes.up)) < steepest_cosine) continue;
@@ -51,7 +51,7 @@ std::vector<Piece> horizontal_pieces(const Scene& scene, const PlanAxes& axes) {
 }
 
 /// Looks down from everywhere below the room's ceiling, to what there is most room above.
-void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& axes,
+void measure_floor_of(const trace::Room& room, const RayScene& rays, const trace::PlanAxes& axes,
                       std::vector<Piece>& pieces) {
   std::unordered_map<std::uint32_t, Piece*> piece_of;
   for (Piece& piece : pieces) piece_of.emplace(piece.triangle, &piece);
@@ -59,7 +59,7 @@ void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& ax
   const glm::vec3 down(-axes.up);
   for (const glm::dvec3& place : room.places()) {
     double above = glm::dot(place, axes.up);
-    const double lowest = above - Room::most_height;
+    const double lowest = above - trace::Room::most_height;
     glm::vec3 from(place);
     for (int i = 0; i < most_surfaces_below; ++i) {
       const auto hit = trace::intersect(rays, from, down);
@@ -79,7 +79,7 @@ void measure_floor_of(const Room& room, const RayScene& rays, const PlanAxes& ax
 }
 
 /// Looks up from points spread evenly over all pieces.
-void measure_room(const RayScene& rays, const PlanAxes& axes, std::vector<Piece>& pieces) {
+void measure_room(const RayScene& rays, const trace::PlanAxes& axes, std::vector<Piece>& pieces) {
   const Scene& scene = rays.scene();
   const trace::FlushDenormals flush_denormals;
   const glm::vec3 up(axes.up);
@@ -105,7 +105,7 @@ void measure_room(const RayScene& rays, const PlanAxes& axes, std::vector<Piece>
     const auto ceiling = trace::surface_hit(scene, *above, up);
     const double room = glm::dot(glm::dvec3(ceiling.position - point.position), axes.up);
     if (room < least_room) continue;
-    (room <= Room::most_height ? piece.covered : piece.open) += total / samples;
+    (room <= trace::Room::most_height ? piece.covered : piece.open) += total / samples;
   }
 }
 
@@ -130,7 +130,7 @@ std::vector<Level> levels_of(const std::vector<Piece>& pieces, const RoomOf& roo
 
 }  // namespace
 
-Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room) {
+Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room* room) {
   std::vector<Piece> pieces = horizontal_pieces(rays.scene(), axes);
   if (room) {
     measure_floor_of(*room, rays, axes, pieces);
@@ -160,7 +160,8 @@ Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room) {
   return floor;
 }
 
-FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes, const Room* room)
+FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const trace::PlanAxes& axes,
+                     const trace::Room* room)
     : room_(room) {
   std::vector<std::array<glm::dvec2, 3>> plans;
   low_ = glm::dvec2(HUGE_VAL);

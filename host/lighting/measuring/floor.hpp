@@ -18,13 +18,14 @@ struct Floor {
   std::vector<std::uint32_t> triangles;
 };
 /// The floor of `room`, or of the whole scene where that is null.
-Floor find_floor(const RayScene& rays, const PlanAxes& axes, const Room* room);
+Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room* room);
 
 /// The floor as seen from above.
 class FloorPlan {
  public:
   /// `room` is null or the part of the floor that counts; it is kept.
-  FloorPlan(const Scene& scene, const Floor& floor, const PlanAxes& axes, const Room* room);
+  FloorPlan(const Scene& scene, const Floor& floor, const trace::PlanAxes& axes,
+            const trace::Room* room);
 
   const glm::dvec2& low() const { return low_; }
   const glm::dvec2& high() const { return high_; }
@@ -39,7 +40,7 @@ class FloorPlan {
   double pixel_ = 1;  ///< metres
   int width_ = 0, height_ = 0;
   std::vector<bool> covered_;  ///< width x height
-  const Room* room_ = nullptr;
+  const trace::Room* room_ = nullptr;
 };
 
 /// Makes those sensors of a grid blank, and takes the cells of a plane that are theirs:

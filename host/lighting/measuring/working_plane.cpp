@@ -44,9 +44,9 @@ WorkingPlane parse_working_plane(const std::string& text) {
 }
 
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes;
+  const trace::PlanAxes axes;
   const RayScene rays(scene);
-  const std::optional<Room> room = Room::meant(rays, axes, plane.inside);
+  const std::optional<trace::Room> room = trace::Room::meant(rays, axes, plane.inside);
   const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
   if (floor.triangles.empty()) {
     throw InputError(fmt::format("{}: no floor found; describe the plane by a grid of points",
@@ -120,8 +120,8 @@ std::optional<Met> met_by(const RayScene& rays, const glm::dvec3& from,
              trace::material_of(rays.scene(), point).interaction == Interaction::glass};
 }
 
-Room room_of(const RayScene& rays, const PlanAxes& axes, const WorkingPlane& plane) {
-  auto room = Room::meant(rays, axes, plane.inside);
+trace::Room room_of(const RayScene& rays, const trace::PlanAxes& axes, const WorkingPlane& plane) {
+  auto room = trace::Room::meant(rays, axes, plane.inside);
   if (!room) {
     throw InputError(
         fmt::format("{}: the camera comes to no room with a ceiling, so there are no walls; name a "
@@ -181,7 +181,7 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
 }
 
 /// The height of the ceiling over the cut, where most of it is.
-double ceiling_height(const RayScene& rays, const PlanAxes& axes, const Room& room) {
+double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room& room) {
   const trace::FlushDenormals flush_denormals;
   std::vector<double> heights;
   for (const glm::dvec3& place : room.places()) {
@@ -196,9 +196,9 @@ double ceiling_height(const RayScene& rays, const PlanAxes& axes, const Room& ro
 }  // namespace
 
 std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes;
+  const trace::PlanAxes axes;
   const RayScene rays(scene);
-  const Room room = room_of(rays, axes, plane);
+  const trace::Room room = room_of(rays, axes, plane);
   const double floor = find_floor(rays, axes, &room).height;
   const glm::dvec3 height = (ceiling_height(rays, axes, room) - floor) * axes.up;
   std::vector<SensorGrid> grids;
@@ -222,9 +222,9 @@ std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane
 }
 
 SensorGrid ceiling_grid(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes;
+  const trace::PlanAxes axes;
   const RayScene rays(scene);
-  const Room room = room_of(rays, axes, plane);
+  const trace::Room room = room_of(rays, axes, plane);
   const glm::dvec2 size = room.high() - room.low();
   // It faces down: u x v is -up.
   const glm::dvec3 origin = room.low().x * axes.right + room.high().y * axes.ahead +
@@ -245,7 +245,7 @@ SensorGrid cylindrical_grid(const Scene& scene, const WorkingPlane& plane) {
 }
 
 std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const WorkingPlane& plane) {
-  const PlanAxes axes = PlanAxes::in_world(scene);
+  const trace::PlanAxes axes = trace::PlanAxes::in_world(scene);
   const SensorGrid over_floor = working_plane_grid(scene, plane);
   std::vector<SensorGrid> grids;
   for (int side = 0; side < sides; ++side) {

@@ -34,10 +34,6 @@ std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHi
   return number;
 }
 
-}  // namespace photile
-
-namespace photile::reference {
-
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
@@ -76,10 +72,6 @@ Estimates PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::
   return all;
 }
 
-}  // namespace photile::reference
-
-namespace photile {
-
 namespace {
 
 /// Paths traced at a time: little enough to stay in memory and to show progress.
@@ -92,7 +84,7 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
   StageCost hits, paths, film_cost;
   const PreparedScene prepared(scene);
   const RayScene& rays = prepared.rays;
-  const reference::PathEstimator estimator(rays, parameters.seed);
+  const PathEstimator estimator(rays, parameters.seed);
 
   PrimaryHitParameters film = parameters;
   film.direct_rays = 0;  // paths find that light themselves

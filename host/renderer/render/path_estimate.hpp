@@ -21,10 +21,6 @@ namespace photile {
 std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHitParameters& film,
                                         int first_row, int last_row);
 
-}  // namespace photile
-
-namespace photile::reference {
-
 class PathEstimator {
  public:
   /// References are kept. Errors: InputError for an area light without area.
@@ -64,4 +60,4 @@ void trace_surface_path(const RayScene& rays, const trace::LightSampler& lights,
                         const trace::SurfacePoint& start, const trace::OpaqueBsdf& bsdf,
                         const trace::RandomStream& random, std::vector<PathLight>& found);
 
-}  // namespace photile::reference
+}  // namespace photile

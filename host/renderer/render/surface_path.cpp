@@ -9,7 +9,7 @@
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 
-namespace photile::reference {
+namespace photile {
 namespace {
 
 using trace::largest;
@@ -158,4 +158,4 @@ void trace_surface_path(const RayScene& rays, const trace::LightSampler& lights,
   SurfacePath(rays, lights, random, found).trace(start, bsdf);
 }
 
-}  // namespace photile::reference
+}  // namespace photile

@@ -2,7 +2,9 @@
 // visibility. Thread-safe; the calling thread must hold a FlushDenormals.
 #pragma once
 
+#if defined(__SSE__)
 #include <xmmintrin.h>
+#endif
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -13,9 +15,6 @@
 #include "photile/scene.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/surface.hpp"
-
-#if defined(__SSE__)
-#endif
 
 namespace photile::trace {
 

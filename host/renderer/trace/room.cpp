@@ -9,7 +9,7 @@
 #include "photile/errors.hpp"
 #include "trace/ray_query.hpp"
 
-namespace photile::measuring {
+namespace photile::trace {
 namespace {
 
 constexpr double cells_of_height = 25;  // side of a cell: 0.1 m in a room of 2.5 m
@@ -184,4 +184,4 @@ std::vector<glm::dvec3> Room::places() const {
   return all;
 }
 
-}  // namespace photile::measuring
+}  // namespace photile::trace

@@ -10,7 +10,7 @@
 #include "photile/camera.hpp"
 #include "photile/ray_scene.hpp"
 
-namespace photile::measuring {
+namespace photile::trace {
 
 /// `right` x `ahead` = `up`, unit. In a scene y points up, and -z is at the top of its map.
 struct PlanAxes {
@@ -71,4 +71,4 @@ class Room {
   glm::dvec2 low_, high_;
 };
 
-}  // namespace photile::measuring
+}  // namespace photile::trace
