@@ -31,7 +31,7 @@ static_assert(packet_side * packet_side == trace::coherent_rays);
 
 /// Seconds of valuing a position, before they are known: by photons, and by rays at it and around
 /// it.
-constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
+constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
 /// Seconds of valuing positions until it is asked whether somebody waits for the frame.
 constexpr double seconds_of_batch = 0.015;
 
