@@ -18,6 +18,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::app {
@@ -132,6 +133,7 @@ int conclude(ExitCode code, const std::string& problem) {
 int run_command_line(int argument_count, const char* const* arguments) {
   ExitCode code = ExitCode::failure;
   std::string problem;
+  const TerminalText names_command_nothing(std::cout);
   try {
     join_processes({arguments, static_cast<std::size_t>(argument_count)});
     CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",

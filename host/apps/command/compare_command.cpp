@@ -17,6 +17,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "report/picture_comparison.hpp"
@@ -176,8 +177,7 @@ void check_moods(const CompareOptions& options) {
 
 void write_record(const CompareOptions& options, const nlohmann::ordered_json& record) {
   if (options.json.empty()) return;
-  write_file(options.json,
-             record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_file(options.json, json_text(record, 2));
 }
 
 void run_compare(const CompareOptions& options) {
