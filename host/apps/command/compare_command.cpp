@@ -107,8 +107,14 @@ Compared in_mood(const CompareOptions& options, const std::string& mood) {
   return compared;
 }
 
-/// Errors: InputError for pixels that are infinite or no numbers: no error could be told of them.
-void check_finite(const std::string& file, const Image& picture) {
+/// Errors: InputError for pictures without colours, and for pixels that are infinite or no numbers:
+/// no error could be told of them.
+void check_pixels(const std::string& file, const Image& picture) {
+  for (const char* channel : {"R", "G", "B"}) {
+    if (picture.find(channel)) continue;
+    throw InputError(fmt::format(
+        "{}: there is no channel {}; give a picture with channels R, G and B", file, channel));
+  }
   std::size_t lost = 0;
   for (const std::vector<float>& plane : picture.channels) {
     lost += static_cast<std::size_t>(std::count_if(
@@ -121,7 +127,7 @@ void check_finite(const std::string& file, const Image& picture) {
 
 Compared from_file(const std::string& file) {
   Compared compared{std::filesystem::path(file).filename().string(), nullptr, read_image(file)};
-  check_finite(file, compared.whole);
+  check_pixels(file, compared.whole);
   try {
     compared.layers = relit_picture(file, {});
   } catch (const InputError&) {  // no lights: compared as a whole
