@@ -325,7 +325,8 @@ TEST_CASE("a polygon that crosses itself is told from a simple one") {
                   .simple);
 }
 
-TEST_CASE("a polygon of 60,000 corners is triangulated in seconds, whether it crosses itself or not") {
+TEST_CASE(
+    "a polygon of 60,000 corners is triangulated in seconds, whether it crosses itself or not") {
   check_tiling(star(60'000, 1));
   // Random points: next to every edge crosses thousands of others. Rounds over all corners for each
   // triangle took more than eight minutes.
