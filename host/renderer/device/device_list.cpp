@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "common/ascii_text.hpp"
 #include "device/cache_folder.hpp"
 #include "device/context.hpp"
 #include "device/pocl_cache.hpp"
@@ -167,17 +168,7 @@ std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
 namespace photile {
 
 std::string_view name_of(DeviceType type) {
-  switch (type) {
-    case DeviceType::cpu:
-      return "cpu";
-    case DeviceType::gpu:
-      return "gpu";
-    case DeviceType::accelerator:
-      return "accelerator";
-    case DeviceType::other:
-      return "other";
-  }
-  return "unknown";
+  return name_in({"cpu", "gpu", "accelerator", "other"}, type);
 }
 
 std::vector<DeviceInfo> list_devices() {

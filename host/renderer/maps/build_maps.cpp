@@ -19,6 +19,7 @@
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
 #include "maps/photon_pages.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::maps {
 namespace {
@@ -34,12 +35,8 @@ device::Buffer<float> upload_normals(Context& context, const MapStore& store) {
 }  // namespace
 
 float reach_of(const Scene& scene, double radius) {
-  float largest = 0;
-  for (const glm::vec3& v : scene.vertices) {
-    largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  }
-  return static_cast<float>(radius * (1.0 + 1e-5) +
-                            8.0 * std::numeric_limits<float>::epsilon() * largest);
+  return static_cast<float>(radius * (1.0 + 1e-5) + 8.0 * std::numeric_limits<float>::epsilon() *
+                                                        scene::largest_coordinate(scene));
 }
 
 namespace {
