@@ -310,7 +310,7 @@ TEST_CASE("photons that do not fit the scene are an error of the maps, and no cr
 std::string hash_of(const Scene& scene) {
   ContentHash hash;
   scene::add_scene(scene, hash);
-  return hash.hex();
+  return hex(hash.digest());
 }
 
 /// A scene of one light of every kind that needs data of its own.
