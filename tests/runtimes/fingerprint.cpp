@@ -215,14 +215,7 @@ int main(int count, char** arguments) {
       throw DeviceError(fmt::format("{} devices, not {}", devices.size(), expected_devices));
     }
     for (const Case& test : set == "--lanes" ? cases_of_lanes() : cases(set == "--every-kernel")) {
-      if (test.memory_per_photon == 0) {
-        print_fingerprint(devices, test, sizes);
-      } else {
-        DeviceOptions options;
-        options.memory_bytes = test.memory_per_photon * sizes.photons;
-        std::vector<Device> bounded = open_devices(options);
-        print_fingerprint(bounded, test, sizes);
-      }
+      print_fingerprint(devices, test, sizes);
     }
   } catch (const Error& error) {
     fmt::print(stderr, "photile_fingerprint: error: {}\n", error.what());
