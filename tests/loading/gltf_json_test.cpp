@@ -41,6 +41,24 @@ std::string refusal_with(const std::string& place, const std::string& value) {
 
 }  // namespace
 
+TEST_CASE("a message does not quote a buffer") {
+  json document = square_document();
+  document["buffers"][0]["uri"] =
+      "data:application/octet-stream;base64," + std::string(400'000, 'A');
+  document["buffers"][0]["byteLength"] = 7;
+  CHECK(refusal_of_text(document.dump()).size() < 400);
+  document = square_document();
+  document["images"] = {{{"uri", std::string(400'000, 'a') + ".png"}}};
+  document["textures"] = {{{"source", 0}}};
+  document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  const SceneFolderOnDisk folder;
+  folder.write("square.bin", square_buffer());
+  for (const std::string& warning :
+       load_scene(folder.write("scene.gltf", document.dump())).report.warnings) {
+    CHECK(warning.size() < 600);
+  }
+}
+
 TEST_CASE("offsets, strides and counts that are no whole numbers are refused by their place") {
   const auto [place, shown] = GENERATE(table<std::string, std::string>({
       {"/bufferViews/0/byteOffset", "bufferViews[0].byteOffset"},

@@ -30,12 +30,14 @@ double lambertian(double, double gamma) {
 
 /// The dark unit square at z = 0 of square_document, under lamps that shine along -z.
 Scene scene_with(const SceneFolderOnDisk& folder, const std::string& luminaires,
-                 const std::function<double(double, double)>& candela = lambertian) {
+                 const std::function<double(double, double)>& candela = lambertian,
+                 bool allow_outside = false) {
   nlohmann::json document = square_document();
   document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   folder.write("lamp.ies", ies(candela));
   SceneLoadOptions options;
   options.luminaires = folder.write("luminaires.json", luminaires);
+  options.allow_outside = allow_outside;
   return load_gltf(document, options);
 }
 
@@ -176,6 +178,20 @@ TEST_CASE("photons of an opening follow its intensities, uplight leaves its back
   }
   // The square is large and near: all that goes down falls on it.
   CHECK(down == Approx(0.75).margin(0.01));
+}
+
+TEST_CASE("photometric files outside the list's folder are read where that is allowed") {
+  const SceneFolderOnDisk folder, elsewhere;
+  const std::string lamp = elsewhere.write("lamp.ies", ies(lambertian));
+  for (const std::string& name :
+       {lamp,
+        "../" + std::filesystem::path(lamp).parent_path().filename().string() + "/lamp.ies"}) {
+    const std::string list =
+        R"([{"file": ")" + name + R"(", "position": [0.5, 0.5, 2], "size": [1, 1]}])";
+    CHECK_THAT(message_of<InputError>([&] { scene_with(folder, list); }),
+               Catch::Contains("outside"));
+    CHECK(scene_with(folder, list, lambertian, true).lights.size() == 1);
+  }
 }
 
 TEST_CASE("what is wrong with a placed lamp is told in a line") {
