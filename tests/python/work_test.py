@@ -90,8 +90,8 @@ def small():
 """
 
 
-def run(program):
-    return subprocess.run([sys.executable, "-c", SETUP + program], capture_output=True, text=True,
+def run(program, setup=SETUP):
+    return subprocess.run([sys.executable, "-c", setup + program], capture_output=True, text=True,
                           timeout=60)
 
 
@@ -114,15 +114,19 @@ print(os.waitpid(child, 0)[1])
 
 
 def test_a_forked_child_works_where_its_parent_has_not():
+    # Where a scene is made, threads check it.
     done = run("""
+import os
 for _ in range(2):
     child = os.fork()
     if child == 0:
+        exec(setup)
         small()
         os._exit(0)
     print(os.waitpid(child, 0)[1])
+exec(setup)
 small()
-""")
+""", f"setup = {SETUP!r}")
     assert done.stdout == "0\n0\n" and done.returncode == 0, done
 
 
