@@ -219,11 +219,12 @@ class SceneCheck {
       refuse(scene_, owner + " is of surroundings that it does not name");
     }
     if (light.kind == LightKind::environment) {
+      constexpr double least = 1e-6 * limits::min_illuminance;  // of lux that became watts
       const double sum = luminance(scene_.environments[light.environment].integral());
-      if (!(sum >= limits::min_illuminance)) {
+      if (!(sum >= least)) {
         refuse(scene_, fmt::format("{} is too dark: its radiance adds up to {:g} over all "
                                    "directions, and {:g} is the least",
-                                   owner, sum, limits::min_illuminance));
+                                   owner, sum, least));
       }
     }
     if (light.emission_texture != none && scene_.corner_emission_uv.empty() &&
