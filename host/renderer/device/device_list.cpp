@@ -1,12 +1,16 @@
 #include "device/device_list.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <system_error>
 
 #include "common/threads.hpp"
 #include "device/cache_folder.hpp"
@@ -130,6 +134,27 @@ void bound_pocl_threads() {
   static_cast<void>(enough);
 }
 
+/// What the loader of libraries says of each runtime that is registered and cannot be loaded.
+std::vector<std::string> unloadable_runtimes() {
+  const char* const given = std::getenv("OCL_ICD_VENDORS");
+  const std::filesystem::path folder = given ? given : "/etc/OpenCL/vendors";
+  std::vector<std::string> lines;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    std::string library;
+    if (entry.path().extension() != ".icd") continue;
+    if (!std::getline(std::ifstream(entry.path()), library)) continue;
+    void* const loaded = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (loaded) {
+      dlclose(loaded);
+    } else {
+      lines.push_back(entry.path().filename().string() + ": " + dlerror());
+    }
+  }
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
 }  // namespace
 
 DeviceList enumerate_devices() {
@@ -138,6 +163,7 @@ DeviceList enumerate_devices() {
   keep_intel_from_vectorizing();
   DeviceList list;
   const auto found = platforms();
+  if (found.empty()) list.left_out = unloadable_runtimes();
   for (std::size_t p = 0; p < found.size(); ++p) {
     const auto devices = devices_of(found[p]);
     if (devices.empty()) {
