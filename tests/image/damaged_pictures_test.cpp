@@ -70,7 +70,7 @@ TEST_CASE("an EXR whose window is not that of its pixels is refused, not read as
   const TemporaryFolder folder;
   LightMix mix;
   mix.lights = {mixed("lamp", 800.0)};
-  write_exr(folder / "small.exr", mix_layers(LightLayers(8, 8, {"lamp"s}), mix));
+  write_exr(folder / "small.exr", mix_layers(LightLayers(8, 8, std::vector{"lamp"s}), mix));
   // Several blocks, of which the window has one; and a single block of either.
   for (std::string bytes : {layered_exr(), bytes_of(folder / "small.exr")}) {
     const std::string attribute = "dataWindow\0box2i\0\x10\0\0\0"s;
