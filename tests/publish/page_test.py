@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Pages of `photile publish` in Chromium, beside `photile render` and `photile measure`.
 
-Usage: page_test.py cornell_box|living_room|office|controls|many_lights PHOTILE SOURCE_FOLDER
+Usage: page_test.py cornell_box|living_room|office|controls|many_lights|three_js PHOTILE SOURCE_FOLDER
 """
 
 import base64
+import http.server
 import json
 import math
 import pathlib
@@ -12,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 try:
@@ -191,19 +193,14 @@ def radiance_of(file):
     return channels_of(file, "RGB")
 
 
-def compare(what, browser, reference, bumpy=()):
-    """Pixels that see a lamp or are next to one are left out, as in `photile compare`, and those that
-    see anything but matt surface."""
-    page = browser.radiance().astype(float)
+def compare_pixels(what, page, reference, counted):
+    """Pixels that see a lamp or are next to one are left out, as in `photile compare`."""
     light = reference @ [0.2126, 0.7152, 0.0722]
     lamp = light > 20 * np.median(light[light > 0])
     wide = np.pad(lamp, 1)
     lamp = np.any([np.roll(wide, shift, (0, 1)) for shift in
                    [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]], axis=0)[1:-1, 1:-1]
-    browser.run(SHOW_MATT_ONLY, True, list(bumpy))
-    matt = browser.radiance().astype(float)
-    browser.run(SHOW_MATT_ONLY, False, [])
-    counts = ~lamp & (light > 0) & (np.abs(matt - page).max(axis=2) <= 1e-5 * page.max(axis=2))
+    counts = ~lamp & (light > 0) & counted
     mean = reference[counts].mean()
     error = ((page - reference) ** 2 / (reference ** 2 + 0.01 * mean ** 2))[counts].mean()
     ratio = page[counts].mean() / mean
@@ -211,6 +208,15 @@ def compare(what, browser, reference, bumpy=()):
     assert counts.mean() > 0.25, what
     assert error <= LARGEST_REL_MSE, what
     assert abs(ratio - 1) <= LARGEST_MEAN, what
+
+
+def compare(what, browser, reference, bumpy=()):
+    """Matt surface on the page beside a picture."""
+    page = browser.radiance().astype(float)
+    browser.run(SHOW_MATT_ONLY, True, list(bumpy))
+    matt = browser.radiance().astype(float)
+    browser.run(SHOW_MATT_ONLY, False, [])
+    compare_pixels(what, page, reference, np.abs(matt - page).max(axis=2) <= 1e-5 * page.max(axis=2))
 
 
 def check_clicks(browser, folder, scene, rendered, more):
@@ -305,15 +311,15 @@ def check_views(browser, folder, scene, bumpy, dimmed, mood, lights=()):
 
 CORNELL_VIEWS = [((0.1, 0.42, -0.3), (0.35, 0.15, 0.35)), ((0.47, 0.5, 0.03), (0.2, 0.0, 0.4))]
 CORNELL_MOOD = {"evening": {"lamp": {"power": 3000, "unit": "lm", "on": True, "kelvin": 2700},
-                            "corner": {"power": 400, "unit": "lm", "on": True}}}
+                            "front": {"power": 400, "unit": "lm", "on": True}}}
 
 
 def test_cornell_box(browser, folder):
-    scene, _ = room_in(folder, "cornell-box", CORNELL_VIEWS, CORNELL_MOOD, [("corner", (0.1, 0.54, 0.12))])
-    corner = ["--area-light", "corner=0.1x0.1,2000"]
-    _, pictures = check_views(browser, folder, scene, (), {"lamp": 0.3, "corner": 1.6}, "evening", corner)
-    lux = sum(channels_of(pictures[0], ["Illuminance_lamp.Y", "Illuminance_corner.Y"])[:, :, i] for i in range(2))
-    check_clicks(browser, folder, scene, lux, ["--photons", "2M", *corner])
+    scene, _ = room_in(folder, "cornell-box", CORNELL_VIEWS, CORNELL_MOOD, [("front", (0.28, 0.54, 0.08))])
+    front = ["--area-light", "front=0.2x0.1,1500"]
+    _, pictures = check_views(browser, folder, scene, (), {"lamp": 0.3, "front": 1.6}, "evening", front)
+    lux = sum(channels_of(pictures[0], ["Illuminance_lamp.Y", "Illuminance_front.Y"])[:, :, i] for i in range(2))
+    check_clicks(browser, folder, scene, lux, ["--photons", "2M", *front])
     # Controls have names.
     unnamed = browser.run("""
 return [...document.querySelectorAll('button, input, select')].filter((control) =>
@@ -601,6 +607,70 @@ return times.sort((a, b) => a - b);
     assert draws[2] == draws[256]
 
 
+THREE_RADIANCE = """
+const [place, target, angle, width, height] = arguments;
+const view = new THREE.PerspectiveCamera(angle, width / height, 0.01, 100);
+view.position.set(...place);
+view.lookAt(...target);
+const samples = 4, texels = new Float32Array(4 * width * height * samples ** 2);
+const picture = new THREE.WebGLRenderTarget(width * samples, height * samples, {type: THREE.FloatType});
+renderer.toneMapping = THREE.NoToneMapping;
+renderer.setRenderTarget(picture);
+renderer.setClearColor(0, 1);
+renderer.clear();
+renderer.render(scene, view);
+renderer.readRenderTargetPixels(picture, 0, 0, width * samples, height * samples, texels);
+renderer.setRenderTarget(null);
+const bytes = new Uint8Array(texels.buffer);
+let text = '';
+for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+return btoa(text);
+"""
+THREE_JS = pathlib.Path("/usr/share/javascript/three")  # of Debian's libjs-three
+
+
+def test_three_js(browser, folder):
+    """docs/examples/baked_three.js shows what `photile bake` wrote, also after a slider was moved."""
+    if not (THREE_JS / "examples/jsm/loaders/EXRLoader.js").exists():
+        print("skipped: no three.js; apt install libjs-three")
+        return 77
+    scene, _ = room_in(folder, "cornell-box", CORNELL_VIEWS, {}, [("front", (0.28, 0.54, 0.08))])
+    front = ["--area-light", "front=0.2x0.1,1500"]
+    photile("bake", scene, "-o", folder / "baked.gltf", "-q", "--set", "light_map_rays=64", *front)
+    picture = folder / "view.exr"
+    photile("render", scene, "--camera", 1, "-o", picture, "-q", "--size", "%dx%d" % SIZE, *front)
+    for name in ("baked_three.html", "baked_three.js"):
+        shutil.copy(SOURCE / "docs/examples" / name, folder)
+    (folder / "three").symlink_to(THREE_JS)
+
+    class Server(http.server.SimpleHTTPRequestHandler):
+        def __init__(self, *arguments):
+            super().__init__(*arguments, directory=folder)
+
+        def log_message(self, *_):
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Server)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    browser.run_command("Network.emulateNetworkConditions",
+                        {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1})
+    browser.driver.get(f"http://127.0.0.1:{server.server_port}/baked_three.html")
+    for _ in range(600):
+        if browser.run("return Boolean(window.room)"):
+            break
+        time.sleep(0.1)
+    for factor in (1, 0.3):
+        browser.run("const slider = document.querySelector('input'); slider.value = arguments[0];"
+                    "slider.dispatchEvent(new Event('input'));", factor)
+        texels = np.frombuffer(base64.b64decode(browser.run(THREE_RADIANCE, *CORNELL_VIEWS[0], math.degrees(0.9), *SIZE)),
+                               np.float32)
+        page = texels.reshape(SIZE[1], 4, SIZE[0], 4, 4).mean(axis=(1, 3))[::-1, :, :3].astype(float)
+        photile("relight", picture, "--light", f"lamp=x{factor}", "-o", folder / "relit.exr")
+        compare_pixels(f"three.js, lamp x{factor}", page, radiance_of(folder / "relit.exr"), page.max(axis=2) > 0)
+    server.shutdown()
+    return 0
+
+
 def main():
     if not (pathlib.Path(CHROMIUM).exists() and pathlib.Path(DRIVER).exists()):
         print("skipped: no chromium with its driver; apt install chromium chromium-driver")
@@ -608,12 +678,12 @@ def main():
     browser = Browser()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            globals()[f"test_{sys.argv[1]}"](browser, pathlib.Path(folder))
+            result = globals()[f"test_{sys.argv[1]}"](browser, pathlib.Path(folder))
         messages = browser.messages()
         assert not messages, messages
     finally:
         browser.driver.quit()
-    return 0
+    return result or 0
 
 
 if __name__ == "__main__":
