@@ -1,5 +1,5 @@
-// The estimate of one workload again and again, for bench/kernels/profile.py. Prints when that begins and
-// ends, in the seconds of the steady clock.
+// The estimate of one workload again and again, for bench/kernels/profile.py. Prints when that
+// begins and ends, in the seconds of the steady clock.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -59,7 +59,8 @@ bool run(const Settings& settings) {
 int main(int argument_count, char** arguments) {
   Settings settings;
   CLI::App command("The estimate again and again", "profiled_estimate");
-  // The last of an option given twice counts: bench/kernels/profile.py --quick makes cases smaller so.
+  // The last of an option given twice counts: bench/kernels/profile.py --quick makes cases smaller
+  // so.
   command.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   command.add_option("--workload", settings.workload)
       ->check(CLI::IsMember({"plane", "living-room", "waved-hall"}));

@@ -20,7 +20,7 @@ constexpr std::size_t affordable_photons = std::size_t{1} << 27;
 constexpr std::size_t least_checked = 16, most_checked = 256;
 
 /// Areas that are clipped by polygons in double precision and by floats on the device differ by
-/// this part of the whole disc (tests/estimate/clipped_discs_test.cpp).
+/// this part of the whole disc (tests/estimate/clipped_vs_oracle_test.cpp).
 constexpr double clipping = 1e-4;
 
 std::vector<std::uint32_t> indices(std::size_t count) {

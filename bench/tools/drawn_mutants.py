@@ -92,8 +92,11 @@ LAYER_CASES = (
 FURTHER_TESTS = {
     "groups": (("maps", "grid_contents"), ("estimate", "estimates_vs_oracle"),
                ("estimate", "neighbours_vs_oracle")),
-    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "clipped_discs")),
-    "trace": (("reference", "path_light"), ("render", "direct_rays"), ("cache", "irradiance_gather"),
+    "surface": (("estimate", "corners"), ("estimate", "dark_surface"), ("estimate", "clipped_surfaces"),
+                ("estimate", "clipped_vs_oracle")),
+    "trace": (("reference", "path_direct_light"), ("reference", "path_interreflection"),
+              ("reference", "path_materials"), ("reference", "path_smooth_shading"),
+              ("render", "direct_rays"), ("cache", "irradiance_gather"),
               ("cache", "gathered_nodes"), ("measuring", "gather"),
               ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
               ("loading", "textured_lights"), ("daylight", "daylight_matrix"))}

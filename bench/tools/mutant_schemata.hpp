@@ -1,5 +1,6 @@
 // Many faults in one build, of which an environment variable chooses one ("mutant schemata": Untch,
-// Offutt and Harrold 1993). bench/tools/mutant_schemata.py puts these names into copies of source files.
+// Offutt and Harrold 1993). bench/tools/mutant_schemata.py puts these names into copies of source
+// files.
 //
 // `a < b` becomes `a < PHOTILE_INFIX(Less, 17) < b`: the object between has the operator's own
 // precedence on both sides, so that no operand has to be found. PHOTILE_CHOSEN(17) chooses between

@@ -43,7 +43,7 @@ inline constexpr double radius_over_median_kth_distance = 2.0;
 inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
 inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
-inline constexpr double published_texel = 0.02;      ///< metres, of the light maps of a page
+inline constexpr double published_texel = 0.02;     ///< metres, of the light maps of a page
 inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
 
 // Nodes that gather

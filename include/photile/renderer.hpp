@@ -182,27 +182,32 @@ struct PreparedPhotons {
 };
 using KeepPhotons = std::function<void(const PreparedPhotons&)>;
 
-/// How long a quick frame may value nodes that it lacks.
-struct FrameFilling {
-  /// So many seconds; infinite: until none is lacking. Implicit: a frame knows no other number.
-  ///   ends   asked from time to time: true ends it at once; empty = never
-  FrameFilling(double limit, std::function<bool()> ends = {})
-      : seconds(limit), ended(std::move(ends)) {}
-
-  double seconds;
-  std::function<bool()> ended;
-
-  /// What is left after so many seconds.
-  double left(double spent) const { return ended && ended() ? 0 : seconds - spent; }
-};
-
 /// What a quick frame shows.
 struct DrawnFrame {
   /// Cells of light maps that it shows coarser than they should be.
   std::size_t lacking = 0;
-  std::size_t empty = 0;     ///< of them, those without any light: they are grey
+  std::size_t empty = 0;     ///< of them, those without any light: they have that of what is around
   double lacking_share = 0;  ///< of the surface that is seen, in [0, 1]
   double fill_seconds = 0;   ///< that went into nodes which were lacking
+  double draw_seconds = 0;   ///< that drawing the latest picture took
+};
+
+/// How long a quick frame may value nodes that it lacks.
+struct FrameFilling {
+  /// So many seconds; infinite: until none is lacking. Implicit: a frame knows no other number.
+  ///   ends    asked from time to time: true ends it at once, in the middle of a picture; empty =
+  ///   never better  takes each picture that is better than the one before, and returns the seconds
+  ///   until
+  ///           the next; the frame then goes on until nothing is lacking. Empty: there is one
+  FrameFilling(double limit, std::function<bool()> ends = {},
+               std::function<double(const DrawnFrame&)> better = {})
+      : seconds(limit), ended(std::move(ends)), show(std::move(better)) {}
+
+  double seconds;
+  std::function<bool()> ended;
+  std::function<double(const DrawnFrame&)> show;
+
+  bool has_ended() const { return ended && ended(); }
 };
 
 /// The photon maps of a scene, kept on the devices while pictures are rendered from them.
@@ -229,8 +234,8 @@ class SceneRenderer {
   /// glossy surfaces as if they were matt (host/renderer/cache/light_map_frames.hpp). For
   /// parameters that ask for light maps.
   ///   powers    per layer: power x tint
-  ///   filling   of nodes which pixels lack: the nearest to the eye come first, other pixels show a
-  ///             coarser level
+  ///   filling   of nodes which pixels lack: surface that takes most of the picture comes first;
+  ///             other pixels show a coarser level, or light from around
   ///   picture   of the film's size, linear RGB radiance
   ///   coarser   of the same scene: shown where these light maps have no node yet, and filled
   ///             before them; null = none

@@ -7,8 +7,11 @@
 #include <cstring>
 #include <limits>
 
+#include "cache/charts.hpp"
 #include "cache/node_sources.hpp"
 #include "test_scenes.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::test {
 namespace {
@@ -48,6 +51,27 @@ struct DrawnRoom {
 
 Camera in_the_room(double x) { return Camera::look_at({x, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0); }
 
+/// The chart in each pixel; none along borders between them, and where nothing is seen.
+std::vector<std::uint32_t> charts_seen(const DrawnRoom& room, const Camera& camera) {
+  const auto chart_at = [&](double x, double y) {
+    const glm::vec3 direction(camera.direction(x, y, width, height));
+    const auto hit = trace::intersect(room.rays, glm::vec3(camera.position), direction);
+    if (!hit) return none;
+    const std::uint32_t side = trace::surface_hit(room.scene, *hit, direction).side;
+    return room.maps.charts().chart_of()[sided(hit->triangle, side)];
+  };
+  std::vector<std::uint32_t> charts;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::uint32_t chart = chart_at(x, y);  // at the corners of the pixel
+      const bool inside = chart == chart_at(x + 1, y) && chart == chart_at(x, y + 1) &&
+                          chart == chart_at(x + 1, y + 1);
+      charts.push_back(inside ? chart : none);
+    }
+  }
+  return charts;
+}
+
 bool same_pixels(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
 }
@@ -72,13 +96,14 @@ TEST_CASE("Frames that value a few nodes at a time come to the bits of one that 
   CHECK(step_by_step.maps.statistics().nodes == at_once.maps.statistics().nodes);
 }
 
-TEST_CASE("A frame without time values nothing, and one with a little the nearest surface") {
+TEST_CASE("A frame without time values nothing, and one with a little what takes most of it") {
   std::vector<glm::vec3> asked;
   DrawnRoom room([&](const glm::vec3& p, std::uint32_t) {
     asked.push_back(p);
     return 1.0f;
   });
-  const Camera camera = in_the_room(0.5);
+  // Nearly all of it shows the floor, and a corner of it a block.
+  const Camera camera = Camera::look_at({2.0, 2.0, 1.0}, {2.05, 2.0, 0}, {0, 0, 1}, 0.8);
   room.draw(camera, 0);
   CHECK(asked.empty());
   CHECK(room.drawn.lacking > 0);
@@ -88,14 +113,8 @@ TEST_CASE("A frame without time values nothing, and one with a little the neares
   const auto first = asked;
   REQUIRE_FALSE(first.empty());
   room.draw(camera, all);
-  const auto distance = [&](const glm::vec3& p) {
-    return glm::distance(p, glm::vec3(camera.position));
-  };
-  double nearest = all, first_farthest = 0;
-  for (const glm::vec3& p : asked) nearest = std::min<double>(nearest, distance(p));
-  for (const glm::vec3& p : first) first_farthest = std::max<double>(first_farthest, distance(p));
   CHECK(first.size() < asked.size() / 10);
-  CHECK(first_farthest < nearest + 0.2);  // some cells of 4 cm
+  for (const glm::vec3& p : first) CHECK(p.z == 0.0f);
 }
 
 TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is black") {
@@ -135,19 +154,57 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
   CHECK(empty.maps.statistics().nodes > 0);
 }
 
+TEST_CASE("Pictures of one frame get better until nothing is lacking, chart by chart") {
+  const auto constant = [](float light) {
+    return [light](const glm::vec3&, std::uint32_t) { return light; };
+  };
+  DrawnRoom coarse(constant(1.0f)), fine(constant(2.0f));
+  const Camera camera = in_the_room(0.5);
+  const auto of_coarse = coarse.draw(camera, all);
+  const std::vector<glm::vec3> powers{glm::vec3(1.0f)};
+  std::vector<glm::vec3> picture(std::size_t{width} * height);
+  const std::vector<std::uint32_t> chart_in = charts_seen(fine, camera);
+  std::vector<double> lacking;
+  std::size_t changing = 0;  // pictures that show both
+  const auto show = [&](const DrawnFrame& drawn) {
+    lacking.push_back(drawn.lacking_share);
+    std::vector<float> light_of_chart(fine.maps.charts().size(), 0.0f);
+    std::size_t of_fine = 0;
+    for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
+      const float light = picture[pixel].x / of_coarse[pixel].x;
+      const bool is_one_of_both = light == Approx(1.0f) || light == Approx(2.0f);
+      REQUIRE(is_one_of_both);
+      of_fine += light > 1.5f ? 1 : 0;
+      if (chart_in[pixel] == none) continue;
+      float& of_chart = light_of_chart[chart_in[pixel]];
+      if (of_chart != 0.0f) REQUIRE(light == Approx(of_chart));
+      of_chart = light;
+    }
+    changing += of_fine > 0 && of_fine < picture.size() ? 1 : 0;
+    return 1e-4;
+  };
+  const DrawnFrame last =
+      fine.frames.draw(camera, {width, height, 1}, powers, FrameFilling(0, {}, show), picture,
+                       Progress::none(), &coarse.frames);
+  CHECK(last.lacking == 0);
+  CHECK(changing > 0);
+  REQUIRE(lacking.size() > 2);
+  CHECK(lacking.front() == 1);
+  CHECK(std::is_sorted(lacking.rbegin(), lacking.rend()));
+  CHECK(same_pixels(picture, fine.draw(camera, all)));
+}
+
 TEST_CASE("A frame that nobody waits for any longer values no more nodes") {
   DrawnRoom room;
   std::vector<glm::vec3> picture(std::size_t{width} * height);
   const std::vector<glm::vec3> powers{glm::vec3(1.0f)};
-  int asked = 0;
+  const auto nodes = [&] { return room.maps.statistics().nodes; };
   const DrawnFrame drawn =
       room.frames.draw(in_the_room(0.5), {width, height, 1}, powers,
-                       FrameFilling(1e6, [&] { return ++asked > 3; }), picture, Progress::none());
+                       FrameFilling(1e6, [&] { return nodes() > 0; }), picture, Progress::none());
   CHECK(drawn.lacking > 0);
-  CHECK(room.maps.statistics().nodes > 0);
-  CHECK(*std::min_element(picture.begin(), picture.end(), [](const auto& a, const auto& b) {
-    return a.x < b.x;
-  }) != glm::vec3(0.0f));
+  CHECK(nodes() > 0);
+  CHECK(nodes() < drawn.lacking / 4);
 }
 
 TEST_CASE("A camera that stands still, or comes back, sees the same bits") {

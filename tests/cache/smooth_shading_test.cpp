@@ -180,8 +180,8 @@ TEST_CASE("Nodes show a floor with a normal map as paths do") {
   for (const double x : {-1.3, -0.9, -0.4, 0.3, 0.8, 1.2}) {
     for (const double y : {-1.1, -0.5, 0.2, 0.7, 1.3}) sensors.push_back({{x, y, 0}, {0, 0, 1}});
   }
-  // Nodes that take the floor for flat err by 13%. What is left is what a light linear in the normal
-  // cannot tell.
+  // Nodes that take the floor for flat err by 13%. What is left is what a light linear in the
+  // normal cannot tell.
   CHECK(rms_beside_paths(scene, sensors, 4'000) <
         rms_beside_paths(flat, scene, sensors, 4'000) / 3);
 }

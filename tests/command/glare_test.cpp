@@ -48,6 +48,14 @@ TEST_CASE("glare rates each observer and writes the same to all of its files") {
   }
 }
 
+TEST_CASE("glare of lamps of next to no light has an error that is a number") {
+  const FileFolder folder;
+  const std::string eyes = folder.write("eyes.pts", "0.2 0 0.1 0 1 0\n");
+  const Outcome outcome = succeed(glare(
+      write_box(folder), {"--observers", eyes, "--light", "left=1e-13", "--light", "right=1e-13"}));
+  CHECK_THAT(outcome.output, !Contains("nan"));
+}
+
 TEST_CASE("a grid has four directions of view at each point, and no pictures") {
   const FileFolder folder;
   const Outcome outcome =

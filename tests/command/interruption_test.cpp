@@ -44,6 +44,40 @@ TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
   CHECK(folder.file_count() == 3);  // the scene's two files and the earlier picture
 }
 
+/// Runs a line of shell text in which $photile is the command.
+Outcome run_in_shell(const FileFolder& folder, const std::string& text) {
+  const std::string file = folder.write("line.sh", "photile='" PHOTILE_COMMAND "'\n" + text);
+  const std::string output = folder / "output", errors = folder / "errors";
+  const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' bash '" + file +
+                                  "' > '" + output + "' 2> '" + errors + "'")
+                                     .c_str());
+  return {WEXITSTATUS(status), folder.read("output"), folder.read("errors")};
+}
+
+TEST_CASE("a reader that goes away costs no picture, and is no error") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const Outcome told = run_in_shell(
+      folder,
+      "$photile render '" + scene + "' -o '" + (folder / "a.exr") +
+          "' --photons 20k --size 16x16 2>&1 | head -c 1 > /dev/null; exit ${PIPESTATUS[0]}");
+  CHECK(told.exit_code == 0);
+  CHECK(folder.read("a.exr").size() > 100);
+  const Outcome listed =
+      run_in_shell(folder, "$photile settings | head -c 1 > /dev/null; exit ${PIPESTATUS[0]}");
+  CHECK(listed.exit_code == 0);
+  CHECK(listed.errors.empty());
+}
+
+TEST_CASE("where no more files can be opened, the limit is told, and not a lack of runtimes") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const Outcome outcome = run_in_shell(
+      folder, "for n in $(seq 3 14); do ulimit -Sn $n; $photile render '" + scene + "' -o '" +
+                  (folder / "a.exr") + "' --photons 1000 --size 4x4 -q; done");
+  CHECK_THAT(outcome.errors, Contains("ulimit -n") && !Contains("install a runtime"));
+}
+
 // Killed at any moment, and on a disk that is full: old files or whole new ones, and nothing else.
 
 using Clock = std::chrono::steady_clock;

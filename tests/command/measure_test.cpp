@@ -189,9 +189,9 @@ TEST_CASE("a report has the project, glare and a year beside its figures, and li
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("desk <2>: UGR 21.4, at most 19: NOT MET"));
   const std::string page = folder.read("a.html");
-  CHECK_THAT(page, Contains("<dd>Office &lt;1></dd>") && Contains("C &amp; Co") &&
+  CHECK_THAT(page, Contains("<dd>Office &lt;1&gt;</dd>") && Contains("C &amp; Co") &&
                        Contains("signature") && Contains("<h2>Glare</h2>") &&
-                       Contains("desk &lt;2>") && Contains("<h2>A year of daylight</h2>") &&
+                       Contains("desk &lt;2&gt;") && Contains("<h2>A year of daylight</h2>") &&
                        Contains("80.0%") && Contains("310 lux"));
   const auto refusal = [&](std::vector<std::string> more, int code) {
     return only_error(with(std::move(more)), code);

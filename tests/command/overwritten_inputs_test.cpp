@@ -9,6 +9,7 @@
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "source_folder.hpp"
+#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
@@ -187,6 +188,25 @@ TEST_CASE("measure keeps what lies under the names of its numbered plans and its
     CHECK_THAT(last_error(run_photile(arguments), usage), Contains("an input of this run"));
     CHECK(contents(folder) == before);
   }
+}
+
+TEST_CASE("daylight keeps what lies under the names of its tables, before it computes the year") {
+  const FileFolder folder;
+  const auto by_day = [](int, int, int hour) { return hour > 8 && hour < 17 ? 300 : 0; };
+  const std::string scene = write_box(folder);
+  const std::string weather = folder.write("year.epw", weather_text(by_day, by_day));
+  fs::create_directories(folder / "bee/__static_apertures__/default/total");
+  fs::create_symlink("../../../../box.mtl",
+                     folder / "bee/__static_apertures__/default/total/working_plane.npy");
+  const auto before = contents(folder);
+  const Arguments arguments{"daylight",  scene,   "--plane",    "1",
+                            "--weather", weather, "--honeybee", folder / "bee"};
+  CHECK_THAT(last_error(run_photile(arguments), usage), Contains("an input of this run"));
+  CHECK(contents(folder) == before);
+  fs::remove(folder / "bee/__static_apertures__/default/total/working_plane.npy");
+  Arguments twice = arguments;
+  twice.insert(twice.end(), {"-o", folder / "bee/grids_info.json"});
+  CHECK_THAT(last_error(run_photile(twice), usage), Contains("grids_info.json"));
 }
 
 TEST_CASE("walk keeps its camera path, and the scene under the name of any frame") {

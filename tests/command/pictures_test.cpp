@@ -51,6 +51,25 @@ TEST_CASE("a picture with a value that is no number is refused by its name") {
   }
 }
 
+TEST_CASE("a picture without colours is refused by its name") {
+  const FileFolder folder;
+  Image image;
+  image.width = image.height = 2;
+  image.add("Y") = {1, 1, 1, 1};
+  write_exr(folder / "grey.exr", image);
+  CHECK_THAT(
+      only_error(run_photile({"compare", folder / "grey.exr", folder / "grey.exr"}), bad_input),
+      Contains("grey.exr") && Contains("no channel R"));
+}
+
+TEST_CASE("equal pictures are equal files, wherever they are written") {
+  const FileFolder folder;
+  std::filesystem::create_directory(folder / "elsewhere");
+  render_box(folder, "a.exr");
+  render_box(folder, "elsewhere/b.exr");
+  CHECK(folder.read("a.exr") == folder.read("elsewhere/b.exr"));
+}
+
 TEST_CASE("a picture is equal to itself, and the drawing shows both and no difference") {
   const FileFolder folder;
   const std::string picture = render_box(folder, "a.exr");

@@ -72,6 +72,8 @@ TEST_CASE("a damaged weather file is refused in a line that names it and where")
   refused(replaced(good, ",300,0,11,1,", ",300,0,nan,1,"), "direct normal");
   refused(replaced(good, ",300,0,11,1,", ",300,0,9999,1,"), "missing");
   refused(replaced(good, ",300,0,11,1,", ",300,0,11,-5,"), "diffuse");
+  // Decimal commas: each number is two fields, and all behind it are others.
+  refused(replaced(good, "2005,1,1,3,", "2005,1,1,3," + std::string(40, ',')), "decimal point");
   refused(good.substr(0, good.size() / 2), "hours");
   refused(good + good.substr(good.find("2005,1,1,1,")), "hours");
 }

@@ -78,7 +78,7 @@ bool fuzz_luminaires(Bytes bytes) {
     const loading::LuminaireList list = loading::read_luminaires(file);
     const auto written = loading::LuminaireList::parse(list.text(), "written");
     require(written == list, "written they are others");
-    loading::add_luminaires(list, file, 683, scene, warnings);
+    loading::add_luminaires(list, file, false, 683, scene, warnings);
     scene::make_light_names_unique(scene.lights);
     try {
       check_scene(scene);

@@ -233,8 +233,8 @@ TEST_CASE("texts of suns and skies are checked", "[sun]") {
   }
 }
 
-// Cube maps against OpenGL's table of their faces, flipped as EXT_lights_image_based asks, and against
-// integrals in closed form.
+// Cube maps against OpenGL's table of their faces, flipped as EXT_lights_image_based asks, and
+// against integrals in closed form.
 
 /// OpenGL 4.6, table 8.19: the direction of a place of a face, s and t from 0 to 1, t from the
 /// first row of texels on.

@@ -63,6 +63,13 @@ RenderParameters good() {
   return parameters;
 }
 
+/// Keeps what it is told.
+class Notes : public Progress {
+ public:
+  void note(const std::string& line) override { text += line + "\n"; }
+  std::string text;
+};
+
 /// A user who stops after so many seconds.
 class Stopped : public Progress {
  public:
@@ -171,10 +178,33 @@ TEST_CASE("refinement: a user who stops is heard, and has the pictures so far") 
   CHECK(studio.clock < 5.2);
 }
 
+TEST_CASE("refinement: an error below what all rays and photons leave is told at once") {
+  Studio studio;
+  Notes notes;
+  const RenderResult result = refine({.error = 1e-9}, good(), studio.steps(), notes);
+  CHECK(studio.made.size() == 1);
+  CHECK(result.used.light_map_rays == 64);
+  CHECK_THAT(notes.text, Catch::Contains("1e-07% is out of reach"));
+}
+
+TEST_CASE("refinement: an error that does not fall any longer is told") {
+  Studio studio;
+  RefinementSteps steps = studio.steps();
+  const auto make = steps.make;
+  steps.make = [&](const RenderParameters& p, Progress& progress) {
+    studio.error_of_one = p.light_map_rays > 128 ? 0.014 * std::sqrt(p.light_map_rays) : 0.16;
+    return make(p, progress);
+  };
+  Notes notes;
+  refine({.error = 0.005}, good(), steps, notes);
+  CHECK(studio.made.size() == 3);  // 2%, 1.41%, 1.4%
+  CHECK_THAT(notes.text, Catch::Contains("0.5% is out of reach: about 1.4%"));
+}
+
 TEST_CASE("refinement: ends where rays and photons cannot grow") {
   Studio studio;
   studio.seconds_of_good = 1e-9;
-  const RenderResult result = refine({.error = 1e-9}, good(), studio.steps(), Progress::none());
+  const RenderResult result = refine({.seconds = 1}, good(), studio.steps(), Progress::none());
   CHECK(result.used.light_map_rays == limits::max_gathering_rays);
   CHECK(result.used.photons.emitted_photons == limits::max_emitted_photons);
 }

@@ -89,7 +89,7 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
   const std::vector<glm::vec3> powers{glm::vec3(100.0f)};
   Camera camera = from_above();
   camera.position.x += 0.1;
-  frames.show({camera, 40, 30, true, false, powers});
+  frames.show({camera, 40, 30, true, false, false, powers});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
@@ -98,7 +98,7 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
   CHECK(quick->mixed[15 * 40 + 20].x > 0);
   CHECK_FALSE(frames.finished());
 
-  frames.show({from_above(), 40, 30, false, false, powers});
+  frames.show({from_above(), 40, 30, false, false, false, powers});
   wait_for([&] { return frames.finished(); });
   const auto frame = frames.latest();
   CHECK(frame->mixed.empty());
@@ -117,7 +117,7 @@ TEST_CASE("of several passes a viewer at rest sees what render gives of all") {
   parameters.light_maps = LightMapMode::off;
   const std::vector<glm::vec3> powers{glm::vec3(100.0f)};
   FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, false, false, powers});
+  frames.show({from_above(), 40, 30, false, false, false, powers});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 45'000; });
@@ -133,7 +133,7 @@ TEST_CASE(
   RenderParameters parameters = few_photons();
   parameters.light_map_rays = 16;
   FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, false, false, {glm::vec3(100.0f)}});
+  frames.show({from_above(), 40, 30, false, false, false, {glm::vec3(100.0f)}});
   std::vector<std::shared_ptr<MapGeneration>> delivered;
   std::atomic<int> count{0};
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
@@ -147,7 +147,7 @@ TEST_CASE(
   CHECK_FALSE(first->whole);
   CHECK(whole->whole);
   CHECK(whole->coarser == first);
-  CHECK(first->shown);
+  CHECK(first->lit);
   wait_for([&] { return frames.latest() && frames.latest()->lacking == 0; });
   const auto smooth = frames.latest();
   REQUIRE(smooth->mixed.size() == 40 * 30);
@@ -167,18 +167,18 @@ TEST_CASE("a lamp that is turned down is seen in the next quick frame") {
   RenderParameters parameters = few_photons();
   parameters.light_maps = LightMapMode::on;
   FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}});
+  frames.show({from_above(), 40, 30, true, false, false, {glm::vec3(100.0f)}});
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   std::shared_ptr<const Frame> bright, dark;
   for (int i = 0; i < 20; ++i) {  // until all nodes are there
     bright = frames.latest();
-    frames.show({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}});
+    frames.show({from_above(), 40, 30, true, false, false, {glm::vec3(100.0f)}});
     wait_for([&] { return frames.latest() != bright; });
   }
   bright = frames.latest();
-  frames.show({from_above(), 40, 30, true, false, {glm::vec3(50.0f)}});
+  frames.show({from_above(), 40, 30, true, false, false, {glm::vec3(50.0f)}});
   wait_for([&] { return frames.latest() != bright; });
   dark = frames.latest();
   for (std::size_t i = 0; i < bright->mixed.size(); ++i) {
@@ -199,7 +199,8 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
   }
   const Scene scene = builder.build();
   FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, false, false, {}, std::make_shared<LightPooling>(pooling)});
+  frames.show(
+      {from_above(), 40, 30, false, false, false, {}, std::make_shared<LightPooling>(pooling)});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });

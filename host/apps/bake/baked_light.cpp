@@ -79,6 +79,9 @@ glm::vec3 turned(const Estimates& values, const NodeBlend& blend, std::size_t la
   return cache::turned(blended(values, blend, layer, layers), by_normal, normal);
 }
 
+/// Metres: no surface is as large.
+constexpr double widest_texel = 1e6;
+
 }  // namespace
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
@@ -95,7 +98,13 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
            std::uint64_t{atlas_.width} * atlas_.height <= parameters.most_texels;
   };
   while (!fits()) {
-    if ((parameters.texel > 0 && parameters.exact) || texel_ > 1e9) {
+    if (texel_ > widest_texel) {
+      throw UsageError(
+          fmt::format("a picture of {} x {} and {} texels has no room for {} surfaces; "
+                      "give more by --most-texels",
+                      most_side, most_side, parameters.most_texels, maps.charts().size()));
+    }
+    if (parameters.texel > 0 && parameters.exact) {
       throw UsageError(fmt::format("texels {} m apart do not fit a picture of {} x {}; give more",
                                    texel_, most_side, most_side));
     }

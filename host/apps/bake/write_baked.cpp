@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
@@ -120,7 +121,7 @@ class Document {
     json_["asset"] = {{"version", "2.0"}, {"generator", "photile"}};
     json_["buffers"] = {{{"uri", buffer.filename().string()}, {"byteLength", buffer_.size()}}};
     write_file(buffer, buffer_);
-    write_file(file, json_.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    write_file(file, json_text(json_));
   }
 
  private:

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -18,6 +21,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::app {
@@ -61,10 +65,17 @@ std::string help_command(const CLI::App& photile) {
   return chosen.empty() ? "photile --help" : "photile " + chosen.front()->get_name() + " --help";
 }
 
+/// Whether standard output is a pipe whose reader has seen enough, as `head` has.
+bool nobody_reads_on() {
+  pollfd output{STDOUT_FILENO, 0, 0};
+  return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
 /// Standard output may be a file on a full disk: what was lost there is an error, too.
 void flush_standard_output() {
   std::cout.flush();
-  if (!std::cout) throw OutputError("standard output: cannot write (disk full?)");
+  if (!std::cout && !nobody_reads_on())
+    throw OutputError("standard output: cannot write (disk full?)");
 }
 
 /// Refuses options with an empty value. For CLI11 `--stats=` has none, and takes the next word,
@@ -132,6 +143,8 @@ int conclude(ExitCode code, const std::string& problem) {
 int run_command_line(int argument_count, const char* const* arguments) {
   ExitCode code = ExitCode::failure;
   std::string problem;
+  const TerminalText names_command_nothing(std::cout);
+  std::signal(SIGPIPE, SIG_IGN);  // whoever reads no more of what is told loses no picture
   try {
     join_processes({arguments, static_cast<std::size_t>(argument_count)});
     CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",

@@ -17,6 +17,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "report/picture_comparison.hpp"
@@ -106,8 +107,14 @@ Compared in_mood(const CompareOptions& options, const std::string& mood) {
   return compared;
 }
 
-/// Errors: InputError for pixels that are infinite or no numbers: no error could be told of them.
-void check_finite(const std::string& file, const Image& picture) {
+/// Errors: InputError for pictures without colours, and for pixels that are infinite or no numbers:
+/// no error could be told of them.
+void check_pixels(const std::string& file, const Image& picture) {
+  for (const char* channel : {"R", "G", "B"}) {
+    if (picture.find(channel)) continue;
+    throw InputError(fmt::format(
+        "{}: there is no channel {}; give a picture with channels R, G and B", file, channel));
+  }
   std::size_t lost = 0;
   for (const std::vector<float>& plane : picture.channels) {
     lost += static_cast<std::size_t>(std::count_if(
@@ -120,7 +127,7 @@ void check_finite(const std::string& file, const Image& picture) {
 
 Compared from_file(const std::string& file) {
   Compared compared{std::filesystem::path(file).filename().string(), nullptr, read_image(file)};
-  check_finite(file, compared.whole);
+  check_pixels(file, compared.whole);
   try {
     compared.layers = relit_picture(file, {});
   } catch (const InputError&) {  // no lights: compared as a whole
@@ -176,8 +183,7 @@ void check_moods(const CompareOptions& options) {
 
 void write_record(const CompareOptions& options, const nlohmann::ordered_json& record) {
   if (options.json.empty()) return;
-  write_file(options.json,
-             record.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_file(options.json, json_text(record, 2));
 }
 
 void run_compare(const CompareOptions& options) {

@@ -18,6 +18,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "measuring/measurement.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
@@ -31,6 +32,11 @@ namespace {
 
 using namespace daylight;
 
+/// 1 = there are no blinds.
+std::size_t states_of_blinds(const DaylightOptions& options) {
+  return options.blinds_are_scene() ? 2 : std::size_t{1} << options.blinds.size();
+}
+
 std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, const Scene& scene,
                                             std::size_t hours, Progress& progress) {
   std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
@@ -39,8 +45,7 @@ std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, cons
     clear_of_furniture(options.places.plane, scene, grid, progress);
     sensors += grid.sensors.size();
   }
-  const std::size_t states =
-      options.blinds_are_scene() ? 2 : std::size_t{1} << options.blinds.size();
+  const std::size_t states = states_of_blinds(options);
   if (sensors * hours * states > limits::max_profile_values) {
     throw UsageError(
         fmt::format("{} points of {} hours in {} states are more than {} values; give "
@@ -73,7 +78,7 @@ void write(const DaylightOptions& options, const report::DaylightResults& result
   for (const std::filesystem::path file : options.outputs) {
     write_file(file, file.extension() == ".csv"
                          ? report::daylight_csv(results)
-                         : report::daylight_json(results, options.asked).dump(1) + "\n");
+                         : json_text(report::daylight_json(results, options.asked)));
   }
   if (options.honeybee.empty()) return;
   const std::filesystem::path folder = options.honeybee;
@@ -165,6 +170,12 @@ void run_daylight(DaylightOptions& options) {
 
   Scene scene = scene_under_sky(render.scene, render.load);
   const auto grids = grids_of(options, scene, weather.hours.size(), progress);
+  if (!options.honeybee.empty()) {
+    const std::filesystem::path folder = options.honeybee;
+    for (const std::string& name : report::annual_names(grids, states_of_blinds(options))) {
+      note_output(folder / name);
+    }
+  }
   take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(

@@ -16,6 +16,7 @@
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "glare/measure_glare.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
@@ -149,10 +150,7 @@ void write_outputs(const GlareOptions& options, const Scene& scene, const LightM
     if (ends_in(file, ".csv")) {
       write_file(file, report::glare_csv(all));
     } else {
-      write_file(
-          file,
-          run_json(options, scene, mix, all).dump(1, ' ', false, Json::error_handler_t::replace) +
-              "\n");
+      write_file(file, json_text(run_json(options, scene, mix, all)));
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
 #include "glare/ugr_table.hpp"
 #include "loading/light_changes.hpp"
@@ -78,7 +79,7 @@ void run_ies(const IesOptions& options) {
   if (options.per_thousand_lumens) scale_to_thousand_lumens(lamp.flux(), table);
   for (const std::string& file : options.outputs) {
     write_file(file, ends_in(file, ".csv") ? report::ugr_table_csv(table)
-                                           : report::ugr_table_json(table).dump(1) + "\n");
+                                           : json_text(report::ugr_table_json(table)));
   }
   for (const auto& line : report::ugr_table_lines(table)) std::cout << line << '\n';
 }

@@ -13,6 +13,7 @@
 #include "command/scene_report.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
@@ -114,7 +115,7 @@ void run_devices(const DevicesOptions& options) {
     }
   }
   if (options.json) {
-    std::cout << list.dump(2, ' ', false, json::error_handler_t::replace) << '\n';
+    std::cout << json_text(list, 2);
   } else {
     std::cout << "* = what photile render uses; choose with --device or PHOTILE_DEVICE\n";
   }
@@ -180,10 +181,7 @@ void run_info(const InfoOptions& options) {
   }
   const LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
   if (options.json) {
-    // Names come from files: bytes that are no UTF-8 are replaced, not fatal.
-    std::cout
-        << scene_json(scene, mix).dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-        << '\n';
+    std::cout << json_text(scene_json(scene, mix), 2);
   } else {
     print_text(scene, mix);
   }

@@ -14,6 +14,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/ray_scene.hpp"
 #include "report/honeybee_files.hpp"
@@ -243,10 +244,7 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
   }
   for (const auto& file : csv_) write_file(file, report::measurement_csv(measurement, unit_));
   for (const auto& file : json_) {
-    write_file(
-        file,
-        run_json(measurement, run, unit_).dump(1, ' ', false, Json::error_handler_t::replace) +
-            "\n");
+    write_file(file, json_text(run_json(measurement, run, unit_)));
   }
   std::vector<const measuring::GridValues*> planes;
   for (const auto& values : measurement) {

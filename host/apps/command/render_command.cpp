@@ -20,6 +20,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "device/context.hpp"
 #include "image/display.hpp"
 #include "image/glare.hpp"
@@ -295,9 +296,7 @@ void run_render(const CLI::App& command, RenderOptions& options) {
   TimeTaken total = since_loaded.taken();
   close(record, total += loading);
   if (!options.statistics.empty() && leads()) {
-    write_file(
-        options.statistics,
-        run_json(record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write_file(options.statistics, json_text(run_json(record), 2));
   }
   for (const auto& line : summary_table(record)) progress.note(line);
 }

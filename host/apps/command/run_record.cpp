@@ -21,15 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Names in the order of the run, unlike the sorted keys of a plain json object.
-using ordered = nlohmann::ordered_json;
-
-std::string times_text(const RunStatistics& stages) {
-  ordered times = ordered::object();
-  for (const StageStatistics& stage : stages) times[stage.stage] = stage.seconds;
-  return times.dump();
-}
-
 json stage_json(const StageStatistics& stage) {
   json entry{{"stage", stage.stage},
              {"seconds", stage.seconds},
@@ -126,7 +117,6 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
         fmt::format("{}{}", record.goal.*goal.value, goal.type == "TIME" ? " seconds" : "");
   }
   if (!record.denoiser.empty()) attributes["photile.denoiser"] = record.denoiser;
-  attributes["photile.times"] = times_text(record.stages);
   for (const Setting& setting : settings()) {
     if (!record.has_photons() && !is_of_any_integrator(setting)) continue;
     attributes["photile." + std::string(setting.name)] = text_with_unit(setting, record.used);

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "command/processes.hpp"
-#include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
 #include "report/tables.hpp"
 
 namespace photile::app {

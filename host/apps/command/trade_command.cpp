@@ -18,6 +18,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -192,7 +193,7 @@ void run_trade(TradeOptions& options) {
     write_exr(traced, reference.picture);
   }
   write_file(csv, csv_of(record["renderings"]));
-  write_file(json, record.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_file(json, json_text(record));
   warn_of_noise(reference, points, progress);
   print_table(points);
 }

@@ -19,6 +19,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/progress.hpp"
@@ -171,7 +172,7 @@ void run_validate(ValidateOptions& options) {
   for (const auto& line : validation_table(rows)) std::cout << line << '\n';
   if (!options.json.empty()) {
     write_file(options.json,
-               validation_json(rows, parameters, devices, stopwatch.seconds()).dump(2) + "\n");
+               json_text(validation_json(rows, parameters, devices, stopwatch.seconds()), 2));
   }
   const std::size_t failed = rows_not_within(rows);
   if (failed > 0) {

@@ -91,6 +91,7 @@ void run_view(ViewOptions& options) {
   parameters.interrupted = [&progress] { return progress.cancelled(); };
   view::run_viewer(
       scene, camera, mix, [&render] { return open_devices(render.device); }, std::move(parameters));
+  throw_if_stop_requested();
 }
 
 }  // namespace

@@ -29,10 +29,12 @@ std::pair<int, int> FrameSize::fit(int width, int height) const {
 
 namespace {
 
-/// Seconds that the first picture of a scene may take to have light everywhere.
-constexpr double patience = 10;
+/// Seconds of valuing nodes before the first picture of a scene is shown.
+constexpr double first_fill = 0.35;
 /// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
+/// Of each side of a picture that shows a lamp which was just set, before the whole one does.
+constexpr int relit_share = 2;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
 constexpr int first_samples = 4, more_samples = 4;
@@ -112,67 +114,82 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   std::unique_lock lock(mutex_);
   const auto has_work = [&] {
     const bool still = maps_ && maps_->whole && !request_.moving && done_samples_ < most_samples_;
-    return maps_ && request_.width > 0 && (done_version_ != version_ || lacking_ || still);
+    return maps_ && request_.width > 0 && (done_version_ != version_ || still);
   };
   if (!wake_.wait(lock, stop, has_work) || stop.stop_requested()) return false;
   const bool shown = done_version_ == version_;
   const bool refines = !request_.moving && shown && done_samples_ > 0;
-  const bool whole = shown && !lacking_ && !request_.moving;
+  const bool whole = shown && !request_.moving;
   const bool draws = !request_.powers.empty() && maps_->renderer->draws();
   const int first = draws && !request_.moving ? first_samples : 1;
-  task = {request_,
-          maps_,
-          std::min(refines ? more_samples * done_samples_ : first, most_samples_),
-          version_,
-          draws && !whole,
-          shown};
+  task = {request_, maps_, std::min(refines ? more_samples * done_samples_ : first, most_samples_),
+          version_, draws && !whole};
   return true;
 }
 
-/// What a moving viewer's frame leaves of its time, and a little in any case: nodes must come at
-/// last. At rest a lamp that was set is shown before anything is filled; after that no frame has to
-/// be in time, and drawing what hardly changed would take most of it.
-double FrameWorker::time_to_fill(const Task& task) const {
-  if (task.request.moving) return std::max(frame_seconds_ - draw_seconds_, 0.25 * frame_seconds_);
-  return task.shown ? filled_over_drawn * draw_seconds_ + frame_seconds_ : 0;
+/// Seconds of valuing nodes until the next frame: what a moving viewer's frame leaves of its time,
+/// and a little in any case: nodes must come at last. At rest no frame has to be in time, and
+/// drawing what hardly changed would take most of it.
+double FrameWorker::time_to_fill(const Task& task, double draw_seconds) const {
+  if (task.request.moving) return std::max(frame_seconds_ - draw_seconds, 0.25 * frame_seconds_);
+  return filled_over_drawn * draw_seconds + frame_seconds_;
 }
 
-/// The whole window, however many nodes are missing: new surface is seen coarsely at once, and
-/// finer from frame to frame, by what there is time for. The first picture of a scene shows light
-/// on all surface, or on as much of it as there is patience for.
-std::shared_ptr<const Frame> FrameWorker::draw(const std::stop_token& stop, const Task& task) {
-  const Stopwatch stopwatch;
+/// Draws the whole window, however many nodes are missing: new surface is seen coarsely at once,
+/// and finer from frame to frame, by what there is time for. Frames are handed over as they get
+/// better, until no node is missing or something else is wanted. The first picture of a scene waits
+/// for the nodes of what takes most of it; at rest others wait for none.
+void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const FrameRequest& wanted = task.request;
-  Frame frame;
-  frame.layers.width = wanted.width;
-  frame.layers.height = wanted.height;
-  frame.mixed.resize(static_cast<std::size_t>(wanted.width) *
-                     static_cast<std::size_t>(wanted.height));
   MapGeneration& maps = *task.maps;
-  const bool is_first = drawn_scene_ != maps.scene;
-  const FrameFilling filling(is_first ? patience : time_to_fill(task), [&] {
-    return stop.stop_requested() || (!is_first && !wanted.moving && outdated(task));
-  });
-  const Stopwatch of_drawing;
-  const DrawnFrame drawn = maps.renderer->draw(
-      wanted.camera, {wanted.width, wanted.height, 1}, wanted.powers, filling, frame.mixed,
-      Progress::none(), maps.coarser ? maps.coarser->renderer.get() : nullptr);
-  draw_seconds_ = of_drawing.seconds() - drawn.fill_seconds;
-  drawn_scene_ = maps.scene;
-  frame.lacking = drawn.lacking_share;
-  lacks_nodes_ = drawn.lacking > 0;
-  frame.photons = maps.photons;
-  frame.scene = maps.scene;
-  frame.camera = wanted.camera;
-  frame.emitted_photons = maps.emitted_photons;
-  frame.noise = maps.noise;
-  frame.seconds = stopwatch.seconds();
-  return std::make_shared<Frame>(std::move(frame));
+  const bool is_first = std::exchange(drawn_scene_, maps.scene) != maps.scene;
+  // Whoever drags a slider asks all the time: what is shown at once is finished in any case.
+  bool at_once = is_first || wanted.moving || wanted.relit;
+  Stopwatch stopwatch;
+  Film film{wanted.width, wanted.height, 1};
+  std::vector<glm::vec3> picture;
+  const auto hand_over = [&](const DrawnFrame& drawn) {
+    Frame frame;
+    frame.layers.width = film.width;
+    frame.layers.height = film.height;
+    frame.mixed = picture;
+    frame.lacking = drawn.lacking_share;
+    frame.photons = maps.photons;
+    frame.scene = maps.scene;
+    frame.camera = wanted.camera;
+    frame.emitted_photons = maps.emitted_photons;
+    frame.noise = maps.noise;
+    frame.seconds = stopwatch.seconds();
+    stopwatch = Stopwatch();
+    if (drawn.empty == 0) maps.lit = true;
+    keep(task, std::make_shared<Frame>(std::move(frame)), 0);
+    at_once = false;
+    draw_seconds_ = drawn.draw_seconds;
+    return time_to_fill(task, draw_seconds_);
+  };
+  const auto ended = [&] { return stop.stop_requested() || (!at_once && outdated(task)); };
+  const auto draw_with = [&](const FrameFilling& filling) {
+    picture.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height),
+                   {});
+    const DrawnFrame drawn =
+        maps.renderer->draw(wanted.camera, film, wanted.powers, filling, picture, Progress::none(),
+                            maps.coarser ? maps.coarser->renderer.get() : nullptr);
+    if (ended()) throw Interrupted();
+    hand_over(drawn);
+  };
+  if (wanted.relit && !wanted.moving && !is_first) {
+    film.width = std::max(1, wanted.width / relit_share);
+    film.height = std::max(1, wanted.height / relit_share);
+    draw_with({0, ended});
+    film = {wanted.width, wanted.height, 1};
+  }
+  const double seconds = is_first        ? first_fill
+                         : wanted.moving ? time_to_fill(task, draw_seconds_)
+                                         : 0;
+  draw_with({seconds, ended, hand_over});
 }
 
 std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, const Task& task) {
-  lacks_nodes_ = false;
-  if (task.quick) return draw(stop, task);
   Film film;
   film.width = task.request.width;
   film.height = task.request.height;
@@ -210,17 +227,24 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
             std::move(result.statistics)});
 }
 
+/// For whoever asks for the latest.
+void FrameWorker::keep(const Task& task, std::shared_ptr<const Frame> frame, int samples) {
+  const std::lock_guard lock(mutex_);
+  latest_ = std::move(frame);
+  done_version_ = task.version;
+  done_samples_ = samples;
+}
+
 void FrameWorker::work(std::stop_token stop) {
   Task task;
   while (next_task(stop, task)) {
     try {
-      std::shared_ptr<const Frame> frame = render(stop, task);
-      task.maps->shown = true;
-      const std::lock_guard lock(mutex_);
-      latest_ = std::move(frame);
-      done_version_ = task.version;
-      done_samples_ = task.request.moving || task.quick ? 0 : task.samples;
-      lacking_ = lacks_nodes_;
+      if (task.quick) {
+        draw(stop, task);
+      } else {
+        keep(task, render(stop, task), task.request.moving ? 0 : task.samples);
+        task.maps->lit = true;
+      }
     } catch (const Interrupted&) {
       // Something else is wanted by now.
     } catch (...) {

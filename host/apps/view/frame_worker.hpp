@@ -41,6 +41,7 @@ struct FrameRequest {
   /// whole and get more and more samples.
   bool moving = false;
   bool reflections = false;  ///< asks for Frame::reflections
+  bool relit = false;        ///< only lamps changed: a smaller quick frame comes first
   /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
   /// moves and until no node is lacking. Empty: frames with layers are wanted.
   std::vector<glm::vec3> powers = {};
@@ -82,15 +83,15 @@ class FrameWorker {
     int samples = 1;
     std::uint64_t version = 0;
     bool quick = false;
-    bool shown = false;  ///< a frame of just this is there, and may become better
   };
 
   void work(std::stop_token stop);
   bool next_task(std::stop_token stop, Task& task);
   std::shared_ptr<const Frame> render(const std::stop_token& stop, const Task& task);
-  std::shared_ptr<const Frame> draw(const std::stop_token& stop, const Task& task);
+  void draw(const std::stop_token& stop, const Task& task);
+  void keep(const Task& task, std::shared_ptr<const Frame> frame, int samples);
   bool outdated(const Task& task) const;
-  double time_to_fill(const Task& task) const;
+  double time_to_fill(const Task& task, double draw_seconds) const;
 
   const int most_samples_;
   mutable std::mutex mutex_;
@@ -100,14 +101,12 @@ class FrameWorker {
   std::uint64_t version_ = 0;       ///< counts requests and maps
   std::uint64_t done_version_ = 0;  ///< of the newest frame
   int done_samples_ = 0;            ///< of the newest frame, 0 where it was a quick one
-  bool lacking_ = false;            ///< the newest frame shows surface more coarsely than it should
   std::shared_ptr<const Frame> latest_;
   std::exception_ptr error_;
   // The worker's alone:
   const double frame_seconds_;  ///< aimed at while moving
   FrameSize size_;
   std::optional<std::shared_ptr<const Scene>> drawn_scene_;  ///< that of the frame before
-  bool lacks_nodes_ = false;                                 ///< the frame in the making
   double draw_seconds_ = 0;                    ///< of the newest quick frame, its nodes left out
   const MapGeneration* timed_maps_ = nullptr;  ///< those of the frame before
   std::jthread thread_;                        // last: it uses all of the above

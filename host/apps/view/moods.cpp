@@ -9,6 +9,7 @@
 
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -192,7 +193,7 @@ void Moods::write(const std::map<std::string, Mood>& moods) const {
       if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;
     }
   }
-  write_file(file_, document.dump(2) + "\n");
+  write_file(file_, json_text(document, 2));
 }
 
 }  // namespace photile::view

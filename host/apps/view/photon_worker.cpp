@@ -9,6 +9,9 @@
 
 namespace photile::view {
 
+/// Seconds that photons may wait for the light of a first picture.
+constexpr double patience = 10;
+
 /// Keeps what the stages report for whoever asks, and tells them when to stop.
 class PhotonWorker::Listener : public Progress {
  public:
@@ -69,8 +72,9 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
     if (!prepared) {
       first = build(first_picture_parameters(parameters_), false, nullptr);
       deliver_(first);
-      // All processors are to work for the first picture.
-      while (!first->shown) {
+      // All processors are to work for the first picture; a viewer who walks on sees new surface
+      // all the time.
+      for (const Stopwatch waited; !first->lit && waited.seconds() < patience;) {
         listener_->throw_if_cancelled();
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
       }

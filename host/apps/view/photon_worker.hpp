@@ -28,8 +28,8 @@ struct MapGeneration {
   /// none.
   std::shared_ptr<MapGeneration> coarser;
   std::uint64_t emitted_photons = 0;
-  bool whole = false;              ///< of all photons that were asked for
-  std::atomic<bool> shown{false};  ///< set once a frame was made of it
+  bool whole = false;            ///< of all photons that were asked for
+  std::atomic<bool> lit{false};  ///< set once a frame had light of its own on all surface
   EstimateNoise noise;
   std::shared_ptr<const InspectablePhotons> photons;
 };
@@ -41,8 +41,8 @@ struct WorkProgress {
 };
 
 /// Traces photons and builds maps on a thread of its own: first those of a first picture
-/// (render/quality.hpp), so that there is something to see at once, then, when that was
-/// shown, those that `render` builds from the same parameters.
+/// (render/quality.hpp), so that there is something to see at once, then, when that has light
+/// everywhere, those that `render` builds from the same parameters.
 class PhotonWorker {
  public:
   using OpenDevices = std::function<std::vector<Device>()>;

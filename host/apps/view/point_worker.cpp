@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "common/foreign_text.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/sensors.hpp"
@@ -119,8 +120,8 @@ std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& 
                        const LightPooling& layers, double factor) {
   std::string text = "point,x,y,z,dx,dy,dz,lux,standard_error";
   for (const std::string& layer : layers.layers) {
-    text += fmt::format(",{},{}", report::csv_field("lux " + layer),
-                        report::csv_field("standard_error " + layer));
+    text += fmt::format(",{},{}", csv_field("lux " + layer),
+                        csv_field("standard_error " + layer));
   }
   text += "\n";
   for (const ClickedPoint& point : points) {

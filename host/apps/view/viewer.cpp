@@ -96,7 +96,9 @@ class Viewer {
         window_.set_picture(shown.width, shown.height, shown.rgb);
       }
       // A quick frame holds no lamps: it is drawn anew by the nodes.
-      relit_ = events.lights_changed && frame_ && !frame_->mixed.empty();
+      if (events.lights_changed && frame_ && !frame_->mixed.empty()) {
+        frames_.show(request(was_moving_, true));
+      }
       exposed_ =
           exposed_ || events.display_changed || (frame_ && events.lights_changed && !sky_moved);
       if (events.maps_changed) trace();
@@ -214,7 +216,7 @@ class Viewer {
     const int width = window_.width(), height = window_.height();
     const bool reflections = display_.mode == DisplayMode::glare;
     const bool sky_moved = std::exchange(sky_moved_, false);
-    if (moved || relit_ || sky_moved || moving != was_moving_ || reflections != had_reflections_ ||
+    if (moved || sky_moved || moving != was_moving_ || reflections != had_reflections_ ||
         width != asked_width_ || height != asked_height_) {
       // A window that is made small to nothing keeps its last picture.
       if (width > 0 && height > 0) frames_.show(request(moving));
@@ -231,7 +233,7 @@ class Viewer {
     }
   }
 
-  FrameRequest request(bool moving) const {
+  FrameRequest request(bool moving, bool relit = false) const {
     // Layers are needed for all but the picture itself.
     const bool quick = display_.mode == DisplayMode::picture && !display_.photon_map;
     return {viewpoint_.camera(),
@@ -239,6 +241,7 @@ class Viewer {
             window_.height(),
             moving,
             display_.mode == DisplayMode::glare,
+            relit,
             quick ? scales_of(lights_.mix()) : std::vector<glm::vec3>(),
             pooling_};
   }
@@ -367,7 +370,7 @@ class Viewer {
   SkyMoment shown_moment_;
   std::shared_ptr<const LightPooling> pooling_;
   bool sky_moved_ = false;
-  bool relit_ = false, exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
+  bool exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
   bool seen_ = false;  ///< any frame
   bool panels_shown_ = true, screenshot_wanted_ = false;
   bool keep_wanted_ = false;  ///< a frame that has layers, which a quick one has not

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
@@ -145,16 +146,16 @@ bool SceneFolder::holds(const std::string& name) const {
   }
 }
 
-std::vector<unsigned char> SceneFolder::read(const std::string& name) {
+std::vector<unsigned char> SceneFolder::read(const std::string& name, std::uint64_t most) {
   try {
-    std::vector<unsigned char> bytes =
-        read_regular_file(resolve(name), limits::max_external_bytes - external_bytes_);
+    std::vector<unsigned char> bytes = read_regular_file(
+        resolve(name), std::min(most, limits::max_external_bytes - external_bytes_));
     external_bytes_ += bytes.size();
     return bytes;
   } catch (const ResourceError& error) {
     std::string shown = name;
     std::replace(shown.begin(), shown.end(), '\0', '?');  // an exception's text ends there
-    throw ResourceError(fmt::format("'{}': {}", shown, error.what()));
+    throw ResourceError(fmt::format("'{}': {}", shortened(shown, longest_quote), error.what()));
   }
 }
 

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::files {
 
@@ -62,8 +63,10 @@ class SceneFolder {
   std::vector<unsigned char> read_scene_file() const;
 
   /// The bytes of a file that the scene names, relative to its folder, '/' between folders.
+  ///   most   bytes
   /// Errors: ResourceError when it is missing, outside, no regular file or too large.
-  std::vector<unsigned char> read(const std::string& name);
+  std::vector<unsigned char> read(const std::string& name,
+                                  std::uint64_t most = limits::max_file_bytes);
 
   /// Whether there is such a file that may be read.
   bool holds(const std::string& name) const;

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 
@@ -22,7 +23,7 @@ namespace photile::gltf {
 namespace {
 
 /// The JSON text of a file: all of a .gltf, the first chunk of a .glb.
-std::string_view json_text(std::span<const unsigned char> bytes, bool binary) {
+std::string_view json_chunk(std::span<const unsigned char> bytes, bool binary) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   constexpr std::size_t binary_header = 20;  // file header and the header of the first chunk
   if (!binary) return text;
@@ -63,7 +64,7 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
 
 std::string first_line(std::string text) {
   text.erase(std::find(text.begin(), text.end(), '\n'), text.end());
-  return text.empty() ? "not a glTF file" : text;
+  return text.empty() ? "not a glTF file" : shortened(text, 2 * longest_quote);
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
   const auto size = static_cast<unsigned int>(bytes.size());
   // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
   bytes.resize(bytes.size() + 8, 0);
-  const std::string_view json = json_text(std::span(bytes).first(size), binary);
+  const std::string_view json = json_chunk(std::span(bytes).first(size), binary);
   check_json(json, context);
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks(context.folder));

@@ -45,7 +45,7 @@ struct LampKind {
 
 /// What entries have in common, found once: a file of kilobytes may have thousands of them.
 struct Shared {
-  std::map<std::filesystem::path, LampKind> kinds = {};
+  std::map<std::string, LampKind> kinds = {};
   std::optional<std::optional<glm::dvec3>> ceiling = {};  ///< its middle, once it was looked for
 };
 
@@ -85,20 +85,20 @@ double uplight_of(const IntensityDistribution& distribution) {
   return all > 0 ? up / all : 0.0;
 }
 
-LampKind kind_of(const std::filesystem::path& file, const JsonObject& object, Shared& shared,
-                 Scene& scene, files::Warnings& warnings) {
+LampKind kind_of(const std::string& file, const JsonObject& object, files::SceneFolder& folder,
+                 Shared& shared, Scene& scene, files::Warnings& warnings) {
   if (const auto found = shared.kinds.find(file); found != shared.kinds.end()) {
     return found->second;
   }
   try {
-    const auto bytes = files::read_regular_file(file, limits::max_photometry_bytes);
-    auto lamp = photometry::read_photometry(file.string(), bytes, warnings);
+    const auto bytes = folder.read(file, limits::max_photometry_bytes);
+    auto lamp = photometry::read_photometry(file, bytes, warnings);
     const LampKind kind{static_cast<std::uint32_t>(scene.distributions.size()),
                         uplight_of(lamp) > least_uplight};
     scene.distributions.push_back(std::move(lamp));
     return shared.kinds[file] = kind;
   } catch (const files::ResourceError& error) {
-    object.refuse(fmt::format("'file': {}: {}", file.string(), error.what()));
+    object.refuse(fmt::format("'file': {}", error.what()));
   }
 }
 
@@ -142,14 +142,13 @@ std::optional<glm::dvec2> size_of(const LuminousOpening& opening) {
   return glm::dvec2(squared * opening.along_zero, squared * opening.along_quarter);
 }
 
-LuminaireArray array_of(const json& entry, const JsonObject& object,
-                        const std::filesystem::path& folder, Shared& shared, Scene& scene,
-                        files::Warnings& warnings) {
-  const std::filesystem::path file = folder / object.text("file", "");
-  LuminaireArray lamps{{}, kind_of(file, object, shared, scene, warnings)};
+LuminaireArray array_of(const json& entry, const JsonObject& object, files::SceneFolder& folder,
+                        Shared& shared, Scene& scene, files::Warnings& warnings) {
+  const std::string file = object.text("file", "");
+  LuminaireArray lamps{{}, kind_of(file, object, folder, shared, scene, warnings)};
   const IntensityDistribution& distribution = scene.distributions[lamps.kind.distribution];
   PlacedLuminaires& placed = lamps.placed;
-  placed.name = object.text("name", file.stem().string());
+  placed.name = object.text("name", std::filesystem::path(file).stem().string());
   placed.position = position_of(entry, object, scene, shared);
   glm::dvec3 aim(0.0, -1.0, 0.0);
   if (object.has("aim")) aim = direction_in_scene(scene, object.vector("aim"));
@@ -264,18 +263,19 @@ std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry
 }
 
 std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
-                                             const std::filesystem::path& file,
+                                             const std::filesystem::path& file, bool allow_outside,
                                              double lumen_per_watt, Scene& scene,
                                              files::Warnings& warnings) {
   std::vector<LuminaireArray> arrays;
   Shared shared;
+  files::SceneFolder folder(file, allow_outside);
   std::size_t lamps = scene.lights.size();
   for (std::size_t i = 0; i < list.entries.size(); ++i) {
     const json entry = list.entries[i];
     const JsonObject object(
         entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
         {"name", "file", "position", "aim", "rotation", "lumens", "count", "spacing", "size"});
-    arrays.push_back(array_of(entry, object, file.parent_path(), shared, scene, warnings));
+    arrays.push_back(array_of(entry, object, folder, shared, scene, warnings));
     const PlacedLuminaires& placed = arrays.back().placed;
     lamps += static_cast<std::size_t>(placed.columns) * static_cast<std::size_t>(placed.rows);
     if (lamps > limits::max_lights) {
@@ -306,7 +306,8 @@ std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Sc
   if (list.entries.empty() && !edited) {
     throw InputError(fmt::format("{}: holds no luminaire", file.string()));
   }
-  auto placed = add_luminaires(list, file, options.lumen_per_watt, scene, warnings);
+  auto placed =
+      add_luminaires(list, file, options.allow_outside, options.lumen_per_watt, scene, warnings);
   const bool lit = options.sky || options.sun || !options.environment.file.empty();
   if (edited && scene.lights.empty() && !lit) add_work_light(options.lumen_per_watt, scene);
   return placed;

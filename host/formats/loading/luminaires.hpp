@@ -70,10 +70,11 @@ std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry
 /// `lumens` (those of the file), `count` and `spacing` (along the lamp's x axis and across), `size`
 /// of the opening in metres (x, across; the file's), `name`, which is that of the layer that all of
 /// an entry share. Lamps without a camera count on default_camera. Returns where each entry's are.
-///   file   of the list, for messages and for the folder of photometric files
+///   file            of the list, for messages and for the folder of photometric files
+///   allow_outside   photometric files outside this folder may be read, too
 /// Errors: InputError naming the file, the entry and the member.
 std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
-                                             const std::filesystem::path& file,
+                                             const std::filesystem::path& file, bool allow_outside,
                                              double lumen_per_watt, Scene& scene,
                                              files::Warnings& warnings);
 

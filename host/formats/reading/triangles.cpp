@@ -1,8 +1,10 @@
 #include "reading/triangles.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -57,14 +59,97 @@ double signed_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+/// The concave corners of a polygon, for the question whether one of them lies in a triangle: a k-d
+/// tree over all points, each node with the number of concave corners below it.
+class ConcaveCorners {
+ public:
+  explicit ConcaveCorners(const std::vector<glm::dvec2>& points)
+      : points_(points),
+        is_concave_(points.size(), false),
+        order_(points.size()),
+        place_(points.size()),
+        nodes_(2 * std::bit_ceil(points.size())) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    build({1, 0, points.size()});
+    for (std::uint32_t i = 0; i < order_.size(); ++i) place_[order_[i]] = i;
+  }
+
+  void set(std::uint32_t point, bool concave) {
+    if (is_concave_[point] == concave) return;
+    is_concave_[point] = concave;
+    for (Part part{1, 0, points_.size()};;) {
+      nodes_[part.node].concave += concave ? 1u : ~0u;
+      if (part.size() == 1) return;
+      part = place_[point] < part.middle() ? part.lower() : part.upper();
+    }
+  }
+
+  /// Whether one lies in the triangle or on it; one that touches it at a corner does not count.
+  bool any_in(const std::array<glm::dvec2, 3>& triangle) const {
+    const glm::dvec2 low = glm::min(glm::min(triangle[0], triangle[1]), triangle[2]);
+    const glm::dvec2 high = glm::max(glm::max(triangle[0], triangle[1]), triangle[2]);
+    return any_in({1, 0, points_.size()}, triangle, low, high);
+  }
+
+ private:
+  struct Part {
+    std::size_t node, first, last;
+    std::size_t size() const { return last - first; }
+    std::size_t middle() const { return first + size() / 2; }
+    Part lower() const { return {2 * node, first, middle()}; }
+    Part upper() const { return {2 * node + 1, middle(), last}; }
+  };
+  struct Node {
+    glm::dvec2 low, high;
+    std::uint32_t concave = 0;
+  };
+
+  void build(const Part& part) {
+    Node& node = nodes_[part.node];
+    node.low = node.high = points_[order_[part.first]];
+    for (std::size_t i = part.first; i < part.last; ++i) {
+      node.low = glm::min(node.low, points_[order_[i]]);
+      node.high = glm::max(node.high, points_[order_[i]]);
+    }
+    if (part.size() == 1) return;
+    const glm::dvec2 size = node.high - node.low;
+    const int axis = size.x < size.y ? 1 : 0;
+    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(
+        at(part.first), at(part.middle()), at(part.last),
+        [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
+    build(part.lower());
+    build(part.upper());
+  }
+
+  bool any_in(const Part& part, const std::array<glm::dvec2, 3>& triangle, const glm::dvec2& low,
+              const glm::dvec2& high) const {
+    const Node& node = nodes_[part.node];
+    if (node.concave == 0 || glm::any(glm::greaterThan(node.low, high)) ||
+        glm::any(glm::lessThan(node.high, low))) {
+      return false;
+    }
+    const auto& [a, b, c] = triangle;
+    if (node.low == node.high) {
+      const glm::dvec2 p = node.low;
+      return p != a && p != b && p != c && signed_area(a, b, p) >= 0.0 &&
+             signed_area(b, c, p) >= 0.0 && signed_area(c, a, p) >= 0.0;
+    }
+    return any_in(part.lower(), triangle, low, high) || any_in(part.upper(), triangle, low, high);
+  }
+
+  const std::vector<glm::dvec2>& points_;
+  std::vector<bool> is_concave_;
+  std::vector<std::uint32_t> order_;  ///< points as the tree's leaves have them
+  std::vector<std::uint32_t> place_;  ///< of a point in order_
+  std::vector<Node> nodes_;           ///< the root is 1, the children of n are 2 n and 2 n + 1
+};
+
 /// The part of a polygon that no ear has been cut from yet, as a ring of point numbers.
 class Ring {
  public:
   explicit Ring(const std::vector<glm::dvec2>& points)
-      : points_(points),
-        next_(points.size()),
-        previous_(points.size()),
-        place_(points.size(), absent) {
+      : points_(points), next_(points.size()), previous_(points.size()), concave_(points) {
     const auto count = static_cast<std::uint32_t>(points.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       next_[i] = (i + 1) % count;
@@ -80,24 +165,16 @@ class Ring {
     return signed_area(points_[previous_[i]], points_[i], points_[next_[i]]);
   }
 
-  /// Whether the triangle at corner i lies inside the polygon.
+  /// Whether the triangle at corner i lies inside the polygon: only a concave corner can poke into
+  /// it.
   bool is_ear(std::uint32_t i) const {
-    if (corner_area(i) <= 0.0) return false;
-    const glm::dvec2 a = points_[previous_[i]], b = points_[i], c = points_[next_[i]];
-    // Only a concave corner can poke into an ear. One that touches it at a corner does not.
-    for (const std::uint32_t j : concave_) {
-      if (points_[j] == a || points_[j] == b || points_[j] == c) continue;
-      if (signed_area(a, b, points_[j]) >= 0.0 && signed_area(b, c, points_[j]) >= 0.0 &&
-          signed_area(c, a, points_[j]) >= 0.0) {
-        return false;
-      }
-    }
-    return true;
+    return corner_area(i) > 0.0 &&
+           !concave_.any_in({points_[previous_[i]], points_[i], points_[next_[i]]});
   }
 
   void remove(std::uint32_t i) {
     const std::uint32_t before = previous_[i], after = next_[i];
-    set_concave(i, false);
+    concave_.set(i, false);
     next_[before] = after;
     previous_[after] = before;
     update(before);
@@ -105,27 +182,11 @@ class Ring {
   }
 
  private:
-  static constexpr std::uint32_t absent = 0xFFFF'FFFFu;
-
-  void update(std::uint32_t i) { set_concave(i, corner_area(i) <= 0.0); }
-
-  void set_concave(std::uint32_t i, bool concave) {
-    if (concave == (place_[i] != absent)) return;
-    if (concave) {
-      place_[i] = static_cast<std::uint32_t>(concave_.size());
-      concave_.push_back(i);
-    } else {
-      place_[concave_.back()] = place_[i];
-      concave_[place_[i]] = concave_.back();
-      concave_.pop_back();
-      place_[i] = absent;
-    }
-  }
+  void update(std::uint32_t i) { concave_.set(i, corner_area(i) <= 0.0); }
 
   const std::vector<glm::dvec2>& points_;
   std::vector<std::uint32_t> next_, previous_;
-  std::vector<std::uint32_t> concave_;  ///< points with a concave corner, in no order
-  std::vector<std::uint32_t> place_;    ///< of a point in concave_, or absent
+  ConcaveCorners concave_;
 };
 
 }  // namespace
@@ -141,23 +202,49 @@ Triangulation triangulate_polygon(std::span<const glm::dvec3> corners) {
     if (reversed) std::swap(triangle[0], triangle[2]);
     result.triangles.push_back(triangle);
   };
+  // Cutting an ear of a simple polygon changes whether a corner is an ear at its two neighbours
+  // alone (Meisters 1975), so a corner that was none is not asked again before that. In the ring's
+  // order, from `current` on.
+  std::set<std::uint32_t> unknown;
+  const auto ask_all = [&](std::uint32_t from) {
+    std::uint32_t i = from;
+    do unknown.insert(i);
+    while ((i = ring.next(i)) != from);
+  };
   std::uint32_t current = 0;
-  std::size_t tried = 0;
-  for (std::size_t left = points.size(); left > 3;) {
-    // Corners on a straight line are no ears; they become ends of other ears. When a whole round
-    // finds none, the polygon crosses itself or is flat, and any corner is as good as another.
-    const bool stuck = tried == left;
-    if (!stuck && !ring.is_ear(current)) {
-      current = ring.next(current);
-      ++tried;
+  std::size_t left = points.size(), asked_all_at = left;
+  const auto cut = [&] {
+    emit(current);
+    const std::uint32_t before = ring.previous(current);
+    unknown.erase(current);
+    ring.remove(current);
+    current = ring.next(before);
+    unknown.insert({before, current});
+    --left;
+  };
+  ask_all(current);
+  while (left > 3) {
+    if (!unknown.empty()) {
+      const auto found = unknown.lower_bound(current);
+      current = found == unknown.end() ? *unknown.begin() : *found;
+      if (ring.is_ear(current)) {
+        cut();
+      } else {
+        unknown.erase(current);
+        current = ring.next(current);
+      }
       continue;
     }
-    if (stuck && ring.corner_area(current) != 0.0) result.simple = false;
-    emit(current);
-    ring.remove(current);
-    current = ring.next(current);
-    tried = 0;
-    --left;
+    // Corners on a straight line are no ears; they become ends of other ears. Where none is left,
+    // the polygon crosses itself or is flat: all are asked again now and then, and any corner is as
+    // good as another between.
+    if (2 * left <= asked_all_at) {
+      asked_all_at = left;
+      ask_all(current);
+      continue;
+    }
+    if (ring.corner_area(current) != 0.0) result.simple = false;
+    cut();
   }
   if (points.size() > 3 && ring.corner_area(current) < 0.0) result.simple = false;
   emit(current);

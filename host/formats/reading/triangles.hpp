@@ -24,8 +24,7 @@ struct Triangulation {
 
 /// Triangulates a polygon of at least 3 corners that may be concave and slightly bent. Works in
 /// the plane of the polygon's mean normal (Newell's), in double precision. The triangles and their
-/// order do not depend on the polygon's winding nor on the corner it starts from. Quadratic in the
-/// number of concave corners.
+/// order do not depend on the polygon's winding nor on the corner it starts from.
 Triangulation triangulate_polygon(std::span<const glm::dvec3> corners);
 
 /// Finds the origin of a scene (Scene::origin) from its triangles, before they are rounded to

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t header_lines = 8;
 constexpr std::size_t hours_of_year = 8'760, hours_of_leap_year = 8'784;
+constexpr std::size_t fields_of_hour = 35;
 constexpr std::size_t periods_line = 7, weekday_field = 4;
 constexpr std::array<const char*, 7> weekdays{"monday", "tuesday",  "wednesday", "thursday",
                                               "friday", "saturday", "sunday"};
@@ -38,6 +39,8 @@ class Line {
       if (more) text.remove_prefix(comma + 1);
     }
   }
+
+  std::size_t fields() const { return fields_.size(); }
 
   std::string_view field(std::size_t index) const {
     return index < fields_.size() ? fields_[index] : std::string_view();
@@ -78,6 +81,10 @@ Site site_of(const Line& line) {
 }
 
 WeatherHour hour_of(const Line& line) {
+  if (line.fields() > fields_of_hour) {
+    line.refuse(fmt::format("{} fields, where an hour has {}: numbers need a decimal point",
+                            line.fields(), fields_of_hour));
+  }
   WeatherHour hour;
   hour.month = static_cast<int>(line.number(1, "month", 1, 12));
   hour.day = static_cast<int>(line.number(2, "day of this month", 1,

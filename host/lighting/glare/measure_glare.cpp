@@ -38,7 +38,7 @@ std::vector<Measured> illuminance_at(const measuring::SensorGrid& eyes, const Sc
 /// A rating of a measured value, and its error by the slope there.
 template <class Rating>
 Measured rated(const Measured& measured, const Rating& rating) {
-  const double step = std::max(1e-4 * measured.value, 1e-9);
+  const double step = measured.value > 0 ? 1e-4 * measured.value : 1e-9;
   const double slope = (rating(measured.value + step) - rating(measured.value - step)) / (2 * step);
   return {rating(measured.value), std::abs(slope) * measured.standard_error};
 }

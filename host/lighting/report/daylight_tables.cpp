@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "common/foreign_text.hpp"
+
 namespace photile::report {
 namespace {
 
@@ -51,9 +53,7 @@ std::size_t count_occupied(const std::vector<bool>& hours, const std::vector<boo
 std::string csv_rows(const std::vector<GridDaylight>& grids, const std::string& last) {
   std::string text;
   for (const GridDaylight& grid : grids) {
-    std::string name = grid.grid.name;
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == ',' || c == '"'; }, '_');
+    const std::string name = csv_field(grid.grid.name);
     for (std::size_t i = 0; i < grid.points.size(); ++i) {
       const Sensor& sensor = grid.grid.sensors[i];
       const glm::dvec3 &p = sensor.position, &n = sensor.normal;
@@ -164,7 +164,7 @@ std::string daylight_csv(const DaylightResults& results) {
   if (results.states.empty()) return text + "\n" + csv_rows(results.grids, "");
   text += ",blinds\n" + csv_rows(results.grids, ",by schedule");
   for (const DaylightState& state : results.states)
-    text += csv_rows(state.grids, fmt::format(",\"{}\"", state.name));
+    text += csv_rows(state.grids, "," + csv_field(state.name));
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "common/foreign_text.hpp"
 #include "report/tables.hpp"
 
 namespace photile::report {

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::report {
@@ -72,8 +73,7 @@ std::map<std::string, std::string> honeybee_files(const measuring::Measurement& 
                            statistics.mean.value, statistics.minimum.value,
                            statistics.maximum.value, 100 * statistics.uniformity.value);
   }
-  files["grids_info.json"] =
-      grids.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  files["grids_info.json"] = json_text(grids, 2);
   files["grid_summary.csv"] = summary;
   return files;
 }
@@ -83,6 +83,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::size_t hours_of_common_year = 8'760;
 constexpr const char* group_of_blinds = "blinds";
+constexpr const char* folder_without_blinds = "__static_apertures__/default";
+
+std::string name_of_state(std::size_t state) {
+  return fmt::format("{}_{}", state, group_of_blinds);
+}
+std::string folder_of_state(std::size_t state) {
+  return fmt::format("{}/{}", group_of_blinds, name_of_state(state));
+}
 
 /// Four digits, or all before the point.
 void append_lux(std::string& text, float lux) {
@@ -156,11 +164,24 @@ class Profile {
   std::span<const std::size_t> up_;
 };
 
-std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace
+
+std::vector<std::string> annual_names(const std::vector<measuring::SensorGrid>& grids,
+                                      std::size_t states) {
+  std::vector<std::string> names{"grids_info.json", "grid_states.json", "states_schedule.json",
+                                 "sun-up-hours.txt"};
+  for (const std::string& name : honeybee_names(grids)) {
+    const std::string identifier = name.substr(0, name.size() - 4);
+    for (const char* ending : {".ill", "_direct.ill"}) names.push_back(identifier + ending);
+    for (std::size_t state = 0; state < states; ++state) {
+      const std::string folder = states > 1 ? folder_of_state(state) : folder_without_blinds;
+      for (const char* kind : {"/total/", "/direct/"}) {
+        names.push_back(folder + kind + identifier + ".npy");
+      }
+    }
+  }
+  return names;
+}
 
 std::map<std::string, std::string> annual_files(const DaylightResults& results,
                                                 const std::vector<daylight::SkyHour>& hours) {
@@ -191,11 +212,10 @@ std::map<std::string, std::string> annual_files(const DaylightResults& results,
     if (!grid.sun.empty()) files[identifier + "_direct.ill"] = Profile(grid.sun, count, up).lines();
     const char* const path = with_blinds ? group_of_blinds : "__static_apertures__";
     for (std::size_t state = 0; state < results.states.size(); ++state) {
-      const std::string name = fmt::format("{}_{}", state, group_of_blinds);
-      states[identifier][group_of_blinds].push_back(name);
-      add_arrays(std::string(path) + "/" + name, identifier, results.states[state].grids[g]);
+      states[identifier][group_of_blinds].push_back(name_of_state(state));
+      add_arrays(folder_of_state(state), identifier, results.states[state].grids[g]);
     }
-    if (!with_blinds) add_arrays(std::string(path) + "/default", identifier, grid);
+    if (!with_blinds) add_arrays(folder_without_blinds, identifier, grid);
     info.push_back({{"name", grid.grid.name},
                     {"identifier", identifier},
                     {"full_id", identifier},
@@ -203,13 +223,13 @@ std::map<std::string, std::string> annual_files(const DaylightResults& results,
                     {"count", count},
                     {"light_path", Json::array({Json::array({path})})}});
   }
-  files["grids_info.json"] = text_of(info);
-  files["grid_states.json"] = text_of(states);
+  files["grids_info.json"] = json_text(info, 2);
+  files["grid_states.json"] = json_text(states, 2);
   if (with_blinds && hours.size() == hours_of_common_year) {
-    files["states_schedule.json"] = text_of({{group_of_blinds,
-                                              {{"identifier", group_of_blinds},
-                                               {"schedule", results.state_of_hour},
-                                               {"is_static", false}}}});
+    files["states_schedule.json"] = json_text(Json{{group_of_blinds,
+                                                    {{"identifier", group_of_blinds},
+                                                     {"schedule", results.state_of_hour},
+                                                     {"is_static", false}}}});
   }
   return files;
 }

@@ -24,6 +24,12 @@ std::vector<std::string> honeybee_names(const std::vector<measuring::SensorGrid>
 /// Errors: UsageError where two grids would share a name.
 std::map<std::string, std::string> honeybee_files(const measuring::Measurement& measurement);
 
+/// The files that annual_files writes of these grids, at most, by path in the folder.
+///   states   of the blinds; 1 = there are none
+/// Errors: UsageError where two grids have one name.
+std::vector<std::string> annual_names(const std::vector<measuring::SensorGrid>& grids,
+                                      std::size_t states);
+
 /// By path in the folder:
 /// - `grids_info.json`, `sun-up-hours.txt` (hours of the year);
 /// - `<grid>.ill`, a line for each sensor with the lux of each hour with the sun up, and

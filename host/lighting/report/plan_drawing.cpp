@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
 #include "report/plan_lines.hpp"
 #include "report/tables.hpp"
 

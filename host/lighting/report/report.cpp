@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "common/ascii_text.hpp"
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/tables.hpp"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "common/foreign_text.hpp"
+
 namespace photile::report {
 
 namespace {

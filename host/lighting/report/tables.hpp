@@ -57,17 +57,6 @@ inline nlohmann::ordered_json measured_json(const Measured& measured) {
   return {{"value", measured.value}, {"standard_error", measured.standard_error}};
 }
 
-/// A field as RFC 4180 has it: quoted where it must be.
-inline std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 /// A line for each sensor, with a heading: grid, point (from 0), x, y, z, dx, dy, dz, lux,
 /// standard_error; with several lights also `lux <light>` and `standard_error <light>` of each.
 std::string measurement_csv(const measuring::Measurement& measurement,

@@ -12,6 +12,8 @@
 #include <numeric>
 #include <optional>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "cache/charts.hpp"
 #include "cache/node_mix.hpp"
@@ -29,9 +31,9 @@ static_assert(packet_side * packet_side == trace::coherent_rays);
 
 /// Seconds of valuing a position, before they are known: by photons, and by rays at it and around
 /// it.
-constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 2e-3;
+constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
 /// Seconds of valuing positions until it is asked whether somebody waits for the frame.
-constexpr double seconds_of_batch = 0.03;
+constexpr double seconds_of_batch = 0.015;
 
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
@@ -41,14 +43,8 @@ glm::vec2 place_in_pixel(int i) {
   return glm::vec2(glm::fract(0.5 + glm::dvec2(i / plastic, i / (plastic * plastic))));
 }
 
-/// A mean of about a thousand nodes is grey enough.
-glm::vec3 mean_of_some(std::span<const glm::vec4> light) {
-  const std::size_t step = std::max<std::size_t>(1, light.size() / 1024);
-  glm::vec4 sum(0.0f);
-  float count = 0;
-  for (std::size_t i = 0; i < light.size(); i += step, ++count) sum += light[i];
-  return count > 0 ? glm::vec3(sum / count) : glm::vec3(0.0f);
-}
+/// Light in space is gathered anew when so many times as many nodes are valued.
+constexpr double more_nodes = 1.1;
 
 }  // namespace
 
@@ -112,6 +108,8 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
       layer_of_(light_groups_of(scene_).group_of),
       emitted_(emitted_radiance_at_unit_power(scene_)),
       distant_(scene_),
+      is_shown_(maps.charts().size(), 0),
+      waits_(maps.charts().size(), 0),
       seconds_per_place_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons) {
   const std::span<const std::uint32_t> chart_of = maps.charts().chart_of();
   for (std::uint32_t t = 0; t < surfaces_.size(); ++t) {
@@ -138,30 +136,40 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
   DrawnFrame drawn;
   std::vector<std::size_t> blocks(view.blocks());
   std::iota(blocks.begin(), blocks.end(), std::size_t{0});
-  std::optional<Stopwatch> watch;
   std::uint64_t places = 0;
+  double left = filling.seconds;
   for (;;) {
     progress.throw_if_cancelled();
+    const Stopwatch of_drawing;
     mix(powers);
     if (coarser) coarser->mix(powers);
-    const Missing missing = draw_blocks(view, blocks);
+    const Missing missing = draw_blocks(view, blocks, filling);
+    drawn.draw_seconds += of_drawing.seconds();
+    if (filling.has_ended()) return drawn;
+    places = std::max(places, missing.read);  // the first round draws all
+    const bool more = show_complete(missing.places);
+    if ((coarser && coarser->show_complete(missing.coarser)) || more) continue;
+
     const std::vector<MissingPlace>& last = coarser ? missing.coarser : missing.places;
-    const bool was_grey = drawn.empty > 0;
     drawn.lacking = missing.places.size() + missing.coarser.size();
     drawn.empty = static_cast<std::size_t>(
         std::count_if(last.begin(), last.end(), [](const auto& place) { return place.empty; }));
-    places = std::max(places, missing.read);  // the first round draws all
     drawn.lacking_share =
         places > 0 ? static_cast<double>(missing.lacking) / static_cast<double>(places) : 0.0;
-    drawn.fill_seconds = watch ? watch->seconds() : 0;
-    const bool ends = was_grey && drawn.empty == 0 && std::isfinite(filling.seconds);
-    if (drawn.lacking == 0 || ends || !(filling.left(drawn.fill_seconds) > 0)) return drawn;
-    if (!watch) watch.emplace();
-    if (missing.coarser.empty()) {
-      fill(missing.places, filling, drawn.fill_seconds, progress);
-    } else {
-      coarser->fill(missing.coarser, filling, drawn.fill_seconds, progress);
+    if (drawn.lacking == 0) return drawn;
+    if (!(left > 0)) {
+      if (!filling.show) return drawn;
+      left = filling.show(drawn);
+      drawn.draw_seconds = 0;
     }
+    const Stopwatch of_filling;
+    if (missing.coarser.empty()) {
+      fill(missing.places, left, filling, progress);
+    } else {
+      coarser->fill(missing.coarser, left, filling, progress);
+    }
+    left -= of_filling.seconds();
+    drawn.fill_seconds += of_filling.seconds();
   }
 }
 
@@ -172,9 +180,15 @@ void LightMapFrames::begin_frame() {
 }
 
 void LightMapFrames::mix(std::span<const glm::vec3> powers) {
-  mixed_.mix(maps_.values(), maps_.statistics().nodes, powers);
-  if (bound_ > 0) seen_.resize(maps_.statistics().nodes, 0);
-  ambient_ = mean_of_some(mixed_.light());
+  const std::size_t nodes = maps_.statistics().nodes;
+  const bool relit =
+      !std::equal(powers.begin(), powers.end(), mixed_.powers().begin(), mixed_.powers().end());
+  mixed_.mix(maps_.values(), nodes, powers);
+  if (bound_ > 0) seen_.resize(nodes, 0);
+  const auto known = static_cast<double>(ambient_nodes_), now = static_cast<double>(nodes);
+  if (!relit && now >= known && now <= more_nodes * known) return;
+  ambient_.gather(maps_, scene_, mixed_.light());
+  ambient_nodes_ = nodes;
 }
 
 /// Before a frame: the latest is the one before.
@@ -206,12 +220,14 @@ void LightMapFrames::forget_unseen() {
 }
 
 /// Draws blocks; leaves those that lack nodes. Returns a place of each cell that is missing, those
-/// without any level first, then the nearest to the eye.
+/// without any level first, then chart by chart: that which takes most of the picture comes first.
 LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
-                                                    std::vector<std::size_t>& blocks) const {
+                                                    std::vector<std::size_t>& blocks,
+                                                    const FrameFilling& filling) const {
   tbb::enumerable_thread_specific<Missing> missing_of_threads;
   std::vector<std::uint8_t> lacks(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    if (filling.has_ended()) return;
     const trace::FlushDenormals flush_denormals;
     Missing& missing = missing_of_threads.local();
     missing.any = false;
@@ -225,16 +241,7 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
     all.places.insert(all.places.end(), missing.places.begin(), missing.places.end());
     all.coarser.insert(all.coarser.end(), missing.coarser.begin(), missing.coarser.end());
   }
-  for (std::vector<MissingPlace>* places : {&all.places, &all.coarser}) {
-    std::sort(places->begin(), places->end(), [](const auto& a, const auto& b) {
-      return std::tie(a.cell, a.distance) < std::tie(b.cell, b.distance);
-    });
-    const auto same_cell = [](const auto& a, const auto& b) { return a.cell == b.cell; };
-    places->erase(std::unique(places->begin(), places->end(), same_cell), places->end());
-    std::sort(places->begin(), places->end(), [](const auto& a, const auto& b) {
-      return std::tuple(!a.empty, a.distance, a.cell) < std::tuple(!b.empty, b.distance, b.cell);
-    });
-  }
+  for (std::vector<MissingPlace>* places : {&all.places, &all.coarser}) put_in_order(*places);
   std::size_t left = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (lacks[i] != 0) blocks[left++] = blocks[i];
@@ -243,37 +250,75 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
   return all;
 }
 
+/// Leaves a place of each cell.
+void LightMapFrames::put_in_order(std::vector<MissingPlace>& places) {
+  std::sort(places.begin(), places.end(),
+            [](const auto& a, const auto& b) { return a.cell < b.cell; });
+  std::size_t cells = 0;
+  std::unordered_map<std::uint32_t, std::uint64_t> seen_of_chart;
+  for (const MissingPlace& place : places) {
+    seen_of_chart[place.chart] += place.seen;
+    if (cells == 0 || places[cells - 1].cell != place.cell) places[cells++] = place;
+  }
+  places.resize(cells);
+  for (MissingPlace& place : places) place.seen = seen_of_chart[place.chart];
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
+    return std::tie(b.empty, b.seen, a.chart, a.cell) < std::tie(a.empty, a.seen, b.chart, b.cell);
+  });
+}
+
+/// Shows the nodes of charts that were seen and have all of them. Returns whether there were any.
+bool LightMapFrames::show_complete(std::span<const MissingPlace> missing) {
+  for (const MissingPlace& place : missing) {
+    if (place.empty) waits_[place.chart] = 0;
+  }
+  bool any = false;
+  for (std::size_t chart = 0; chart < waits_.size(); ++chart) {
+    if (std::exchange(waits_[chart], 0) == 0) continue;
+    is_shown_[chart] = 1;
+    any = true;
+  }
+  return any;
+}
+
 /// Values the next level of places, in their order, as long as there is time: of one at least, and
-/// of grey ones alone where there are some.
-///   spent   seconds
-void LightMapFrames::fill(std::span<const MissingPlace> places, const FrameFilling& filling,
-                          double spent, const Progress& progress) {
-  const auto grey = std::partition_point(places.begin(), places.end(),
-                                         [](const MissingPlace& place) { return place.empty; });
-  if (grey != places.begin()) places = {places.begin(), grey};
+/// of empty ones alone where there are some.
+void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
+                          const FrameFilling& filling, const Progress& progress) {
+  const auto known = std::partition_point(places.begin(), places.end(),
+                                          [](const MissingPlace& place) { return place.empty; });
+  const bool empty = known != places.begin();
+  if (empty) places = {places.begin(), known};
   const Stopwatch stopwatch;
   std::size_t first = 0;
-  double left = filling.left(spent);
+  double left = seconds;
   do {
     // So many as the time is enough for: a batch too many is a frame too late.
-    const double seconds = std::min(left, seconds_of_batch);
+    const double of_batch = std::min(left, seconds_of_batch);
     const std::size_t count =
         std::isinf(left)
             ? places.size()
-            : std::clamp<std::size_t>(static_cast<std::size_t>(seconds / seconds_per_place_), 1,
+            : std::clamp<std::size_t>(static_cast<std::size_t>(of_batch / seconds_per_place_), 1,
                                       places.size() - first);
     PrimaryHits hits;
     for (const MissingPlace& place : places.subspan(first, count)) {
       hits.position.push_back(place.position);
       hits.sided_triangle.push_back(place.sided_triangle);
     }
-    const Stopwatch of_batch;
+    const Stopwatch batch_watch;
     maps_.fill(hits, source_, progress, 1);
-    const double latest = of_batch.seconds() / static_cast<double>(count);
+    const double latest = batch_watch.seconds() / static_cast<double>(count);
     seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
     first += count;
-    left = filling.left(spent + stopwatch.seconds());
+    left = filling.has_ended() ? 0 : seconds - stopwatch.seconds();
   } while (first < places.size() && left > 0);
+  if (!empty) return;
+  for (std::size_t i = 0; i < first; ++i) {
+    // The last chart may lack others.
+    if (first == places.size() || places[i].chart != places[first].chart) {
+      is_shown_[places[i].chart] = 1;
+    }
+  }
 }
 
 void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& missing) const {
@@ -335,32 +380,39 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
                                      const glm::vec3& position, Missing& missing) const {
   bool lacks = false;
   std::optional<glm::vec3> light =
-      known_irradiance(view, sided_triangle, position, missing.places, lacks);
+      known_irradiance(sided_triangle, position, missing.places, lacks);
+  const bool is_own = light.has_value();
   if (!light && view.coarser) {
-    light = view.coarser->known_irradiance(view, sided_triangle, position, missing.coarser, lacks);
+    light = view.coarser->known_irradiance(sided_triangle, position, missing.coarser, lacks);
   }
-  missing.any |= lacks;
+  missing.any |= lacks || !is_own;
   missing.lacking += lacks ? 1 : 0;
   ++missing.read;
-  return light.value_or(view.coarser ? view.coarser->ambient_ : ambient_);
+  if (light) return *light;
+  return (view.coarser ? view.coarser->ambient_ : ambient_)
+      .irradiance(position, glm::vec3(sided_normal(scene_, sided_triangle)));
 }
 
-/// None where no level is valued.
-std::optional<glm::vec3> LightMapFrames::known_irradiance(const View& view,
-                                                          std::uint32_t sided_triangle,
+/// None where no level is valued, and while a chart lacks some of what is seen of it: light of two
+/// kinds on one surface would show where they meet.
+std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_triangle,
                                                           const glm::vec3& position,
                                                           std::vector<MissingPlace>& missing,
                                                           bool& lacks) const {
   NodeBlend blend{};
-  if (const auto cell = maps_.tiles().find(
-          surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)], position, blend)) {
+  const std::uint32_t chart = surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)];
+  if (const auto cell = maps_.tiles().find(chart, position, blend)) {
     const bool empty = blend.node[0] == none;
     lacks = true;
     if (missing.empty() || missing.back().cell != *cell) {
-      missing.push_back(
-          {*cell, empty, glm::distance(view.eye, position), position, sided_triangle});
+      missing.push_back({*cell, empty, chart, 0, position, sided_triangle});
     }
+    ++missing.back().seen;
     if (empty) return std::nullopt;
+  }
+  if (is_shown_[chart] == 0) {
+    std::atomic_ref<std::uint8_t>(waits_[chart]).store(1, std::memory_order_relaxed);
+    return std::nullopt;
   }
   if (bound_ > 0) {
     const std::atomic_ref<std::uint32_t> seen(seen_[blend.node[0]]);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "cache/ambient_light.hpp"
 #include "cache/node_mix.hpp"
 #include "cache/tiles.hpp"
 #include "photile/camera.hpp"
@@ -35,10 +36,12 @@ class LightMapFrames {
 
   /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes
   /// are not valued show the next coarser level; those without any, what `coarser` has there; those
-  /// without that, the light of nodes on the average.
+  /// without that, the light of nodes around. A chart changes from one to the other as a whole,
+  /// when it first has all that is seen of it.
   ///   powers    per layer: power x tint
-  ///   filling   of nodes which pixels lack, level by level, the nearest to the eye first; their
-  ///             pixels are drawn again. A frame ends once none of it is grey any longer.
+  ///   filling   of nodes which pixels lack, level by level, on charts that take most of the
+  ///   picture
+  ///             first; their pixels are drawn again
   ///   coarser   of the same scene, whose nodes are valued first; null = none
   /// Errors: those of LightMaps::fill.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
@@ -55,8 +58,9 @@ class LightMapFrames {
   /// Where a cell is seen whose nodes are not valued.
   struct MissingPlace {
     MissingCell cell;
-    bool empty;      ///< without a coarser level
-    float distance;  ///< from the eye, metres
+    bool empty;  ///< without a coarser level
+    std::uint32_t chart;
+    std::uint64_t seen;  ///< so many times; once in order, all that are missing of the chart
     glm::vec3 position;
     std::uint32_t sided_triangle;
   };
@@ -71,8 +75,11 @@ class LightMapFrames {
   void begin_frame();
   void mix(std::span<const glm::vec3> powers);
   void forget_unseen();
-  Missing draw_blocks(const View& view, std::vector<std::size_t>& blocks) const;
-  void fill(std::span<const MissingPlace> places, const FrameFilling& filling, double spent,
+  Missing draw_blocks(const View& view, std::vector<std::size_t>& blocks,
+                      const FrameFilling& filling) const;
+  static void put_in_order(std::vector<MissingPlace>& places);
+  bool show_complete(std::span<const MissingPlace> missing);
+  void fill(std::span<const MissingPlace> places, double seconds, const FrameFilling& filling,
             const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
@@ -80,8 +87,7 @@ class LightMapFrames {
                  Missing& missing) const;
   glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
                        Missing& missing) const;
-  std::optional<glm::vec3> known_irradiance(const View& view, std::uint32_t sided_triangle,
-                                            const glm::vec3& position,
+  std::optional<glm::vec3> known_irradiance(std::uint32_t sided_triangle, const glm::vec3& position,
                                             std::vector<MissingPlace>& missing, bool& lacks) const;
   glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                      Missing& missing) const;
@@ -99,7 +105,10 @@ class LightMapFrames {
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
-  glm::vec3 ambient_{0.0f};                  ///< irradiance where no level is valued
+  AmbientLight ambient_;                     ///< where no level is valued
+  std::size_t ambient_nodes_ = 0;            ///< that it was gathered from
+  std::vector<std::uint8_t> is_shown_;       ///< per chart: by its own nodes
+  mutable std::vector<std::uint8_t> waits_;  ///< per chart that is not: seen where it has nodes
   double seconds_per_place_;                 ///< of valuing, learned from what it took
 };
 

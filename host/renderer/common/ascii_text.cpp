@@ -38,13 +38,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-std::string one_line(std::string text) {
-  while (text.ends_with('\n') || text.ends_with('\r')) text.pop_back();
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-  return text;
-}
-
 std::optional<double> parse_signed(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   return parse_number<double>(text);

@@ -24,9 +24,6 @@ std::string_view trimmed(std::string_view text);
 /// Lines without their ends (LF, CR LF or CR) and without a byte-order mark.
 std::vector<std::string_view> lines_of(std::string_view text);
 
-/// A text in one line: control characters are blanks, but for line ends at its end, which go.
-std::string one_line(std::string text);
-
 /// The word that the fewest letters make of `text`: put in, left out, or changed. "" of none.
 std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words);
 
@@ -49,27 +46,5 @@ std::optional<Number> parse_number(std::string_view text, int base = 10) {
 
 /// A number, where a leading + is allowed.
 std::optional<double> parse_signed(std::string_view text);
-
-/// `text` as content or as an attribute's value in double quotes. Control characters, which XML
-/// cannot hold, become question marks.
-inline std::string escaped_xml(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < ' ' ? '?' : c;
-    }
-  }
-  return result;
-}
 
 }  // namespace photile

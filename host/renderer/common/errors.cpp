@@ -1,6 +1,6 @@
 #include "photile/errors.hpp"
 
-#include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/progress.hpp"
 
 namespace photile {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <vector>
 
-#include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
 #include "device/embedded_files.hpp"
 #include "device/kernel_store.hpp"
 

@@ -1,9 +1,13 @@
 #include "device/device_selection.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <functional>
 #include <numeric>
@@ -184,12 +188,31 @@ std::string untested_gpu(std::span<const DeviceInfo> devices, const DeviceInfo& 
                               gpu.name, why, gpu.id);
 }
 
+namespace {
+
+/// Whether the process may not open as many files as loading a runtime takes.
+bool files_run_out() {
+  std::array<int, 16> files{};
+  for (int& file : files) file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const bool out = files.back() < 0 && (errno == EMFILE || errno == ENFILE);
+  for (const int file : files) {
+    if (file >= 0) ::close(file);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string selector,
                                          std::span<const std::string> left_out) {
   std::string origin = "device selector";
   if (selector.empty() && !chooses_best(selector)) {
     selector = device_from_environment();
     origin = device_variable;
+  }
+  if (devices.empty() && files_run_out()) {
+    throw DeviceError(
+        "no more files can be opened, and so no OpenCL runtime; raise the limit (ulimit -n)");
   }
   if (devices.empty()) {
     throw DeviceError(fmt::format(

@@ -86,6 +86,7 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
   first.light_maps = LightMapMode::on;
   if (nodes_gather(asked)) {
     first.neighbours = defaults::view_first_neighbours;
+    first.light_map_rays = (asked.light_map_rays + 3) / 4;
     first.light_map_spacing = defaults::view_first_spacing;
     first.light_map_detail = defaults::view_first_spacing / 4;
   } else {

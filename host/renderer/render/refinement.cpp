@@ -1,7 +1,11 @@
 #include "render/refinement.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +20,9 @@ namespace {
 
 /// The first picture of those for a time has this part of the work.
 constexpr double first_share = 0.25;
+
+/// Twice the work leaves 0.7 of the error where it is noise, and more than this where it is not.
+constexpr double stalled = 0.95;
 
 /// Stops a picture that the time is over for.
 class Deadline : public Progress {
@@ -48,6 +55,24 @@ bool same_work(const RenderParameters& a, const RenderParameters& b) {
   });
 }
 
+/// The error of the most work that settings allow, where it is noise.
+double least_error(RenderParameters parameters, double error) {
+  for (;;) {
+    const RenderParameters more = with_work(parameters, 2);
+    if (same_work(more, parameters)) return error;
+    parameters = more;
+    error /= std::sqrt(2.0);
+  }
+}
+
+void tell_out_of_reach(double error, double floor, Progress& progress) {
+  progress.note(
+      fmt::format("a standard error of {:.3g}% is out of reach: about {:.2g}% is left however much "
+                  "is done; the "
+                  "picture is the best so far",
+                  100 * error, 100 * floor));
+}
+
 }  // namespace
 
 RenderParameters with_work(RenderParameters parameters, double factor) {
@@ -70,6 +95,7 @@ RenderResult refine(const RefinementGoal& goal, const RenderParameters& paramete
                     const RefinementSteps& steps, Progress& progress) {
   RenderParameters next = goal.seconds > 0 ? with_work(parameters, first_share) : parameters;
   std::optional<RenderResult> best;
+  double before = std::numeric_limits<double>::infinity();
   for (;;) {
     const double began = steps.elapsed();
     Deadline deadline(progress, steps.elapsed, best ? goal.seconds : 0);
@@ -86,7 +112,16 @@ RenderResult refine(const RefinementGoal& goal, const RenderParameters& paramete
       return std::move(*best);
     }
     const double now = steps.elapsed();
-    if (goal.error > 0 && standard_error_of(*best) <= goal.error) return std::move(*best);
+    const double error = standard_error_of(*best);
+    if (goal.error > 0) {
+      if (error <= goal.error) return std::move(*best);
+      const double floor = error > stalled * before ? error : least_error(next, error);
+      if (floor > goal.error) {
+        tell_out_of_reach(goal.error, floor, progress);
+        return std::move(*best);
+      }
+      before = error;
+    }
     if (goal.seconds > 0 && goal.seconds - now < now - began) return std::move(*best);
     const RenderParameters more = with_work(next, 2);
     if (same_work(more, next)) return std::move(*best);

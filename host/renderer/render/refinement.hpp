@@ -28,7 +28,8 @@ struct RefinementSteps {
 };
 
 /// Makes pictures until the goal is met, each with twice the work of the one before, and returns
-/// the one that states the least error. Without a time the first has the settings given; with one
+/// the one that states the least error. An error that no allowed work reaches, or that no longer
+/// falls with it, ends this with a note. Without a time the first has the settings given; with one
 /// it has a quarter of their work, so that there is one soon. The first is finished however long it
 /// takes; a later one is begun while there is as much time left as its predecessor took, and given
 /// up when the time is over. So with a time the picture depends on how quick the machine is, but

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
+#include "common/foreign_text.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
 
@@ -20,26 +21,6 @@ namespace {
 
 /// Names that a message lists before it only counts the rest.
 constexpr std::size_t max_listed_names = 20;
-
-/// Bytes of the UTF-8 sequence at the start of `text`, or 0 where it is none.
-std::size_t utf8_sequence_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  std::size_t length = 0;
-  if (byte(0) < 0x80) {
-    length = 1;
-  } else if (byte(0) >= 0xC2 && byte(0) <= 0xDF) {
-    length = 2;
-  } else if (byte(0) >= 0xE0 && byte(0) <= 0xEF) {
-    length = 3;
-  } else if (byte(0) >= 0xF0 && byte(0) <= 0xF4) {
-    length = 4;
-  }
-  if (length == 0 || length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  }
-  return length;
-}
 
 /// Letters to insert, remove or replace.
 std::size_t edits_between(std::string_view a, std::string_view b) {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Buttons: render, walk in the window, read layers."""
 
+import functools
 import shlex
 import subprocess
 import tempfile
@@ -8,20 +9,29 @@ from pathlib import Path
 
 import bpy
 
-from . import compositor, scene_export
+from . import compositor, options, scene_export
+
+
+@functools.cache
+def temporary_folder():
+    """Of this Blender alone: in a folder with a name that others know, they could lay links."""
+    return Path(tempfile.mkdtemp(prefix="photile-blender-"))
 
 
 def folder_of(scene):
     """Where files go: "//" means beside the .blend file, and a temporary folder without one."""
     folder = scene.photile.folder
     if folder.startswith("//") and not bpy.data.filepath:
-        return Path(tempfile.gettempdir()) / "photile-blender"
+        return temporary_folder()
     return Path(bpy.path.abspath(folder))
 
 
 def command_of(context):
+    """The program, and the user's own options of `photile render`."""
     addon = context.preferences.addons.get(__package__)
-    return addon.preferences.command if addon else "photile"
+    if addon is None:
+        return "photile", []
+    return addon.preferences.command, shlex.split(addon.preferences.options)
 
 
 def export_files(scene):
@@ -37,17 +47,20 @@ def size_of(scene):
     return f"{round(scene.render.resolution_x * share)}x{round(scene.render.resolution_y * share)}"
 
 
-def render_command(command, scene, file, picture):
-    """The command line of a rendering."""
+def render_command(command, own_options, scene, file, picture):
+    """The command line of a rendering. Names come from the .blend file, which may be anyone's: they
+    follow an equals sign, so that none is taken for an option."""
     chosen = scene.photile
     arguments = [command, "render", str(file), "-o", str(picture), "--size", size_of(scene),
                  "--quality", chosen.quality, "--seed", str(chosen.seed),
                  "--set", f"emissive_scale={chosen.efficacy:g}"]
     if scene.camera:
-        arguments += ["--camera", scene.camera.name]
-    for name, colour in scene_export.tints(scene):
-        arguments += ["--light", f"{name}={colour}"]
-    return arguments + shlex.split(chosen.options)
+        arguments.append(f"--camera={scene.camera.name}")
+    return arguments + tint_options(scene) + options.without_files(chosen.options) + own_options
+
+
+def tint_options(scene):
+    return [f"--light={name}={colour}" for name, colour in scene_export.tints(scene)]
 
 
 class PHOTILE_OT_render(bpy.types.Operator):
@@ -62,7 +75,7 @@ class PHOTILE_OT_render(bpy.types.Operator):
         scene = context.scene
         try:
             file, self._picture = export_files(scene)
-            arguments = render_command(command_of(context), scene, file, self._picture)
+            arguments = render_command(*command_of(context), scene, file, self._picture)
             # A file, since nobody reads a pipe while the window is drawn.
             self._log = tempfile.TemporaryFile("w+")
             self._process = subprocess.Popen(arguments, stdout=self._log, stderr=self._log)
@@ -120,11 +133,10 @@ class PHOTILE_OT_view(bpy.types.Operator):
     def execute(self, context):
         try:
             file, _ = export_files(context.scene)
-            arguments = [command_of(context), "view", str(file),
-                         "--set", f"emissive_scale={context.scene.photile.efficacy:g}"]
-            for name, colour in scene_export.tints(context.scene):
-                arguments += ["--light", f"{name}={colour}"]
-            subprocess.Popen(arguments)
+            command, _ = command_of(context)
+            subprocess.Popen([command, "view", str(file), "--set",
+                              f"emissive_scale={context.scene.photile.efficacy:g}",
+                              *tint_options(context.scene)])
         except (OSError, RuntimeError, ValueError) as error:
             self.report({"ERROR"}, f"photile: {error}")
             return {"CANCELLED"}

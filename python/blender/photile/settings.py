@@ -17,8 +17,14 @@ class PhotilePreferences(bpy.types.AddonPreferences):
         default=shutil.which("photile") or "photile",
     )
 
+    options: StringProperty(
+        name="Options",
+        description="Options of `photile render` for all scenes, those with files too",
+    )
+
     def draw(self, context):
         self.layout.prop(self, "command")
+        self.layout.prop(self, "options")
 
 
 class PhotileSettings(bpy.types.PropertyGroup):
@@ -46,7 +52,9 @@ class PhotileSettings(bpy.types.PropertyGroup):
     )
     seed: IntProperty(name="Seed", description="The same seed gives the same picture", default=1, min=0)
     options: StringProperty(
-        name="Options", description="More options of `photile render`, as on its command line"
+        name="Options",
+        description="More options of `photile render`, as on its command line, but none that names "
+        "a file: those are in the preferences of the add-on",
     )
 
 

@@ -1,4 +1,6 @@
-// Scenes in memory: made from arrays, named, hashed, measured and looked at.
+// Scenes made from arrays: what is filled, and what is refused.
+#include "photile/scene_builder.hpp"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,19 +8,9 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 #include <numbers>
-#include <set>
-#include <string>
 
-#include "common/content_hash.hpp"
 #include "message_of.hpp"
-#include "photile/camera.hpp"
-#include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/photile.hpp"
-#include "photile/scene_builder.hpp"
-#include "scene/light_emission.hpp"
-#include "scene/light_names.hpp"
-#include "scene/scene_queries.hpp"
 #include "scene_invariants.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -28,8 +20,6 @@ namespace {
 
 using Catch::Contains;
 using std::numbers::pi;
-
-// Scenes made from arrays: what is filled, and what is refused.
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
@@ -49,6 +39,8 @@ Material textured(std::uint32_t texture) {
   material.diffuse_texture = texture;
   return material;
 }
+
+}  // namespace
 
 TEST_CASE("a mesh of arrays becomes a scene with every array filled") {
   SceneBuilder builder("tetrahedron");
@@ -305,255 +297,4 @@ TEST_CASE("photons that do not fit the scene are an error of the maps, and no cr
       Contains("plate"));
 }
 
-// The hash that tells saved photon maps of one scene from those of another knows every light.
-
-std::string hash_of(const Scene& scene) {
-  ContentHash hash;
-  scene::add_scene(scene, hash);
-  return hash.hex();
-}
-
-/// A scene of one light of every kind that needs data of its own.
-Scene scene_with(float texel, double rotation, float candela) {
-  Scene scene;
-  scene.environments.emplace_back(
-      "sky", 2, 1, std::vector<glm::vec3>{glm::vec3(1.0f), glm::vec3(texel)}, rotation);
-  scene.distributions.emplace_back("lamp", PhotometricAxes{}, std::vector<double>{0, 90},
-                                   std::vector<double>{0, 360},
-                                   std::vector<float>{1, candela, 1, candela});
-  scene.lights.resize(2);
-  return scene;
-}
-
-TEST_CASE("scenes whose lights differ in anything have different hashes") {
-  std::set<std::string> hashes{hash_of(scene_with(2, 0, 3)), hash_of(scene_with(2.001f, 0, 3)),
-                               hash_of(scene_with(2, 1, 3)), hash_of(scene_with(2, 0, 3.001f))};
-  const std::vector<std::function<void(Light&)>> changes{
-      [](Light& light) { light.distribution = 0; },
-      [](Light& light) { light.environment = 0; },
-      [](Light& light) { light.angular_diameter = 0.01f; },
-      [](Light& light) {
-        light.x_axis = {0, 1, 0};
-      },
-      [](Light& light) { light.emission_texture = 0; },
-      [](Light& light) { light.texel_radiance.g = 1; },
-  };
-  for (const auto& change : changes) {
-    Scene scene = scene_with(2, 0, 3);
-    change(scene.lights[1]);
-    hashes.insert(hash_of(scene));
-  }
-  CHECK(hashes.size() == 4 + changes.size());
-}
-
-TEST_CASE("light names lose the bytes that separate EXR channels and command-line parts") {
-  CHECK(scene::clean_light_name("Area.001", 50) == "Area_001");
-  CHECK(scene::clean_light_name("key lamp=3,a/b\n", 50) == "key_lamp_3_a_b_");
-  CHECK(scene::clean_light_name("", 50) == "light");
-}
-
-TEST_CASE("light names keep valid UTF-8 and are cut between characters") {
-  CHECK(scene::clean_light_name("Küche", 50) == "Küche");
-  CHECK(scene::clean_light_name("Küche", 2) == "K");    // ü has two bytes
-  CHECK(scene::clean_light_name("K\xC3", 50) == "K_");  // half a character
-}
-
-TEST_CASE("equal light names are numbered and stay within the limit") {
-  std::vector<Light> lights(3);
-  for (Light& light : lights) light.name = std::string(80, 'x');
-  scene::make_light_names_unique(lights);
-  CHECK(lights[0].name == std::string(50, 'x'));
-  CHECK(lights[1].name == std::string(48, 'x') + "_2");
-  CHECK(lights[2].name == std::string(48, 'x') + "_3");
-}
-
-TEST_CASE("a numbered light name does not collide with a name of the file") {
-  std::vector<Light> lights(3);
-  lights[0].name = lights[2].name = "lamp";
-  lights[1].name = "lamp_2";
-  scene::make_light_names_unique(lights);
-  CHECK(lights[0].name == "lamp");
-  CHECK(lights[1].name == "lamp_2");
-  CHECK(lights[2].name == "lamp_3");
-}
-
-/// The spot falloff of KHR_lights_punctual, integrated over the sphere by the midpoint rule.
-double integrated_spot_flux(double intensity, double inner, double outer) {
-  constexpr int steps = 200'000;
-  double sum = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const double angle = outer * (i + 0.5) / steps;
-    const double ramp = (std::cos(angle) - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
-    const double attenuation = std::clamp(ramp, 0.0, 1.0);
-    sum += 2.0 * pi * std::sin(angle) * attenuation * attenuation * intensity * outer / steps;
-  }
-  return sum;
-}
-
-TEST_CASE("spot flux is the integral of its falloff over the sphere") {
-  CHECK(scene::spot_flux(3.0, 0.0, 0.7853981634) ==
-        Approx(integrated_spot_flux(3.0, 0.0, 0.7853981634)).epsilon(1e-6));
-  CHECK(scene::spot_flux(3.0, 0.4, 1.2) ==
-        Approx(integrated_spot_flux(3.0, 0.4, 1.2)).epsilon(1e-6));
-}
-
-TEST_CASE("a spot without a ramp over the half sphere has half the flux of a point light") {
-  CHECK(2.0 * scene::spot_flux(5.0, pi / 2, pi / 2) == Approx(scene::point_flux(5.0)));
-}
-
-TEST_CASE("fluxes of area, point and directional lights are their closed forms") {
-  CHECK(scene::area_flux(10.0, 2.0, false) == Approx(20.0 * pi));
-  CHECK(scene::area_flux(10.0, 2.0, true) == Approx(40.0 * pi));
-  CHECK(scene::point_flux(1.0) == Approx(4.0 * pi));
-  CHECK(scene::directional_flux(1000.0, 3.0) == Approx(9000.0 * pi));
-}
-
-// Where glass encloses a volume, and where it is a sheet.
-
-constexpr std::uint32_t pane = 1;  // material of the glass
-
-/// A room at some distance from the world's origin, and what `add` puts into it.
-template <class Add>
-std::uint32_t open_edges(bool thin, const Add& add) {
-  SceneBuilder builder;
-  builder.add(diffuse(glm::vec3(0.5f)));
-  builder.add(glass(1.5f, thin));
-  builder.add(point_light("lamp", {101, 1, 2.5f}));
-  builder.box({99, -1, 0}, {104, 4, 3}, 0, true);
-  add(builder);
-  const auto open = scene::open_edges_of_glass(builder.build());
-  CHECK(open[0] == 0);
-  return open[pane];
-}
-
-TEST_CASE("a box of glass has no open edge, whatever its number of quads") {
-  const int cells = GENERATE(1, 3);
-  CHECK(open_edges(false, [&](SceneBuilder& builder) {
-          builder.box({100, 0, 1}, {101.3f, 1, 1.7f}, pane, false, cells);
-        }) == 0);
-}
-
-TEST_CASE("a sheet of solid glass is open along its outline, and thin glass may be a sheet") {
-  const auto sheet = [](SceneBuilder& builder) {
-    builder.grid({100, 0, 1}, {1, 0, 0}, {0, 0.3f, 1}, 2, pane);
-  };
-  CHECK(open_edges(false, sheet) == 8);
-  CHECK(open_edges(true, sheet) == 0);
-}
-
-TEST_CASE("a box of glass without a lid is open along its rim") {
-  CHECK(open_edges(false, [](SceneBuilder& builder) {
-          builder.grid({100, 0, 1}, {0, 1, 0}, {1, 0, 0}, 1, pane);
-          builder.grid({100, 0, 1}, {1, 0, 0}, {0, 0, 1}, 1, pane);
-          builder.grid({100, 1, 1}, {0, 0, 1}, {1, 0, 0}, 1, pane);
-          builder.grid({100, 0, 1}, {0, 0, 1}, {0, 1, 0}, 1, pane);
-          builder.grid({101, 0, 1}, {0, 1, 0}, {0, 0, 1}, 1, pane);
-        }) == 4);
-}
-
-TEST_CASE("six quads that share neither corners nor their cuts are a closed box") {
-  // Some 15 microns apart, and cut into 1 to 6 x 6 cells each, so that no corner meets another's.
-  CHECK(open_edges(false, [](SceneBuilder& builder) {
-          const float gap = 1.5e-5f;
-          builder.grid({100, 0, 1 - gap}, {0, 1, 0}, {1, 0, 0}, 1, pane);
-          builder.grid({100, 0, 2 + gap}, {1, 0, 0}, {0, 1, 0}, 2, pane);
-          builder.grid({100, -gap, 1}, {1, 0, 0}, {0, 0, 1}, 3, pane);
-          builder.grid({100, 1 + gap, 1}, {0, 0, 1}, {1, 0, 0}, 4, pane);
-          builder.grid({100 - gap, 0, 1}, {0, 0, 1}, {0, 1, 0}, 5, pane);
-          builder.grid({101 + gap, 0, 1}, {0, 1, 0}, {0, 0, 1}, 6, pane);
-        }) == 0);
-}
-
-// Where the projections of a camera look.
-
-Camera camera_of(Projection projection, double degrees = 180) {
-  Camera camera;  // along -z, y up
-  camera.projection = projection;
-  camera.vertical_field_of_view = glm::radians(degrees);
-  return camera;
-}
-
-/// Right and up from the middle, 1 at the right and upper border of a square picture.
-glm::dvec3 seen(const Camera& camera, double right, double up) {
-  return camera.direction(50 + 50 * right, 50 - 50 * up, 100, 100);
-}
-
-double angle_to_axis(const glm::dvec3& direction) { return std::acos(-direction.z); }
-
-TEST_CASE("a camera whose rays would be no numbers is refused") {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = [](const Camera& camera) {
-    CHECK_THROWS_AS(camera.directions(4, 4), UsageError);
-  };
-  for (const double far : {1e20, none}) {
-    Camera camera = camera_of(Projection::perspective, 60);
-    camera.position.y = far;
-    refused(camera);
-  }
-  for (const double degrees : {0.0, -60.0, 361.0, none}) {
-    refused(camera_of(Projection::perspective, degrees));
-  }
-  Camera parallel = camera_of(Projection::orthographic);
-  for (const double height : {0.0, 1e19, none}) {
-    parallel.orthographic_height = height;
-    refused(parallel);
-  }
-  Camera tilted = camera_of(Projection::perspective, 60);
-  tilted.up = {0, none, 0};
-  refused(tilted);
-}
-
-TEST_CASE("in the angular projection the radius is the angle") {
-  for (const double degrees : {90.0, 180.0, 300.0}) {
-    const Camera camera = camera_of(Projection::angular, degrees);
-    for (const double radius : {0.0, 0.3, 0.9}) {
-      const glm::dvec3 aside = seen(camera, radius, 0), above = seen(camera, 0, radius);
-      CHECK(angle_to_axis(aside) == Approx(glm::radians(0.5 * degrees) * radius).margin(1e-7));
-      CHECK(angle_to_axis(above) == Approx(angle_to_axis(aside)).margin(1e-7));
-      CHECK(aside.x >= 0);
-      CHECK(above.y >= 0);
-    }
-  }
-  CHECK(seen(camera_of(Projection::angular), 0.8, 0.8) == glm::dvec3(0));  // beyond the circle
-}
-
-TEST_CASE("in the hemispherical projection the radius is the sine") {
-  const Camera camera = camera_of(Projection::fisheye);
-  CHECK(angle_to_axis(seen(camera, 0.5, 0)) == Approx(glm::pi<double>() / 6));
-  CHECK(angle_to_axis(seen(camera, 0, -0.5)) == Approx(glm::pi<double>() / 6));
-  CHECK(glm::length(seen(camera, 0.6, 0.6)) == Approx(1));
-  CHECK(seen(camera, 0.8, 0.8) == glm::dvec3(0));
-  const Camera half = camera_of(Projection::fisheye, 60);
-  CHECK(angle_to_axis(seen(half, 1, 0)) == Approx(glm::pi<double>() / 6));
-}
-
-TEST_CASE("an equirectangular picture is the whole sphere") {
-  const Camera camera = camera_of(Projection::equirectangular);
-  const auto close = [](const glm::dvec3& a, const glm::dvec3& b) {
-    return glm::distance(a, b) < 1e-12;
-  };
-  CHECK(close(seen(camera, 0, 0), {0, 0, -1}));
-  CHECK(close(seen(camera, 0.5, 0), {1, 0, 0}));
-  CHECK(close(seen(camera, -0.5, 0), {-1, 0, 0}));
-  CHECK(close(seen(camera, 1, 0), {0, 0, 1}));
-  CHECK(close(seen(camera, 0.3, 1), {0, 1, 0}));
-  CHECK(close(seen(camera, 0.3, -1), {0, -1, 0}));
-}
-
-TEST_CASE("orthographic rays are parallel and start beside each other") {
-  Camera camera = camera_of(Projection::orthographic);
-  camera.orthographic_height = 6;
-  const FilmDirections film = camera.directions(200, 100);
-  CHECK(film(3, 7) == glm::dvec3(0, 0, -1));
-  CHECK(film.offset(0, 0) == glm::dvec3(-6, 3, 0));
-  CHECK(film.offset(200, 100) == glm::dvec3(6, -3, 0));
-  CHECK(camera_of(Projection::perspective, 90).directions(9, 9).offset(0, 0) == glm::dvec3(0));
-}
-
-TEST_CASE("a pinhole is as it was") {
-  const glm::dvec3 corner = seen(camera_of(Projection::perspective, 90), 1, 1);
-  CHECK(glm::distance(corner, glm::normalize(glm::dvec3(1, 1, -1))) < 1e-12);
-}
-
-}  // namespace
 }  // namespace photile::test

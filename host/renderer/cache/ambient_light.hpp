@@ -1,0 +1,43 @@
+// Light in space, as nodes around there have it: shown on surface whose own nodes are not valued
+// yet.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "photile/light_maps.hpp"
+
+namespace photile::cache {
+
+/// Irradiance by place and direction of the normal: lattices from coarse to fine (Greger et al.,
+/// "The Irradiance Volume", 1998), whose vertices have a value for each of six directions
+/// (McTaggart, "Half-Life 2 / Valve Source Shading", 2004). Blind to what stands between a node and
+/// a place.
+class AmbientLight {
+ public:
+  /// Takes some of the nodes, evenly.
+  ///   light   irradiance, per node; the fourth is not read
+  void gather(const LightMaps& maps, const Scene& scene, std::span<const glm::vec4> light);
+
+  /// W/m2, linear RGB; zero before nodes were gathered.
+  ///   normal   of unit length
+  glm::vec3 irradiance(const glm::vec3& position, const glm::vec3& normal) const;
+
+ private:
+  /// Light times weight, and weight, for the directions +x, -x, +y ...
+  using Vertex = std::array<glm::vec4, 6>;
+
+  /// Calls visit(vertex, weight) for the eight around a place.
+  ///   place   in [0, 1]^3 of the bounds
+  template <class Vertices, class Visit>
+  static void around(Vertices& vertices, int level, const glm::vec3& place, const Visit& visit);
+  glm::vec3 place_of(const glm::vec3& position) const;
+
+  glm::vec3 lowest_{0.0f}, extent_{0.0f};  ///< of the nodes, metres
+  std::vector<Vertex> finest_;
+};
+
+}  // namespace photile::cache

@@ -1,0 +1,69 @@
+// Text of others, such as names in scenes and of files, made fit for what it is written into: here
+// is all that photile knows of that, one function for each kind of output.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <string_view>
+
+namespace photile {
+
+/// Bytes of the UTF-8 sequence at the start of a text that is not empty, or 0 where it is none.
+std::size_t utf8_sequence_length(std::string_view text);
+
+/// Bytes that are no UTF-8 become U+FFFD.
+std::string utf8_of(std::string_view text);
+
+/// UTF-8 without what commands a terminal: control characters but tabs and line ends become '?'.
+std::string terminal_text(std::string_view text);
+
+/// The same in one line: control characters are blanks, but for line ends at its end, which go.
+std::string one_line(std::string_view text);
+
+/// Bytes of a name, or of other text of a file, that a message quotes.
+inline constexpr std::size_t longest_quote = 80;
+
+/// At most so many bytes: longer text is cut between characters, and ends in "...".
+std::string shortened(std::string_view text, std::size_t most);
+
+/// Content of XML and HTML, or an attribute's value in double quotes, in UTF-8. Characters that XML
+/// cannot hold become
+/// '?'.
+std::string escaped_xml(std::string_view text);
+
+/// A field as RFC 4180 has it: quoted where it must be. What a spreadsheet would take for a formula
+/// begins with an apostrophe.
+std::string csv_field(std::string_view text);
+
+/// JSON and a line end; strings that are no UTF-8 hold U+FFFD.
+///   indent   blanks a level; -1 = all in one line
+template <class Json>
+std::string json_text(const Json& json, int indent = 1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// While it lives, what a stream is given passes through terminal_text.
+class TerminalText : public std::streambuf {
+ public:
+  explicit TerminalText(std::ostream& stream) : stream_(stream), sink_(stream.rdbuf(this)) {}
+  TerminalText(const TerminalText&) = delete;
+  TerminalText& operator=(const TerminalText&) = delete;
+  ~TerminalText() override;
+
+ protected:
+  int_type overflow(int_type c) override;
+  std::streamsize xsputn(const char* text, std::streamsize count) override;
+  int sync() override;
+
+ private:
+  bool put(std::string_view text);
+
+  std::ostream& stream_;
+  std::streambuf* const sink_;
+  std::string line_;  ///< that has no end yet
+};
+
+}  // namespace photile

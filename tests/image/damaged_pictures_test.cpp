@@ -1,0 +1,103 @@
+// A damaged file gives an error or a picture, never a crash; the sanitizers preset makes this
+// sharp.
+#include <array>
+
+#include "memory_meter.hpp"
+#include "photile/layered_picture.hpp"
+#include "picture_support.hpp"
+
+namespace photile::test {
+namespace {
+
+/// The bytes of an EXR to relight, of a size that takes several blocks.
+std::string layered_exr() {
+  const TemporaryFolder folder;
+  LightMix mix;
+  mix.lights = {mixed("window", 5000.0), mixed("lamp", 800.0)};
+  write_exr(folder / "a.exr", mix_layers(random_layers(37, 50, {"window", "lamp"}), mix));
+  return bytes_of(folder / "a.exr");
+}
+
+enum class Outcome { picture, refused };
+
+Outcome relight_bytes(const TemporaryFolder& folder, const std::string& bytes) {
+  put(folder / "damaged.exr", bytes);
+  try {
+    const Image relit = relight(read_image(folder / "damaged.exr"), {{"lamp", "x2"}});
+    for (const std::vector<float>& plane : relit.channels) {
+      CHECK(plane.size() == static_cast<std::size_t>(relit.width) * relit.height);
+    }
+    return Outcome::picture;
+  } catch (const Error& error) {
+    CHECK(std::string(error.what()).find('\n') == std::string::npos);
+    return Outcome::refused;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("an EXR cut at any 64th of its length is refused") {
+  const TemporaryFolder folder;
+  const std::string whole = layered_exr();
+  REQUIRE(relight_bytes(folder, whole) == Outcome::picture);
+  for (std::size_t part = 0; part < 64; ++part) {
+    INFO("cut at " << part << "/64");
+    CHECK(relight_bytes(folder, whole.substr(0, whole.size() * part / 64)) == Outcome::refused);
+  }
+}
+
+TEST_CASE("an EXR with one bit flipped gives an error or a picture, 300 times") {
+  const TemporaryFolder folder;
+  const std::string whole = layered_exr();
+  std::mt19937 engine(2026);
+  // Half of the flips in the header, where they do most.
+  std::uniform_int_distribution<std::size_t> header(0, 1'500), anywhere(0, whole.size() - 1);
+  std::uniform_int_distribution<int> bit(0, 7);
+  std::array<int, 2> outcomes{};
+  for (int flip = 0; flip < 300; ++flip) {
+    std::string damaged = whole;
+    const std::size_t position = flip % 2 == 0 ? header(engine) : anywhere(engine);
+    damaged[position] = static_cast<char>(damaged[position] ^ (1 << bit(engine)));
+    INFO("flip " << flip << " at byte " << position);
+    ++outcomes[relight_bytes(folder, damaged) == Outcome::picture ? 0 : 1];
+  }
+  CHECK(outcomes[0] + outcomes[1] == 300);
+  CHECK(outcomes[1] > 0);
+}
+
+TEST_CASE("a small EXR that announces gigabytes is refused without taking them") {
+  using namespace std::string_literals;
+  const TemporaryFolder folder;
+  const std::string whole = layered_exr();
+  const auto changed = [&](const std::string& attribute, std::size_t behind, unsigned value) {
+    std::string bytes = whole;
+    const std::size_t place = bytes.find(attribute);
+    REQUIRE(place != std::string::npos);
+    for (std::size_t i = 0; i < 4; ++i) {
+      bytes[place + attribute.size() + behind + i] = static_cast<char>(value >> (8 * i));
+    }
+    return bytes;
+  };
+  std::vector<std::string> damaged;
+  for (const unsigned side : {16'000u, 1u << 20, 1u << 30}) {
+    if (side > 16'000u) damaged.push_back(changed("dataWindow\0box2i\0"s, 12, side));  // right
+    damaged.push_back(changed("dataWindow\0box2i\0"s, 16, side));                      // bottom
+    damaged.push_back(changed("photile.lights\0string\0"s, 0, side));                  // size
+  }
+  // OpenEXR reads by the type: what follows would begin where nobody has looked.
+  damaged.push_back(changed("lineOrder\0lineOrder\0"s, 0, 9));
+  damaged.push_back(changed("compression\0compression\0"s, 0, 2));
+  damaged.push_back(changed("channels\0chlist\0"s, 0, 18));
+  // A list of texts, one of which is to have 1.8 GB.
+  damaged.push_back(whole);
+  damaged.back().insert(8, "x\0stringvector\0\x08\0\0\0\0\0\0\x70text"s);
+  for (const std::string& bytes : damaged) {
+    CAPTURE(&bytes - damaged.data());
+    put(folder / "damaged.exr", bytes);
+    const MemoryMeter meter;
+    CHECK_THROWS_AS(relit_picture(folder / "damaged.exr", {}), InputError);
+    CHECK(meter.peak() < std::size_t{256} << 20);
+  }
+}
+
+}  // namespace photile::test

@@ -1,0 +1,162 @@
+// Pictures relit from their layers.
+#include "photile/layered_picture.hpp"
+#include "picture_support.hpp"
+
+namespace photile::test {
+namespace {
+
+const std::vector<std::string> names{"window", "lamp", "sconce"};
+
+LightMix mix_of(double window, double lamp, double sconce) {
+  LightMix mix;
+  mix.lights = {mixed("window", window), mixed("lamp", lamp), mixed("sconce", sconce)};
+  return mix;
+}
+
+std::vector<LightChange> parse(const std::vector<std::string>& texts) {
+  std::vector<LightChange> changes;
+  for (const std::string& text : texts) changes.push_back(LightChange::parse(text));
+  return changes;
+}
+
+/// Every channel equal within a few float roundings: one of the layer, one of the ratio, and the
+/// sum.
+void check_equal(const Image& relit, const Image& rendered) {
+  REQUIRE(relit.channel_names.size() == rendered.channel_names.size());
+  for (std::size_t i = 0; i < rendered.channel_names.size(); ++i) {
+    const std::vector<float>* plane = relit.find(rendered.channel_names[i]);
+    INFO(rendered.channel_names[i]);
+    REQUIRE(plane != nullptr);
+    double worst = 0.0;
+    for (std::size_t pixel = 0; pixel < plane->size(); ++pixel) {
+      const double expected = rendered.channels[i][pixel];
+      worst = std::max(worst, std::abs((*plane)[pixel] - expected) / std::max(expected, 1e-30));
+    }
+    CHECK(worst <= 4 * 1.2e-7);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("relighting a picture equals mixing its layers with the new powers") {
+  const TemporaryFolder folder;
+  const LightLayers layers = random_layers(9, 7, names);
+  write_exr(folder / "a.exr", mix_layers(layers, mix_of(5000.0, 806.0, 33.3)));
+  const Image relit =
+      relight(read_image(folder / "a.exr"), parse({"lamp=1521", "sconce=x0.3", "window=off"}));
+  check_equal(relit, mix_layers(layers, mix_of(0.0, 1521.0, 33.3 * 0.3)));
+}
+
+TEST_CASE("relighting with a colour equals mixing with that colour") {
+  const LightLayers layers = random_layers(9, 7, names);
+  LightMix mix = mix_of(1.0, 2.0, 3.0);
+  mix.lights[1].color = {1.8f, 0.8f, 0.6f};
+  const std::vector<LightChange> changes = parse({"lamp=#40A0FF", "lamp=7"});
+  const Image relit = relight(mix_layers(layers, mix), changes);
+  change_lights(mix, changes);
+  check_equal(relit, mix_layers(layers, mix));
+}
+
+TEST_CASE("a relit picture relights again as the first one would") {
+  const LightLayers layers = random_layers(5, 5, names);
+  const Image once =
+      relight(mix_layers(layers, mix_of(10.0, 20.0, 30.0)), parse({"lamp=35", "sconce=#FFD8A0"}));
+  const Image twice = relight(once, parse({"lamp=50", "sconce=#FFFFFF", "window=11"}));
+  check_equal(twice, mix_layers(layers, mix_of(11.0, 50.0, 30.0)));
+}
+
+TEST_CASE("relighting without changes keeps every bit and the attributes") {
+  Image picture = mix_layers(random_layers(5, 5, names), mix_of(10.0, 20.0, 0.0));
+  picture.attributes["photile.scene"] = "room.gltf";
+  picture.matrices["worldToCamera"] = {1, 2, 3};
+  const Image relit = relight(picture, {});
+  CHECK(relit.channel_names == picture.channel_names);
+  for (std::size_t i = 0; i < picture.channels.size(); ++i) {
+    CHECK(same_bits(relit.channels[i], picture.channels[i]));
+  }
+  CHECK(relit.attributes == picture.attributes);
+  CHECK(relit.matrices == picture.matrices);
+  CHECK(relit.numbers == picture.numbers);
+}
+
+TEST_CASE("attributes that another program gave another type are replaced by photile's own") {
+  const TemporaryFolder folder;
+  Image picture = mix_layers(random_layers(3, 3, names), mix_of(10.0, 20.0, 0.0));
+  picture.numbers.erase("whiteLuminance");
+  picture.attributes["whiteLuminance"] = "bright";
+  picture.attributes.erase("photile.units");
+  picture.numbers["photile.units"] = 3;
+  picture.attributes.erase("photile.illuminance.units");
+  picture.matrices["photile.illuminance.units"] = {};
+  write_exr(folder / "foreign.exr", picture);
+  write_exr(folder / "relit.exr", *relit_picture(folder / "foreign.exr", parse({"lamp=x2"})));
+  const PictureHeader relit = read_header(folder / "relit.exr");
+  CHECK(relit.numbers.at("whiteLuminance") == 1.0f);
+  CHECK(relit.attributes.at("photile.units") == "cd/m2");
+  CHECK(relit.attributes.at("photile.illuminance.units") == "lux");
+}
+
+TEST_CASE("turning up a light that is off in the picture is refused by name") {
+  const Image picture = mix_layers(random_layers(3, 3, names), mix_of(10.0, 0.0, 1.0));
+  const std::string message = message_of<UsageError>([&] { relight(picture, parse({"lamp=5"})); });
+  CHECK(message.find("'lamp'") != std::string::npos);
+  CHECK_NOTHROW(relight(picture, parse({"lamp=x3"})));  // still off
+  CHECK_NOTHROW(relight(picture, parse({"lamp=off"})));
+}
+
+TEST_CASE("a colour that an earlier tint took out of the picture cannot come back") {
+  const Image red = relight(mix_layers(random_layers(3, 3, names), mix_of(1.0, 1.0, 1.0)),
+                            parse({"lamp=#FF0000"}));
+  CHECK_THROWS_AS(relight(red, parse({"lamp=#FFFFFF"})), UsageError);
+  CHECK_NOTHROW(relight(red, parse({"lamp=x2"})));
+}
+
+TEST_CASE("a picture without light layers is an input error") {
+  Image picture;
+  picture.width = picture.height = 2;
+  for (const char* name : {"R", "G", "B"}) picture.add(name);
+  CHECK_THROWS_AS(relight(picture, {}), InputError);
+  CHECK_THROWS_AS(read_light_mix(picture), InputError);
+}
+
+TEST_CASE(
+    "a light that the records lack takes part with power 1, and a record without layer is left") {
+  Image picture = mix_layers(random_layers(3, 3, names), mix_of(10.0, 20.0, 30.0));
+  picture.attributes["photile.lights"] =
+      R"([{"name":"sconce","power":30,"unit":"lm"},{"name":"gone","power":1,"unit":"lm"}])";
+  const LightMix mix = read_light_mix(picture);
+  REQUIRE(mix.lights.size() == 3);
+  CHECK(mix.lights[0].name == "sconce");
+  CHECK(mix.lights[0].power == 30.0);
+  CHECK(mix.lights[1].power == 1.0);
+  CHECK_THROWS_AS(relight(picture, parse({"gone=off"})), UsageError);
+}
+
+TEST_CASE("damaged records are an input error that names the attribute") {
+  for (const char* records :
+       {"", "{", "5", "[5]", "[{}]", R"([{"name":5}])", R"([{"name":"lamp","power":-1}])",
+        R"([{"name":"lamp","power":"many"}])", R"([{"name":"lamp","unit":"bananas"}])",
+        R"([{"name":"lamp","tint":[1,2]}])", R"([{"name":"lamp","color":[1,2,-3]}])",
+        R"([{"name":"lamp","power":1e999}])"}) {
+    Image picture = mix_layers(random_layers(2, 2, names), mix_of(1.0, 1.0, 1.0));
+    picture.attributes["photile.lights"] = records;
+    INFO(records);
+    const std::string message = message_of<InputError>([&] { relight(picture, {}); });
+    CHECK(message.find("photile.lights") != std::string::npos);
+  }
+  for (const char* efficacy : {"", "none", "-5", "0", "inf", "683x"}) {
+    Image picture = mix_layers(random_layers(2, 2, names), mix_of(1.0, 1.0, 1.0));
+    picture.attributes["photile.efficacy"] = efficacy;
+    CHECK_THROWS_AS(relight(picture, {}), InputError);
+  }
+}
+
+TEST_CASE("records nested 100,000 deep are refused without a crash") {
+  Image picture = mix_layers(random_layers(2, 2, names), mix_of(1.0, 1.0, 1.0));
+  picture.attributes["photile.lights"] = std::string(100'000, '[');
+  CHECK_THROWS_AS(relight(picture, {}), InputError);
+  picture.attributes["photile.lights"] = std::string(100'000, '[') + std::string(100'000, ']');
+  CHECK_THROWS_AS(relight(picture, {}), InputError);
+}
+
+}  // namespace photile::test

@@ -1,0 +1,171 @@
+// Which lights share a layer: the file's groups and those that the user asks for.
+#include <catch2/catch.hpp>
+
+#include "message_of.hpp"
+#include "photile/light_layers.hpp"
+#include "scene_files.hpp"
+
+namespace photile::test {
+namespace {
+
+/// Point lights of 10, 30 and 60 lm at nodes of the given names, in the square without emission.
+nlohmann::json three_lamps(const std::vector<std::string>& names = {"hall_1", "hall_2", "desk"}) {
+  nlohmann::json document = square_document();
+  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
+  document["extensionsUsed"] = {"KHR_lights_punctual"};
+  auto& lights = document["extensions"]["KHR_lights_punctual"]["lights"];
+  const std::vector<double> lumens{10, 30, 60};
+  for (std::size_t i = 0; i < 3; ++i) {
+    lights.push_back({{"type", "point"}, {"intensity", lumens[i] / (4 * 3.14159265358979)}});
+    document["nodes"].push_back(
+        {{"name", names[i]}, {"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
+    document["scenes"][0]["nodes"].push_back(i + 1);
+  }
+  return document;
+}
+
+Scene grouped(const std::vector<std::string>& texts, const nlohmann::json& document) {
+  SceneLoadOptions options;
+  for (const std::string& text : texts) {
+    options.light_groups.push_back(LightGrouping::parse(text));
+  }
+  return load_gltf(document, options);
+}
+
+std::vector<std::string> groups_of(const Scene& scene) {
+  std::vector<std::string> groups;
+  for (const Light& light : scene.lights) groups.push_back(light.group);
+  return groups;
+}
+
+std::string usage_error_of(const std::vector<std::string>& texts) {
+  return message_of<UsageError>([&] { grouped(texts, three_lamps()); });
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("photile_group among the extras of a node or of a light puts the light into a group") {
+  nlohmann::json document = three_lamps();
+  document["nodes"][1]["extras"]["photile_group"] = "hall";
+  document["extensions"]["KHR_lights_punctual"]["lights"][1]["extras"]["photile_group"] = "hall";
+  CHECK(groups_of(load_gltf(document)) == Names{"hall", "hall", ""});
+  // The node speaks of this lamp, the light of all like it.
+  document["nodes"][2]["extras"]["photile_group"] = "stairs";
+  CHECK(groups_of(load_gltf(document)) == Names{"hall", "stairs", ""});
+  document["nodes"][3]["extras"]["photile_group"] = 5;  // no name
+  CHECK(groups_of(load_gltf(document)) == Names{"hall", "stairs", ""});
+}
+
+TEST_CASE("photile_group of a node with an emissive mesh is that of its area lights") {
+  nlohmann::json document = square_document();
+  document["nodes"][0]["extras"]["photile_group"] = "ceiling.1";
+  CHECK(groups_of(load_gltf(document)) == Names{"ceiling_1"});  // cleaned as names are
+}
+
+TEST_CASE("nodes that place one lamp of the file share a layer") {
+  nlohmann::json document = three_lamps();
+  document["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  const Scene scene = load_gltf(document);
+  CHECK(groups_of(scene) == Names{"hall_1", "hall_1", ""});
+  const LightGroups groups = light_groups_of(scene);
+  REQUIRE(groups.groups.size() == 2);
+  CHECK(groups.groups[0].power == Approx(20.0));
+  // Who says otherwise is believed.
+  CHECK(groups_of(grouped({"hall_2=other"}, document)) == Names{"hall_1", "other", ""});
+  document["nodes"][2]["extras"]["photile_group"] = "stairs";
+  CHECK(groups_of(load_gltf(document)) == Names{"", "stairs", ""});
+}
+
+TEST_CASE("layers of two lamps that are placed several times keep apart, whatever their names") {
+  nlohmann::json document = three_lamps({"lamp", "lamp", "lamp"});
+  document["nodes"].push_back(document["nodes"][3]);
+  document["scenes"][0]["nodes"].push_back(4);
+  document["nodes"][2]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  CHECK(groups_of(load_gltf(document)) == Names{"lamp", "lamp", "lamp_2", "lamp_2"});
+}
+
+TEST_CASE("instances of an emissive mesh share a layer, its materials do not") {
+  nlohmann::json document = square_document();
+  document["materials"].push_back({{"name", "neon"}, {"emissiveFactor", {0, 1, 0}}});
+  auto& primitives = document["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  primitives[1]["material"] = 1;
+  document["nodes"].push_back(
+      {{"name", "second"}, {"mesh", 0}, {"translation", {0, 0, 3}}, {"scale", {2, 2, 2}}});
+  document["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = load_gltf(document);
+  REQUIRE(scene.lights.size() == 4);
+  CHECK(groups_of(scene) == Names{"panel_glow", "panel_neon", "panel_glow", "panel_neon"});
+  const LightGroups groups = light_groups_of(scene);
+  CHECK(groups.share[2] == Approx(4 * groups.share[0]));  // by area
+}
+
+TEST_CASE("a glob of light names makes a group, and a later one takes from an earlier one") {
+  const auto document = three_lamps();
+  CHECK(groups_of(grouped({"hall_*=hall"}, document)) == Names{"hall", "hall", ""});
+  CHECK(groups_of(grouped({"*=all", "desk=task"}, document)) == Names{"all", "all", "task"});
+  CHECK(groups_of(grouped({"?all_[12]=a b"}, document)) == Names{"a_b", "a_b", ""});
+  auto with_extras = document;
+  with_extras["nodes"][1]["extras"]["photile_group"] = "file";
+  CHECK(groups_of(grouped({"desk=task"}, with_extras)) == Names{"file", "", "task"});
+  CHECK(groups_of(grouped({"hall_1=task"}, with_extras)) == Names{"task", "", ""});
+}
+
+TEST_CASE("a glob that matches no light is an error that lists the lights") {
+  const std::string message = usage_error_of({"lamp*=lamps"});
+  for (const char* part : {"lamp*", "'hall_1'", "'hall_2'", "'desk'"}) {
+    CHECK(message.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("a group does not take the name of a light outside it") {
+  CHECK(usage_error_of({"hall_*=desk"}).find("'desk'") != std::string::npos);
+  CHECK_NOTHROW(grouped({"*=desk"}, three_lamps()));
+  CHECK_NOTHROW(
+      grouped({"hall_1=desk", "desk=hall_1"}, three_lamps()));  // no light has a layer of its own
+  // In a file, the light gives way.
+  nlohmann::json document = three_lamps();
+  document["nodes"][1]["extras"]["photile_group"] = "desk";
+  const Scene scene = load_gltf(document);
+  CHECK(scene.lights[0].group == "desk");
+  CHECK(scene.lights[2].name == "desk_2");
+}
+
+TEST_CASE("a grouping that is no GLOB=NAME is refused") {
+  for (const char* text : {"", "hall", "=hall", "hall="}) {
+    CHECK_THROWS_AS(LightGrouping::parse(text), UsageError);
+  }
+  CHECK(LightGrouping::parse("a=b=c").glob == "a=b");
+}
+
+TEST_CASE("a layer has the power and the mean colour of its lights, and each its share") {
+  Scene scene = grouped({"hall_*=hall"}, three_lamps());
+  scene.lights[0].color = {4, 0, 0};
+  scene.lights[1].color = {0, 4, 8};
+  const LightGroups layers = light_groups_of(scene);
+  REQUIRE(layers.groups.size() == 2);
+  CHECK(layers.groups[0].name == "hall");
+  CHECK(layers.groups[0].lights == std::vector<std::uint32_t>{0, 1});
+  CHECK(layers.groups[0].power == Approx(40));
+  CHECK(layers.groups[0].color.r == Approx(1));
+  CHECK(layers.groups[0].color.g == Approx(3));
+  CHECK(layers.groups[0].color.b == Approx(6));
+  CHECK(layers.groups[1].name == "desk");
+  CHECK(layers.groups[1].power == scene.lights[2].power);
+  CHECK(layers.groups[1].color == scene.lights[2].color);
+  CHECK(layers.group_of == std::vector<std::uint32_t>{0, 0, 1});
+  CHECK(layers.share[0] == Approx(0.25));
+  CHECK(layers.share[1] == Approx(0.75));
+  CHECK(layers.share[2] == 1.0);
+  CHECK(needs_of(scene).light_count == 2);
+}
+
+TEST_CASE("lights of a group that is off share it equally") {
+  Scene scene = grouped({"*=all"}, three_lamps());
+  for (Light& light : scene.lights) light.power = 0;
+  for (const double share : light_groups_of(scene).share) CHECK(share == Approx(1.0 / 3));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,112 @@
+// Reflectances of materials: read, set, and held against paths.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include "message_of.hpp"
+#include "photile/sensors.hpp"
+#include "scene/surface_models.hpp"
+#include "scene_files.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using nlohmann::json;
+using scene::reflectance_of;
+
+/// A plate so wide that nothing else is seen from just above it.
+Scene wide_plate(const Material& material) { return plate(material, 1000); }
+
+Scene square_of(const json& members, const SceneLoadOptions& options = {}) {
+  json document = square_document();
+  document["materials"][0].merge_patch(members);
+  return load_gltf(document, options);
+}
+
+double whole(const Scene& scene) {
+  return reflectance_of(scene, scene.materials[scene.triangle_material[0]])->whole;
+}
+
+}  // namespace
+
+TEST_CASE("a reflectance is what paths find under an even sky") {
+  const Material material =
+      GENERATE(diffuse(glm::vec3(0.5f)), glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.25f),
+               glossy(glm::vec3(0.2f), glm::vec3(0.3f), 0.6f));
+  Scene scene = wide_plate(material);
+  add_environment(scene, EnvironmentMap("sky", 2, 1, std::vector<glm::vec3>(2, glm::vec3(1.0f))));
+  const double claimed = reflectance_of(scene, scene.materials[0])->whole;
+  // A plane that faces down receives pi L times the share reflected of light from everywhere.
+  const Sensor sensor{{0, 0, 0.05}, {0, 0, -1}};
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const auto layers = gather_by_paths(scene, std::span(&sensor, 1), {.rays = 8192}, seed).layers;
+    values.push_back(scene.lights[0].power * double{layers.dense().layers[0].illuminance[0]} /
+                     glm::pi<double>());
+  }
+  double mean = 0;
+  for (const double value : values) mean += value / 16;
+  CHECK(claimed == Approx(mean).epsilon(0.02));
+}
+
+TEST_CASE("glTF's specular adds to what the file enters, and lambertian takes it away") {
+  const json grey{
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}}};
+  const Scene file = square_of(grey);
+  const auto read = reflectance_of(file, file.materials[file.triangle_material[0]]);
+  CHECK(read->matt == Approx(0.5));
+  CHECK(read->whole > 0.505);
+  SceneLoadOptions options;
+  options.lambertian = true;
+  CHECK(whole(square_of(grey, options)) == Approx(0.5));
+  // A metal stays one.
+  const json metal{{"pbrMetallicRoughness", {{"metallicFactor", 1}, {"roughnessFactor", 0.5}}}};
+  CHECK(whole(square_of(metal, options)) == Approx(whole(square_of(metal))));
+}
+
+TEST_CASE("a material reflects the share that is asked for, and keeps its hue") {
+  SceneLoadOptions options;
+  const double share = GENERATE(0.1, 0.5);
+  options.reflectances = {ReflectanceChange::parse(fmt::format("*={}", share))};
+  options.lambertian = GENERATE(false, true);
+  const Scene scene = square_of(json::object(), options);
+  CHECK(whole(scene) == Approx(share).epsilon(1e-4));
+  const Material& material = scene.materials[scene.triangle_material[0]];
+  CHECK(material.diffuse.g / material.diffuse.r == Approx(0.75));  // the file has 0.8, 0.6, 0.4
+}
+
+TEST_CASE("reflectances that cannot be are refused with the remedy") {
+  const auto refused = [&](const char* text, const char* words) {
+    SceneLoadOptions options;
+    const auto load = [&] {
+      options.reflectances = {ReflectanceChange::parse(text)};
+      square_of(json::object(), options);
+    };
+    CHECK_THAT(message_of<UsageError>(load), Catch::Contains(words));
+  };
+  refused("*=0", "--set lambertian=on");  // the lobe reflects more
+  refused("*=0.95", "exceeds 1");
+  refused("nothing=0.5", "no such material");
+  refused("wall=1.5", "0 to 1");
+  refused("wall=120%", "0 to 1");
+  refused("wall", "MATERIAL=REFLECTANCE");
+  CHECK(ReflectanceChange::parse("wall=20%").share == Approx(0.2));
+}
+
+TEST_CASE("a black material becomes grey, and glass has no reflectance") {
+  Scene scene = wide_plate(diffuse(glm::vec3(0.0f)));
+  REQUIRE(scene::set_reflectance(scene, scene.materials[0], 0.3));
+  CHECK(scene.materials[0].diffuse == glm::vec3(scene.materials[0].diffuse.r));
+  CHECK(reflectance_of(scene, scene.materials[0])->whole == Approx(0.3));
+  Scene pane = wide_plate(test::glass(1.5f));
+  CHECK_FALSE(reflectance_of(pane, pane.materials[0]));
+  CHECK_FALSE(scene::set_reflectance(pane, pane.materials[0], 0.3));
+  Scene silver = wide_plate(test::mirror(glm::vec3(0.9f)));
+  REQUIRE(scene::set_reflectance(silver, silver.materials[0], 0.6));
+  CHECK(silver.materials[0].specular.r == Approx(0.6f));
+}
+
+}  // namespace photile::test

@@ -1,0 +1,110 @@
+// Pictures within a small part of the device's memory: the same bits.
+#include <catch2/catch.hpp>
+
+#include "device/context.hpp"
+#include "photile/errors.hpp"
+#include "photile/renderer.hpp"
+#include "photon_sets.hpp"
+#include "pictures.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+using test::room_camera;
+using test::same_bits;
+
+RenderParameters tiny_parameters() { return small_picture(20'000, 48, 36); }
+
+Device limited_device(std::uint64_t bytes) {
+  DeviceOptions options;
+  options.memory_bytes = bytes;
+  return Device(options);
+}
+
+const Scene& room() {
+  static const Scene scene = test::furnished_room(4);
+  return scene;
+}
+
+double figure(const RunStatistics& statistics, const std::string& name) {
+  for (const StageStatistics& stage : statistics) {
+    for (const auto& [figure, value] : stage.figures) {
+      if (figure == name) return value;
+    }
+  }
+  throw std::out_of_range(name);
+}
+
+/// With all maps, as for a walk: one picture makes those alone that it looks at, and takes less.
+RenderResult render_by_all_maps(const Scene& scene, Device& device,
+                                const RenderParameters& parameters) {
+  SceneRenderer renderer(scene, {&device, 1}, parameters);
+  return renderer.render(test::room_camera(), parameters.film);
+}
+
+}  // namespace
+
+TEST_CASE("a picture within a tenth and a fiftieth of the memory of all maps has the same bits",
+          "[slow]") {
+  const MapMode maps = GENERATE(MapMode::triangle, MapMode::automatic);
+  RenderParameters parameters = tiny_parameters();
+  parameters.maps = maps;
+  Device device;
+  const RenderResult expected = render_by_all_maps(room(), device, parameters);
+  const std::uint64_t taken = device.peak_allocated_bytes();
+  // Both light and radiance need several pages of photons, maps and hits then.
+  const double entries = 30 * figure(expected.statistics, "references");
+  CHECK(entries > 0.2 * static_cast<double>(taken));
+  for (const std::uint64_t divisor : {10, 50}) {
+    Device small = limited_device(taken / divisor);
+    const RenderResult result = render(room(), test::room_camera(), small, parameters);
+    CAPTURE(maps == MapMode::automatic, taken, divisor);
+    CHECK(test::same_bits(result.layers, expected.layers));
+    CHECK(small.peak_allocated_bytes() <= taken / divisor);
+  }
+}
+
+// The shapes of the maps of so small a room (100 bytes each, always whole) are most of a tenth.
+TEST_CASE("maps that keep normals give the same bits within an eighth of the memory") {
+  Scene scene = room();
+  const std::size_t first = scene.vertices.size();
+  test::add_torus(scene, 0.5f, 0.15f, 48, 24);
+  for (std::size_t i = first; i < scene.vertices.size(); ++i) {
+    scene.vertices[i] += glm::vec3(1.9f, 1.5f, 1.6f);
+  }
+  RenderParameters parameters = tiny_parameters();
+  parameters.maps = MapMode::patch;
+  Device device;
+  const RenderResult expected = render_by_all_maps(scene, device, parameters);
+  CHECK(figure(expected.statistics, "mixed maps") > 0);
+  Device small = limited_device(device.peak_allocated_bytes() / 8);
+  const RenderResult result = render(scene, test::room_camera(), small, parameters);
+  CHECK(test::same_bits(result.layers, expected.layers));
+}
+
+TEST_CASE("a picture of one light within a tenth of the memory that it takes has the same bits") {
+  // A diffuse scene with one light sums in vectors: bits must not depend on what shares a page.
+  // Coloured walls, since sums of equal numbers hardly depend on their order.
+  const Scene box = test::closed_box(test::diffuse({0.7f, 0.5f, 0.3f}), 5);
+  const Camera camera = Camera::look_at({0.1, 0.1, 0.2}, {1, 0.9, 0.6}, {0, 0, 1}, 1.2);
+  const RenderParameters parameters = tiny_parameters();
+  Device device;
+  const LightLayers expected = render(box, camera, device, parameters).layers;
+  Device small = limited_device(device.peak_allocated_bytes() / 10);
+  CHECK(test::same_bits(render(box, camera, small, parameters).layers, expected));
+}
+
+TEST_CASE("a memory too small for the triangles alone is refused with the remedy") {
+  Device small = limited_device(2'000);
+  CHECK_THROWS_MATCHES(
+      render(room(), test::room_camera(), small, tiny_parameters()), DeviceMemoryError,
+      Catch::Predicate<DeviceMemoryError>(
+          [](const DeviceMemoryError& error) {
+            return std::string(error.what()).find("memory limit") != std::string::npos;
+          },
+          "names the memory limit"));
+}
+
+}  // namespace photile::test

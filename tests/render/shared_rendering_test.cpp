@@ -1,0 +1,127 @@
+// A rendering that several processes share; threads stand in for them, each with a device of its
+// own. tests/mpi has real ones.
+#include <catch2/catch.hpp>
+#include <mutex>
+#include <numeric>
+
+#include "photile/errors.hpp"
+#include "photile/neighbour_groups.hpp"
+#include "photile/photons.hpp"
+#include "photile/renderer.hpp"
+#include "photile/surface_index.hpp"
+#include "pictures.hpp"
+#include "render/shared_photons.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
+#include "thread_communicator.hpp"
+
+namespace photile::test {
+namespace {
+
+using test::room_camera;
+using test::same_bits;
+
+Scene glossy_room() {
+  Scene scene = test::furnished_room(4);
+  scene.materials[0] = test::glossy({0.6f, 0.6f, 0.5f}, glm::vec3(0.04f), 0.3f);
+  scene.materials[1] = test::mirror(glm::vec3(0.9f));  // caustics have maps of their own
+  return scene;
+}
+
+/// The picture of rank 0.
+LightLayers shared_picture(const Scene& scene, std::uint32_t processes,
+                           RenderParameters parameters) {
+  LightLayers picture;
+  on_threads(processes, [&](Communicator& communicator) {
+    Device own;
+    RenderParameters shared = parameters;
+    shared.processes = &communicator;
+    RenderResult result = render(scene, test::room_camera(), own, shared);
+    if (communicator.rank() == 0) picture = std::move(result.layers);
+  });
+  return picture;
+}
+
+}  // namespace
+
+TEST_CASE("processes that share a rendering make the bits of one: light maps, nodes that gather") {
+  const Scene scene = glossy_room();
+  RenderParameters parameters = small_picture(30'000, 32, 24);
+  parameters.light_map_rays = GENERATE(0, 8);
+  const LightLayers expected =
+      render(scene, test::room_camera(), test::device(), parameters).layers;
+  CHECK(same_bits(shared_picture(scene, 3, parameters), expected));
+}
+
+TEST_CASE("estimates at hits are the same bits for any number of processes") {
+  const Scene scene = glossy_room();
+  RenderParameters parameters = small_picture(30'000, 32, 24);
+  parameters.light_maps = LightMapMode::off;
+  CHECK(same_bits(shared_picture(scene, 4, parameters), shared_picture(scene, 1, parameters)));
+}
+
+TEST_CASE("each process has all photons of its maps, in the order of one process, and no others") {
+  const Scene scene = test::furnished_room(6);
+  const RayScene rays(scene);
+  constexpr double radius = 0.15;
+  constexpr std::uint32_t processes = 4;
+  const PhotonTracerParameters tracing{.emitted_photons = 20'000};
+  const Photons all = trace_photons(rays, tracing).photons;
+  const NeighbourGroups groups =
+      find_map_groups(scene, all, MapMode::patch, {radius, 60}, Progress::none());
+  std::vector<std::uint64_t> owned(processes), held(processes);
+  on_threads(processes, [&](Communicator& communicator) {
+    PhotonTracerParameters own = tracing;
+    own.shard = {communicator.rank(), communicator.size()};
+    Photons photons = trace_photons(rays, own).photons;
+    photons.of_all = photons_of_all(communicator, photons);
+    const bool known =
+        photons.of_all->count == all.size() && photons.of_all->landed == landed_on(scene, all) &&
+        find_map_groups(scene, photons, MapMode::patch, {radius, 60}).members == groups.members &&
+        automatic_radius(photons, 20) == automatic_radius(all, 20);
+    const MapOwners owners(scene, groups.patches, photons.of_all->landed, processes);
+    PhotonsMoved moved;
+    photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), moved);
+    held[communicator.rank()] = photons.size();
+    // It holds every photon of the triangles that it answers for, and those of others within the
+    // radius.
+    bool same = known;
+    std::size_t lacking = 0;
+    for (std::uint32_t s = 0; s + 1 < all.first_of.size(); ++s) {
+      const bool own_triangle = owners.of(s) == communicator.rank();
+      std::uint32_t next = photons.first_of[s];
+      for (std::uint32_t i = all.first_of[s]; i < all.first_of[s + 1]; ++i) {
+        const bool there = next < photons.first_of[s + 1] &&
+                           photons.position[next] == all.position[i] &&
+                           photons.flux[next] == all.flux[i];
+        if (there) {
+          ++next;
+          owned[communicator.rank()] += own_triangle ? 1 : 0;
+          continue;
+        }
+        same = same && !own_triangle;
+        for (const std::uint32_t map : groups.of(s)) {
+          if (owners.of_map(map) != communicator.rank()) continue;
+          for (const std::uint32_t member : groups.patches.of(map / 2)) {
+            const auto corners = scene.corners(triangle_of(member));
+            const glm::dvec3 p(all.position[i]);
+            const double apart = triangle_triangle_distance(
+                {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])},
+                {p, p + glm::dvec3(1e-9, 0, 0), p + glm::dvec3(0, 1e-9, 0)});
+            lacking += apart < 0.999 * radius ? 1 : 0;
+          }
+        }
+      }
+      same = same && next == photons.first_of[s + 1];
+    }
+    static std::mutex catch_is_no_friend_of_threads;
+    const std::scoped_lock lock(catch_is_no_friend_of_threads);
+    CHECK(same);
+    CHECK(lacking == 0);
+  });
+  CHECK(std::accumulate(owned.begin(), owned.end(), std::uint64_t{0}) == all.size());
+  for (const std::uint64_t count : owned) CHECK(count < all.size() / 2);
+  for (const std::uint64_t count : held) CHECK(count < all.size());
+}
+
+}  // namespace photile::test

@@ -1,0 +1,189 @@
+// Where the light of each kind of lamp falls, against closed forms.
+#include <catch2/catch.hpp>
+
+#include "photile/errors.hpp"
+#include "photile/photons.hpp"
+#include "statistical_tests.hpp"
+#include "test_scenes.hpp"
+#include "trace/light_emitter.hpp"
+
+namespace photile::test {
+namespace {
+
+using namespace photile::trace;
+
+constexpr std::uint64_t paths = 200'000;
+constexpr float half_side = 2.0f;
+
+/// A black plate of 4 x 4 m in z = 0 under one light.
+Scene lit_plate(const Light& light) {
+  Scene scene = plate(diffuse(glm::vec3(0.0f)), 2 * half_side);
+  scene.lights.push_back(light);
+  return scene;
+}
+
+/// Photons on the plate's top per ring of radii k / 10 m, k = 1 ... 20, and last those anywhere
+/// else, of `paths` emitted.
+std::vector<double> counts_in_rings(const Scene& scene, std::uint64_t seed) {
+  const RayScene rays(scene);
+  const Photons photons = trace_photons(rays, {.emitted_photons = paths, .seed = seed}).photons;
+  std::vector<double> counts(21, 0.0);
+  counts.back() = static_cast<double>(paths - photons.size());
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    const glm::vec3& p = photons.position[i];
+    const double ring = 10 * std::hypot(p.x, p.y);
+    const bool on_top = sided_normal(scene, photons.sided_triangle[i]).z > 0;
+    ++counts[on_top && ring < 20 ? static_cast<std::size_t>(ring) : 20];
+  }
+  return counts;
+}
+
+/// Expected counts from the flux that falls within each radius.
+template <class Within>
+std::vector<double> expected_in_rings(Within&& within) {
+  std::vector<double> expected;
+  for (int k = 0; k < 20; ++k)
+    expected.push_back(paths * (within((k + 1) / 10.0) - within(k / 10.0)));
+  expected.push_back(paths * (1 - within(2.0)));
+  return expected;
+}
+
+Light spot_light(float inner, float outer) {
+  Light light = point_light("spot", {0, 0, 1.5f});
+  light.kind = LightKind::spot;
+  light.inner_cone_angle = inner;
+  light.outer_cone_angle = outer;
+  return light;
+}
+
+}  // namespace
+
+TEST_CASE("A point light fills the rings below it by their solid angles") {
+  const Scene scene = lit_plate(point_light("lamp", {0, 0, 1.5f}));
+  CHECK_VERDICT(counts_agree(counts_in_rings(scene, 3), expected_in_rings([](double r) {
+                               return 0.5 * (1 - 1.5 / std::hypot(1.5, r));
+                             })));
+}
+
+TEST_CASE("A spot light fills the rings below it by the falloff of KHR_lights_punctual") {
+  for (const auto& cone :
+       {std::pair{0.0f, 0.7853982f}, std::pair{0.3f, 0.6f}, std::pair{0.5f, 0.5f}}) {
+    const auto inner = cone.first, outer = cone.second;
+    const Scene scene = lit_plate(spot_light(inner, outer));
+    // Intensity at an angle as the extension's specification writes it, integrated numerically.
+    const double cos_outer = std::cos(outer), width = std::cos(inner) - cos_outer;
+    const auto flux_within = [&](double angle) {
+      constexpr int steps = 200'000;
+      double sum = 0;
+      for (int i = 0; i < steps; ++i) {
+        const double theta = angle * (i + 0.5) / steps, c = std::cos(theta) - cos_outer;
+        const double a = width > 1e-9 ? std::clamp(c / width, 0.0, 1.0) : (c > 0 ? 1.0 : 0.0);
+        sum += a * a * std::sin(theta) * angle / steps;
+      }
+      return sum;
+    };
+    const double all = flux_within(outer);
+    std::vector<double> counts = counts_in_rings(scene, 4);
+    std::vector<double> expected = expected_in_rings(
+        [&](double r) { return flux_within(std::min<double>(outer, std::atan2(r, 1.5))) / all; });
+    // The dark rings outside the cone join the last bin, in which nothing may fall but they must.
+    while (expected.size() > 2 && expected.back() < 5) {
+      expected[expected.size() - 2] += expected.back();
+      counts[counts.size() - 2] += counts.back();
+      expected.pop_back();
+      counts.pop_back();
+    }
+    CAPTURE(inner, outer);
+    CHECK_VERDICT(counts_agree(counts, expected));
+  }
+}
+
+TEST_CASE("A directional light gives E = flux cos(theta) / (pi R^2) evenly over a plate") {
+  Light sun = point_light("sun", glm::vec3(0.0f));
+  sun.kind = LightKind::directional;
+  sun.direction = glm::normalize(glm::vec3(0.6f, 0.2f, -0.9f));
+  const Scene scene = lit_plate(sun);
+  const double disc = M_PI * std::pow(bounding_sphere(scene).radius, 2);
+  CHECK_VERDICT(counts_agree(counts_in_rings(scene, 5), expected_in_rings([&](double r) {
+                               return M_PI * r * r * -sun.direction.z / disc;
+                             })));
+}
+
+TEST_CASE("A square lamp lights the square opposite by the form factor of parallel squares") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3, black);
+  builder.grid({0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 2, black, lamp);
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  std::vector<double> fluxes;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const Photons photons = trace_photons(rays, {.emitted_photons = 50'000, .seed = seed}).photons;
+    double flux = 0;
+    for (const glm::vec3& f : photons.flux) flux += luminance(f);
+    fluxes.push_back(flux);
+  }
+  // Howell, Catalog of radiation heat transfer configuration factors, C-11, unit squares 1 m apart.
+  const double root = std::sqrt(2.0);
+  const double form_factor =
+      2 / M_PI *
+      (std::log(std::sqrt(4.0 / 3.0)) + 2 * root * std::atan(1 / root) - 2 * std::atan(1.0));
+  CHECK_VERDICT(mean_is(fluxes, form_factor, 0.006));
+}
+
+TEST_CASE("An area light emits evenly over its triangles by the cosine law, from its front only") {
+  // Three triangles of different sizes, in z = 0 and facing up.
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const bool two_sided = GENERATE(false, true);
+  const std::uint32_t lamp = builder.add(area_light("lamp", 1, two_sided));
+  builder.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, black, lamp);
+  builder.triangle({2, 0, 0}, {5, 0, 0}, {2, 1, 0}, black, lamp);
+  builder.triangle({6, 0, 0}, {6.5f, 0, 0}, {6, 1, 0}, black, lamp);
+  const Scene scene = builder.build();
+  const LightEmitter emitter(scene, lamp, bounding_sphere(scene));
+
+  std::vector<double> places(6, 0.0), cosines(20, 0.0);
+  for (std::uint64_t i = 0; i < paths; ++i) {
+    const EmittedRay ray = emitter.emit(RandomStream(6, i, 0));
+    const bool up = ray.direction.z > 0;
+    REQUIRE((up || two_sided));
+    REQUIRE(ray.origin.z * ray.direction.z > 0);
+    ++places[(ray.origin.x < 1.5f ? 0 : ray.origin.x < 5.5f ? 2 : 4) + (up ? 0 : 1)];
+    ++cosines[std::min<std::size_t>(
+        static_cast<std::size_t>(20 * ray.direction.z * ray.direction.z), 19)];
+  }
+  CHECK_VERDICT(counts_agree(cosines, std::vector<double>(20, paths / 20.0)));
+  const std::array<double, 3> shares{0.5 / 2.25, 1.5 / 2.25, 0.25 / 2.25};
+  if (two_sided) {
+    std::vector<double> expected;
+    for (const double share : shares)
+      expected.insert(expected.end(), {0.5 * share * paths, 0.5 * share * paths});
+    CHECK_VERDICT(counts_agree(places, expected));
+  } else {
+    CHECK(places[1] + places[3] + places[5] == 0);
+    CHECK_VERDICT(counts_agree({places[0], places[2], places[4]},
+                               {shares[0] * paths, shares[1] * paths, shares[2] * paths}));
+  }
+}
+
+TEST_CASE("An area light whose winding is turned emits from its other side") {
+  SceneBuilder builder;
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
+  builder.quad({0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, builder.add(Material()), lamp);
+  const Scene scene = builder.build();
+  const LightEmitter emitter(scene, lamp, bounding_sphere(scene));
+  for (std::uint64_t i = 0; i < 1000; ++i)
+    REQUIRE(emitter.emit(RandomStream(6, i, 0)).direction.z < 0);
+}
+
+TEST_CASE("An area light without area is an input error that names it and the file") {
+  Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);
+  scene.lights.push_back(area_light("Bulb"));
+  CHECK_THROWS_WITH(trace_photons(RayScene(scene), {}),
+                    Catch::Contains("plate") && Catch::Contains("Bulb"));
+  CHECK_THROWS_AS(trace_photons(RayScene(scene), {}), InputError);
+}
+
+}  // namespace photile::test
