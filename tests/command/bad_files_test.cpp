@@ -5,7 +5,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
@@ -35,11 +34,6 @@ std::string refusal(const FileFolder& folder, const std::string& scene,
   return line;
 }
 
-TEST_CASE("a missing scene is an input error that names the file") {
-  const FileFolder folder;
-  CHECK_THAT(refusal(folder, folder / "none.obj"), Contains("none.obj"));
-}
-
 TEST_CASE("an unreadable scene is an input error") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
@@ -48,85 +42,22 @@ TEST_CASE("an unreadable scene is an input error") {
   CHECK_THAT(refusal(folder, scene, held_to_permissions), Contains("box.obj"));
 }
 
-TEST_CASE("an empty scene is an input error, for each format") {
-  const std::string name = GENERATE("empty.obj", "empty.gltf", "empty.glb");
-  const FileFolder folder;
-  CHECK_THAT(refusal(folder, folder.write(name, "")), Contains(name));
-}
-
-TEST_CASE("a malformed scene is an input error, for each format") {
-  const auto [name, text] = GENERATE(table<std::string, std::string>({
-      {"bad.gltf", "{\"asset\": {\"version\": \"2.0\""},
-      {"bad.gltf", "[1, 2, 3]"},
-      {"bad.glb", "glTF\x02 and then nothing of the kind"},
-      {"bad.obj", "f 1 2 3\n"},
-  }));
-  const FileFolder folder;
-  CHECK_THAT(refusal(folder, folder.write(name, text)), Contains(name));
-}
-
-TEST_CASE("a file of another kind is an input error that says what can be read") {
-  const FileFolder folder;
-  CHECK_THAT(refusal(folder, folder.write("scene.txt", "hello")),
-             Contains("scene.txt") && Contains(".obj"));
-}
-
-TEST_CASE("a folder in place of a scene is an input error") {
+TEST_CASE("what is no scene is an input error that says so, of one line") {
   const FileFolder folder;
   std::filesystem::create_directory(folder / "folder.obj");
-  CHECK_THAT(refusal(folder, folder / "folder.obj"), Contains("folder.obj"));
-}
-
-TEST_CASE("a picture of a scene without lights is an input error that says so; info describes it") {
-  const FileFolder folder;
-  folder.write("box.mtl", "newmtl wall\nKd 0.7 0.6 0.5\nnewmtl red_lamp\nnewmtl blue_lamp\n");
-  const std::string scene = folder.write("box.obj", box_obj());
-  const Outcome render = run_photile({"render", scene, "-o", folder / "out.exr"});
-  CHECK_THAT(last_error(render, bad_input), Contains("no lights"));
-  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
-  const Outcome info = succeed({"info", scene});
-  CHECK_THAT(info.output + info.errors, Contains("no lights"));
-}
-
-TEST_CASE("a scene without geometry is an input error that says so") {
-  const FileFolder folder;
-  folder.write("box.mtl", box_mtl());
-  const std::string scene = folder.write("box.obj", "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
-  CHECK_THAT(refusal(folder, scene), Contains("triangle"));
-}
-
-TEST_CASE("triangles with a corner that is no number are dropped, counted and reported") {
-  const std::string corner = GENERATE("v nan -1 -1\n", "v inf -1 -1\n");
-  const FileFolder folder;
-  folder.write("box.mtl", box_mtl());
-  // A vertex of its own, used by one more triangle.
-  const std::string scene =
-      folder.write("box.obj", box_obj() + corner + "o spoilt\nusemtl wall\nf 1 2 17\n");
-  const Outcome outcome = run_photile({"info", "--json", scene});
-  if (outcome.exit_code == 0) {
-    const auto facts = nlohmann::json::parse(outcome.output);
-    CHECK(facts["non_finite_triangles"] == 1);
-    CHECK(facts["triangles"] == 16);
-  } else {
-    CHECK_THAT(only_error(outcome, bad_input), Contains("box.obj"));
+  folder.write("empty.obj", "");
+  folder.write("list.gltf", "[1, 2, 3]");
+  folder.write("cut.glb", "glTF\x02 and then nothing of the kind");
+  folder.write("text.txt", "hello");
+  folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  const std::pair<const char*, const char*> said[] = {
+      {"none.obj", "none.obj"}, {"two\nlines.obj", "two lines.obj"}, {"folder.obj", "folder.obj"},
+      {"empty.obj", "empty"},   {"list.gltf", "malformed"},          {"cut.glb", "malformed"},
+      {"text.txt", ".obj"},     {"points.obj", "triangle"}};
+  for (const auto& [name, words] : said) {
+    CAPTURE(name);
+    CHECK_THAT(refusal(folder, folder / name), Contains(words));
   }
-}
-
-TEST_CASE("triangles without area are dropped, counted and reported") {
-  const FileFolder folder;
-  folder.write("box.mtl", box_mtl());
-  const std::string scene =
-      folder.write("box.obj", box_obj() + "o thin\nusemtl wall\nf 1 2 2\nf 3 3 3\n");
-  const Outcome outcome = succeed({"info", "--json", scene});
-  const auto facts = nlohmann::json::parse(outcome.output);
-  CHECK(facts["degenerate_triangles"] == 2);
-  CHECK(facts["triangles"] == 16);
-  CHECK_THAT(facts["warnings"].dump(), Contains("2 triangles without area"));
-}
-
-TEST_CASE("a line feed in a file name does not make two lines of an error") {
-  const FileFolder folder;
-  CHECK_THAT(refusal(folder, folder / "two\nlines.obj"), Contains("two lines.obj"));
 }
 
 // Small files that ask for much: refused, and in little memory. (Time is no matter of assertions;
@@ -278,23 +209,6 @@ std::string refusal(const std::vector<std::string>& outputs, int exit_code) {
   return only_error(run_photile(arguments), exit_code);
 }
 
-/// An EXR of one light layer, so large that a small limit on file sizes cuts it.
-std::string write_layered_picture(const FileFolder& folder) {
-  Image picture;
-  picture.width = picture.height = 64;
-  for (const char* channel : {"R", "G", "B", "Combined_a.R", "Combined_a.G", "Combined_a.B"}) {
-    std::vector<float>& plane = picture.add(channel);
-    // Noise, so that compression cannot save the day.
-    std::uint32_t state = 1;
-    for (float& value : plane) {
-      state = state * 1664525u + 1013904223u;
-      value = static_cast<float>(state) * 1e-9f;
-    }
-  }
-  write_exr(folder / "in.exr", picture);
-  return folder / "in.exr";
-}
-
 TEST_CASE("an output in a folder that does not exist is refused before the work") {
   const std::string option = GENERATE("-o", "--illuminance", "--stats");
   const std::string file = "/nonexistent-folder/out.png";
@@ -330,34 +244,6 @@ TEST_CASE("an output of an unknown format is a usage error") {
   const FileFolder folder;
   CHECK_THAT(refusal({"-o", folder / "out.jpg"}, usage), Contains("out.jpg") && Contains(".exr"));
   CHECK_THAT(refusal({"--luminance", folder / "out.exr"}, usage), Contains(".png"));
-}
-
-TEST_CASE("an output named twice is a usage error") {
-  const FileFolder folder;
-  CHECK_THAT(refusal({"-o", folder / "out.png", "-o", folder / "./out.png"}, usage),
-             Contains("twice"));
-}
-
-TEST_CASE("an output that is the scene itself is a usage error and the scene is kept") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder);
-  const std::string before = folder.read("box.obj");
-  const Outcome outcome =
-      run_photile({"render", scene, "-o", folder / "out.exr", "--stats", folder / "./box.obj"});
-  CHECK_THAT(only_error(outcome, usage), Contains("box.obj"));
-  CHECK(folder.read("box.obj") == before);
-}
-
-TEST_CASE("a disk that fills up while an EXR is written leaves the earlier file and no other") {
-  const FileFolder folder;
-  const std::string input = write_layered_picture(folder);
-  folder.write("out.exr", "earlier");
-  Run run;
-  run.arguments = {"relight", input, "--light", "a=x2", "-o", folder / "out.exr"};
-  run.file_size_limit = 10'000;  // the picture has 64 x 64 x 6 floats of noise
-  CHECK_THAT(only_error(run_photile(run), failure), Contains("out.exr"));
-  CHECK(folder.read("out.exr") == "earlier");
-  CHECK(folder.file_count() == 2);
 }
 
 }  // namespace

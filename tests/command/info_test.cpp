@@ -88,13 +88,15 @@ TEST_CASE("info as text names every light and material") {
 TEST_CASE("info counts what the import dropped, and says so") {
   const FileFolder folder;
   folder.write("box.mtl", box_mtl());
-  // The first wall again, the other way round, and a triangle without area.
-  const std::string scene =
-      folder.write("box.obj", box_obj() + "usemtl wall\nf 4 3 2 1\nf 1 2 2\n");
+  // The first wall again, the other way round, a triangle without area, and one with a corner that
+  // is no number.
+  const std::string scene = folder.write(
+      "box.obj", box_obj() + "v nan -1 -1\nusemtl wall\nf 4 3 2 1\nf 1 2 2\nf 1 2 17\n");
   const auto facts = info(scene);
   CHECK(facts["triangles"] == 16);
   CHECK(facts["degenerate_triangles"] == 1);
   CHECK(facts["duplicate_triangles"] == 2);
+  CHECK(facts["non_finite_triangles"] == 1);
   const Outcome text = run_photile({"info", scene});
   CHECK_THAT(text.output, Contains("warning: 1 triangles without area are dropped"));
 }

@@ -67,10 +67,11 @@ TEST_CASE("measure writes the same values to all of its files") {
   }
   CHECK_FALSE(std::getline(res, value));
   CHECK_THAT(folder.read("a.svg"), Contains("<svg") && Contains("lux") && Contains("</svg>"));
-  CHECK_THAT(folder.read("a.html"),
-             Contains("E<sub>m</sub>") && Contains("</svg>") && Contains("</html>") &&
-                 Contains("<h2>Luminaires</h2>") && Contains("<td>right</td>") &&
-                 Contains("<h2>Reflectances</h2>") && Contains("<dt>seed</dt>"));
+  CHECK_THAT(folder.read("a.html"), Contains("E<sub>m</sub>") && Contains("</svg>") &&
+                                        Contains("</html>") && Contains("<h2>Luminaires</h2>") &&
+                                        Contains("<td>right</td>") && Contains(" lm</td>") &&
+                                        !Contains(" W)") && Contains("<h2>Reflectances</h2>") &&
+                                        Contains("<dt>seed</dt>"));
 }
 
 TEST_CASE("a report shows the moods of a picture, and is printed as PDF") {

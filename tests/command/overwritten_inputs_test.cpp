@@ -266,7 +266,7 @@ TEST_CASE("two outputs that are one file are refused, also where it does not exi
   fs::create_hard_link(folder / "a.png", folder / "b.png");
   for (const auto& [first, second] :
        {std::pair("new.png", "dangling.png"), std::pair("dangling.png", "new.png"),
-        std::pair("a.png", "b.png")}) {
+        std::pair("a.png", "b.png"), std::pair("new.png", "./new.png")}) {
     const auto outcome =
         run_photile({"render", scene, "-o", folder / first, "-o", folder / second});
     CHECK_THAT(only_error(outcome, usage),

@@ -205,6 +205,8 @@ TEST_CASE("a scene of several is taken by name or index") {
   CHECK(load("0").vertices[0].z == 0.0f);
   CHECK_THROWS_WITH(load("dusk"), Catch::Contains("'dusk'") && Catch::Contains("2 'night'"));
   CHECK_THROWS_AS(load("3"), UsageError);
+  document["scene"] = 1;
+  CHECK(load("").vertices[0].z == 9.0f);
   document.erase("scenes");
   document.erase("scene");
   CHECK_THROWS_AS(load("0"), UsageError);
@@ -294,18 +296,6 @@ TEST_CASE("sparse accessors are bounded: their count, their indices, their value
   CHECK_THAT(error_of({{"indices", {{"bufferView", 77}}}}), Contains("no buffer view 77"));
   CHECK_THAT(error_of({{"values", {{"byteOffset", 4}}}}), Contains("beyond"));
   CHECK_THAT(error_of({{"values", {{"bufferView", -3}}}}), Contains("values.bufferView is -3"));
-}
-
-TEST_CASE("nodes that multiply are counted before they are visited") {
-  json document = square_document();
-  document["nodes"] = json::array();
-  // 2^300 visits of one mesh; then a chain that ends in a cycle, which ends the count as well.
-  for (int i = 0; i < 300; ++i) document["nodes"].push_back({{"children", {i + 1, i + 1}}});
-  document["nodes"].push_back({{"mesh", 0}});
-  CHECK(input_error_of([&] { load_gltf(document); }).find("several parents") != std::string::npos);
-  for (int i = 0; i < 300; ++i) document["nodes"][i] = {{"children", {i + 1}}};
-  document["nodes"][300] = {{"children", {10, 20, 30}}};
-  CHECK(input_error_of([&] { load_gltf(document); }).find("ancestor") != std::string::npos);
 }
 
 }  // namespace photile::test

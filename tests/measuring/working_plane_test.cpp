@@ -9,7 +9,6 @@
 #include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
-#include "statistical_tests.hpp"
 #include "temporary_folder.hpp"
 #include "test_scenes.hpp"
 
@@ -301,34 +300,6 @@ TEST_CASE(
           Approx((1 + std::cos(alpha)) * sine / (glm::pi<double>() * 4 * glm::pi<double>() * d2))
               .epsilon(1e-4));
   }
-}
-
-TEST_CASE(
-    "under an even sky half a cylinder reads glm::pi<double>() L, and of one side what lies before "
-    "it") {
-  Scene scene = plate(diffuse(glm::vec3(0)), 0.01f);
-  const bool half = GENERATE(false, true);
-  // A sky that shines from the half x > 0 alone: the integral of (1 + cos alpha) over it is
-  // pi + 2 of 2 pi.
-  std::vector<glm::vec3> texels;
-  for (int i = 0; i < 8; ++i) {
-    const EnvironmentMap probe("probe", 8, 1, std::vector<glm::vec3>(8, glm::vec3(1.0f)));
-    const bool lit = !half || probe.direction_at(i + 0.5, 0, 0.5).x > 0;
-    texels.emplace_back(lit ? 2.0f : 0.0f);
-  }
-  add_environment(scene, EnvironmentMap("sky", 8, 1, texels));
-  Sensor sensor{{0, 0.5, 0}, {0, 1, 0}};
-  sensor.response = SensorResponse::semi_cylindrical;
-  sensor.facing = {1, 0, 0};
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    const auto layers =
-        gather_by_paths(scene, std::span(&sensor, 1), {.rays = 4096}, seed).layers.dense();
-    values.push_back(scene.lights[0].power * double{layers.layers[0].illuminance[0]});
-  }
-  const double truth =
-      glm::pi<double>() * 2 * (half ? (glm::pi<double>() + 2) / (2 * glm::pi<double>()) : 1);
-  CHECK_VERDICT(mean_is(values, truth, 0.03 * truth));
 }
 
 TEST_CASE("a task has a band of surroundings around it") {

@@ -54,17 +54,19 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
   report::ReportTable table{
       "Luminaires",
-      {"number", "name", "kind", "photometric file", "position (x, y, z), m", "power"},
+      {"number", "name", "kind", "photometric file", "position (x, y, z), m", "luminous flux"},
       {}};
   const std::vector<double> powers = powers_of(scene, mix);
   const LightGroups groups = light_groups_of(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const PowerUnit unit = mix.lights[groups.group_of[i]].unit;
+    // Radiant watts would be read as those of the mains.
+    const bool watts = mix.lights[groups.group_of[i]].unit == PowerUnit::watt;
+    const double lumens = (watts ? mix.lumen_per_watt : 1) * powers[i];
     table.rows.push_back(
         {std::to_string(i + 1), light.name, kind_name(light),
          light.distribution == none ? "" : scene.distributions[light.distribution].name(),
-         place_text(scene, light), format_power_in_both(powers[i], unit, mix.lumen_per_watt)});
+         place_text(scene, light), format_power(lumens, PowerUnit::lumen)});
   }
   return table;
 }

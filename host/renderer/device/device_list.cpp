@@ -1,12 +1,18 @@
 #include "device/device_list.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
 
+#include "common/threads.hpp"
 #include "device/cache_folder.hpp"
 #include "device/context.hpp"
 #include "device/pocl_cache.hpp"
@@ -113,13 +119,51 @@ std::vector<cl_platform_id> platforms() {
 /// OpenCL call. What the user set stays.
 void keep_intel_from_vectorizing() { ::setenv("CL_CONFIG_CPU_VECTORIZER_MODE", "1", 0); }
 
+/// PoCL aborts for want of a thread, and for a number of them that is none. Call before the first
+/// OpenCL call.
+void bound_pocl_threads() {
+  int threads = core_count();
+  for (const char* variable : pocl_thread_variables) {
+    const char* const text = std::getenv(variable);
+    if (text == nullptr) continue;
+    const int asked = std::atoi(text);
+    if (asked > 0) threads = std::min(threads, asked);
+    ::setenv(variable, std::to_string(threads).c_str(), 1);
+  }
+  static const bool enough = (require_threads(threads), true);  // once: later PoCL has its threads
+  static_cast<void>(enough);
+}
+
+/// What the loader of libraries says of each runtime that is registered and cannot be loaded.
+std::vector<std::string> unloadable_runtimes() {
+  const char* const given = std::getenv("OCL_ICD_VENDORS");
+  const std::filesystem::path folder = given ? given : "/etc/OpenCL/vendors";
+  std::vector<std::string> lines;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    std::string library;
+    if (entry.path().extension() != ".icd") continue;
+    if (!std::getline(std::ifstream(entry.path()), library)) continue;
+    void* const loaded = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (loaded) {
+      dlclose(loaded);
+    } else {
+      lines.push_back(entry.path().filename().string() + ": " + dlerror());
+    }
+  }
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
 }  // namespace
 
 DeviceList enumerate_devices() {
+  bound_pocl_threads();
   prepare_pocl_work_folder();
   keep_intel_from_vectorizing();
   DeviceList list;
   const auto found = platforms();
+  if (found.empty()) list.left_out = unloadable_runtimes();
   for (std::size_t p = 0; p < found.size(); ++p) {
     const auto devices = devices_of(found[p]);
     if (devices.empty()) {

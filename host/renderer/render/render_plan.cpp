@@ -12,6 +12,7 @@
 #include "render/exchange.hpp"
 #include "render/pass_count.hpp"
 #include "render/setting.hpp"
+#include "scene/scene_queries.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile {
@@ -71,6 +72,19 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
           .max_specular_depth = parameters.max_specular_depth};
 }
 
+namespace {
+
+/// Before anything else is exchanged. Errors: UsageError.
+void require_same_work(const RenderParameters& asked, const Scene& scene) {
+  ContentHash hash_of_scene, hash_of_settings;
+  scene::add_scene(scene, hash_of_scene);
+  require_same(*asked.processes, hash_of_scene, "a scene");
+  for (const Setting& setting : settings()) hash_of_settings.add(text_of(setting.value(asked)));
+  require_same(*asked.processes, hash_of_settings, "settings");
+}
+
+}  // namespace
+
 RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits,
                        Progress& progress)
     : used_(asked),
@@ -78,6 +92,8 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
       least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
+  if (asked.processes) require_same_work(asked, rays.scene());
+  check_picture_memory(asked.film.width, asked.film.height, rays.scene(), progress);
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) {
