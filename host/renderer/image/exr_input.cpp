@@ -194,14 +194,12 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   // What is missing OpenEXR reads as zeros. Deflate's longest match makes 258 bytes of 2 bits, and
   // halves become floats.
   constexpr std::uint64_t most_deflated = 2 * 4 * 258;
-  if (deflated && decoded / most_deflated > encoded) {
-    throw DecodeError(fmt::format("is damaged: {} bytes are too few for {} x {} pixels", encoded,
-                                  parts_.front().width, parts_.front().height));
-  }
-  if (decoded <= unchecked_bytes) return;
+  const bool lacks_bytes = deflated && decoded / most_deflated > encoded;
   constexpr std::uint64_t bytes_of_channel = 128;  // its name, what the header says of its light
-  if (pixels < encoded * limits::max_exr_pixels_per_byte &&
-      decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels) {
+  if (!lacks_bytes &&
+      (decoded <= unchecked_bytes ||
+       (pixels < encoded * limits::max_exr_pixels_per_byte &&
+        decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels))) {
     return;
   }
   throw DecodeError(
