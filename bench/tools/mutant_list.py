@@ -141,13 +141,6 @@ MUTANTS = (
     Mutant("distances from needles in floats", "host/renderer/maps/map_shapes.cpp",
            "constexpr double most_heights = 16;", "constexpr double most_heights = 1e30;",
            (("estimate", "extremes: needles*"),)),
-    Mutant("border of tiles 10% too narrow", "host/renderer/maps/map_tiling.cpp",
-           "const double rows = (radius + 3", "const double rows = (0.9 * radius + 3",
-           (("maps", "the page of a place*"),)),
-    Mutant("a row of each tile dropped", "kernels/grid/tile.clh",
-           "(uint)cell.y >= tile->first_row && (uint)cell.y < tile->last_row;",
-           "(uint)cell.y >= tile->first_row && (uint)cell.y < tile->last_row && "
-           "(uint)cell.y != (tile->first_row + tile->last_row) / 2u;", (("estimate", "tiles find*"),)),
     # Lights
     Mutant("ballast-lamp factor in files of any year", "host/formats/photometry/ies_reader.cpp",
            "has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0", "next > 0.0",

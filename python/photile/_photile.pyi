@@ -87,11 +87,7 @@ class Photons:
 
 def trace(
     scene: Scene,
-    count: int,
-    seed: int,
-    quota: str,
-    store_direct: bool,
-    max_path_length: int,
+    options: dict[str, Any],
     progress: Callback,
 ) -> Photons: ...
 
@@ -102,11 +98,7 @@ class PhotonMaps:
         normals: Optional[Floats],
         flux: Optional[Floats],
         lights: Optional[NDArray[np.uint16]],
-        radius: float,
-        neighbours: int,
-        angle: float,
-        photons_per_cell: float,
-        device: str,
+        options: dict[str, Any],
         progress: Callback,
     ) -> None: ...
     def __len__(self) -> int: ...
@@ -114,10 +106,10 @@ class PhotonMaps:
     def radius(self) -> float: ...
     def statistics(self) -> dict[str, Any]: ...
     def nearest(
-        self, points: Floats, normals: Optional[Floats], k: int, radius: float
+        self, points: Floats, normals: Optional[Floats], options: dict[str, Any]
     ) -> tuple[Numbers, Floats]: ...
     def irradiance(
-        self, points: Floats, normals: Optional[Floats], k: int, radius: float, kernel: str
+        self, points: Floats, normals: Optional[Floats], options: dict[str, Any]
     ) -> Floats: ...
 
 class Picture:
@@ -135,27 +127,15 @@ class Picture:
     def unit_layer(self, light: str) -> Floats: ...
     def unit_illuminance(self, light: str) -> Floats: ...
     def mix(self, changes: Changes) -> Floats: ...
-    def displayed(
-        self, changes: Changes, exposure: Optional[float], automatic: bool, display: str
-    ) -> Floats: ...
+    def displayed(self, changes: Changes, display: dict[str, Any]) -> Floats: ...
     def save_exr(self, file: str, changes: Changes) -> None: ...
-    def save_png(
-        self,
-        file: str,
-        changes: Changes,
-        exposure: Optional[float],
-        automatic: bool,
-        display: str,
-    ) -> None: ...
+    def save_png(self, file: str, changes: Changes, display: dict[str, Any]) -> None: ...
 
 def render(
     scene: Scene,
     camera: Union[int, CameraParts],
-    size: Optional[tuple[int, int]],
-    integrator: str,
+    options: dict[str, Any],
     settings: dict[str, Any],
-    lumen_per_watt: float,
-    device: str,
     progress: Callback,
 ) -> Picture: ...
 def read_picture(file: str) -> Picture: ...
@@ -163,13 +143,7 @@ def measure(
     scene: Scene,
     points: Doubles,
     normals: Doubles,
-    rays: int,
-    repeats: int,
-    cylindrical: bool,
-    integrator: str,
-    maintenance: float,
-    lumen_per_watt: float,
+    options: dict[str, Any],
     settings: dict[str, Any],
-    device: str,
     progress: Callback,
 ) -> list[tuple[str, Doubles, Doubles]]: ...

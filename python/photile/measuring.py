@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
 from .errors import InputError
-from .scenes import Scene
+from .scenes import Scene, floats
 
 __all__ = ["Illuminance", "grid", "measure"]
 
@@ -124,19 +124,31 @@ def measure(
     UsageError
         Names the setting and its range.
     """
-    where = np.ascontiguousarray(points, np.float64)
+    where = floats(points, "points", np.float64)
     if where.ndim != 2 or where.shape[1] != 3:
         raise InputError(f"points: the array has shape {where.shape}, and has to have (m, 3)")
     if not np.all(np.isfinite(where)):
         row = int(np.argmin(np.all(np.isfinite(where), axis=1)))
         raise InputError(f"points: number {row} is no place")
-    facing = np.asarray(normals, np.float64)
+    facing = floats(normals, "normals", np.float64)
     if facing.shape == (3,):
         facing = np.broadcast_to(facing, where.shape)
     facing = np.ascontiguousarray(facing)
     found = _photile.measure(
-        scene._core, where, facing, rays, repeats, cylindrical, integrator, maintenance,
-        lumen_per_watt, dict(settings), device, progress,
+        scene._core,
+        where,
+        facing,
+        {
+            "rays": rays,
+            "repeats": repeats,
+            "cylindrical": cylindrical,
+            "integrator": integrator,
+            "maintenance": maintenance,
+            "lumen_per_watt": lumen_per_watt,
+            "device": device,
+        },
+        dict(settings),
+        progress,
     )
     total, lights = found[0], found[1:]
     return Illuminance(

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
 from .errors import InputError, UsageError
-from .scenes import Scene
+from .scenes import Scene, floats
 
 __all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "trace"]
 
@@ -158,11 +158,14 @@ def trace(
     KeyboardInterrupt
         Ctrl-C was pressed.
     """
-    if photons < 0 or seed < 0:
-        raise UsageError("photons and seed: negative numbers are out of their range")
-    core = _photile.trace(
-        scene._core, photons, seed, quota, store_direct, max_path_length, progress
-    )
+    options = {
+        "photons": photons,
+        "seed": seed,
+        "quota": quota,
+        "store_direct": store_direct,
+        "max_path_length": max_path_length,
+    }
+    core = _photile.trace(scene._core, options, progress)
     return Photons(scene, core)
 
 
@@ -245,18 +248,18 @@ class PhotonMaps:
             positions = _rows(photons, "positions")
         of_photons = None if lights is None else _lights(lights)
         self._has_normals = normals is not None
-        if radius is not None and not radius > 0:
-            raise UsageError(f"radius: '{radius}' is not a number above 0")
         self._core = _photile.PhotonMaps(
             positions,
             None if normals is None else _rows(normals, "normals"),
             None if flux is None else _rows(flux, "flux"),
             of_photons,
-            radius or 0.0,
-            neighbours,
-            angle,
-            photons_per_cell,
-            device,
+            {
+                "radius": _radius(radius),
+                "neighbours": neighbours,
+                "angle": angle,
+                "photons_per_cell": photons_per_cell,
+                "device": device,
+            },
             progress,
         )
 
@@ -306,9 +309,9 @@ class PhotonMaps:
             k or the radius is out of its range.
         """
         where, facing = self._queries(points, normals)
+        options = {"k": k, "radius": _radius(radius)}
         parts = [
-            self._core.nearest(where[part], None if facing is None else facing[part], k,
-                               radius or 0.0)
+            self._core.nearest(where[part], None if facing is None else facing[part], options)
             for part in _parts(len(where))
         ]
         return Neighbours(_joined([p[0] for p in parts]), _joined([p[1] for p in parts]))
@@ -343,10 +346,10 @@ class PhotonMaps:
             As for `nearest`.
         """
         where, facing = self._queries(points, normals)
+        options = {"k": k, "radius": _radius(radius), "kernel": kernel}
         return _joined(
             [
-                self._core.irradiance(where[part], None if facing is None else facing[part], k,
-                                      radius or 0.0, kernel)
+                self._core.irradiance(where[part], None if facing is None else facing[part], options)
                 for part in _parts(len(where))
             ]
         )
@@ -355,7 +358,7 @@ class PhotonMaps:
         self, points: ArrayLike, normals: Optional[ArrayLike]
     ) -> tuple[NDArray[np.float32], Optional[NDArray[np.float32]]]:
         if self._origin is not None:
-            points = np.asarray(points, np.float64) - self._origin
+            points = floats(points, "points", np.float64) - self._origin
         where = _rows(points, "points")
         if normals is None and self._has_normals:
             raise InputError("normals: the photons have some, so points need theirs")
@@ -365,9 +368,18 @@ class PhotonMaps:
         return f"<photile.PhotonMaps: {len(self)} photons, radius {self.radius:.4g} m>"
 
 
+def _radius(radius: Optional[float]) -> float:
+    """0 stands for none."""
+    if radius is None:
+        return 0.0
+    if not isinstance(radius, (int, float, np.number)) or not radius > 0:
+        raise UsageError(f"radius: '{radius}' is not a number above 0")
+    return float(radius)
+
+
 def _rows(values: ArrayLike, name: str) -> NDArray[np.float32]:
     """A C-contiguous (n, 3) array of floats: the same one where it is such."""
-    array = np.ascontiguousarray(values, np.float32)
+    array = floats(values, name)
     if array.ndim == 1 and array.size == 3:
         array = array.reshape(1, 3)
     if array.ndim != 2 or array.shape[1] != 3:

@@ -162,7 +162,10 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         (height, width, 3) array of uint8
             sRGB.
         """
-        linear = self._core.displayed(self._changes + _listed(changes), exposure, automatic, view)
+        linear = self._core.displayed(
+            self._changes + _listed(changes),
+            {"exposure": exposure, "automatic": automatic, "view": view},
+        )
         curve = np.where(
             linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055
         )
@@ -199,7 +202,8 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         if name.lower().endswith(".exr"):
             self._core.save_exr(name, all_changes)
         elif name.lower().endswith(".png"):
-            self._core.save_png(name, all_changes, exposure, automatic, view)
+            display = {"exposure": exposure, "automatic": automatic, "view": view}
+            self._core.save_png(name, all_changes, display)
         else:
             raise UsageError(f"{name}: a picture is written as .exr or .png")
 
@@ -226,10 +230,13 @@ def png_of(pixels: NDArray[np.uint8]) -> bytes:
 
 def _listed(changes: Changes) -> _photile.Changes:
     """As the extension takes them."""
-    return [
-        (name, value if isinstance(value, str) else f"x{float(value)!r}")
-        for name, value in (changes or {}).items()
-    ]
+    listed = []
+    for name, value in (changes or {}).items():
+        try:
+            listed.append((str(name), value if isinstance(value, str) else f"x{float(value)!r}"))
+        except (TypeError, ValueError):
+            raise UsageError(f"light '{name}': {value!r} is neither a factor nor text") from None
+    return listed
 
 
 def render(
@@ -286,11 +293,13 @@ def render(
     core = _photile.render(
         scene._core,
         scene._camera(camera),
-        size,
-        integrator,
+        {
+            "size": size,
+            "integrator": integrator,
+            "lumen_per_watt": lumen_per_watt,
+            "device": device,
+        },
         {"quality": quality, **settings},
-        lumen_per_watt,
-        device,
         progress,
     )
     return Picture(core)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ from .errors import InputError, UsageError
 __all__ = ["Camera", "Light", "Material", "Scene", "load"]
 
 Vector = tuple[float, float, float]
+_Part = TypeVar("_Part")
 
 
 @dataclass(frozen=True)
@@ -136,21 +138,43 @@ class Camera:
     aspect_ratio: float = 0.0
 
     def _parts(self) -> _photile.CameraParts:
-        forward = np.subtract(self.target, self.position)
+        position, target, up = (
+            _vector(getattr(self, name), f"camera '{self.name}': {name}")
+            for name in ("position", "target", "up")
+        )
+        forward = np.subtract(target, position)
         if not np.all(np.isfinite(forward)) or not np.any(forward):
             raise UsageError(f"camera '{self.name}': it looks nowhere; give another target")
         return (
             self.name,
-            _vector(self.position),
-            _vector(forward),
-            _vector(self.up),
-            float(np.radians(self.field_of_view)),
+            position,
+            _vector(forward, "target"),
+            up,
+            float(np.radians(_number(self.field_of_view, f"camera '{self.name}': field_of_view"))),
             self.aspect_ratio,
         )
 
 
-def _vector(values: ArrayLike) -> Vector:
-    x, y, z = (float(value) for value in np.asarray(values, dtype=float).reshape(3))
+def floats(values: ArrayLike, name: str, kind: Any = np.float32) -> NDArray[Any]:
+    """A C-contiguous array: the same one where it is such. Raises InputError where it is none."""
+    try:
+        return np.ascontiguousarray(values, kind)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: {reprlib.repr(values)} is no array of numbers") from None
+
+
+def _number(value: Any, name: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise UsageError(f"{name}: {reprlib.repr(value)} is no number") from None
+
+
+def _vector(values: ArrayLike, name: str) -> Vector:
+    array = floats(values, name, np.float64)
+    if array.shape != (3,):
+        raise InputError(f"{name}: {reprlib.repr(values)} is no three numbers")
+    x, y, z = (float(value) for value in array)
     return (x, y, z)
 
 
@@ -160,7 +184,7 @@ def _per_corner(
     """Rows per vertex; none where there are no values."""
     if values is None:
         return np.empty((0, columns), np.float32)
-    array = np.asarray(values, np.float32)
+    array = floats(values, name)
     expected = (triangles.shape[0], 3, columns)
     if array.shape == expected and 3 * triangles.shape[0] == vertices:
         return np.ascontiguousarray(array.reshape(-1, columns))
@@ -240,7 +264,7 @@ class Scene:
         name: str = "scene in memory",
     ) -> None:
         if vertices is None:
-            corners = np.asarray(triangles, np.float32)
+            corners = floats(triangles, "triangles")
             if corners.ndim != 3 or corners.shape[1:] != (3, 3):
                 raise InputError(
                     f"triangles: the array has shape {corners.shape}, and has to have (n, 3, 3)"
@@ -249,7 +273,7 @@ class Scene:
             points = np.ascontiguousarray(corners.reshape(-1, 3))
             faces = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
         else:
-            points = np.ascontiguousarray(vertices, np.float32)
+            points = floats(vertices, "vertices")
             if points.ndim != 2 or points.shape[1] != 3:
                 raise InputError(
                     f"vertices: the array has shape {points.shape}, and has to have (v, 3)"
@@ -259,7 +283,8 @@ class Scene:
                 raise InputError(
                     f"triangles: the array has shape {faces.shape}, and has to have (n, 3)"
                 )
-        materials = materials or (Material(),)
+        materials = [_part(one, Material, "materials") for one in materials or (Material(),)]
+        lights = [_part(one, Light, "lights") for one in lights]
         if triangle_materials is None:
             of_triangles = np.zeros(len(faces), np.uint32)
         else:
@@ -279,7 +304,7 @@ class Scene:
             shining,
             [_fields(material) for material in materials],
             [_fields(light) for light in lights],
-            [camera._parts() for camera in cameras],
+            [_part(camera, Camera, "cameras")._parts() for camera in cameras],
         )
 
     @classmethod
@@ -360,7 +385,7 @@ class Scene:
     def cameras(self) -> list[Camera]:
         """Those of the file, or the one that was placed; never none."""
         return [
-            Camera(position, _vector(np.add(position, forward)), up, float(np.degrees(angle)),
+            Camera(position, _vector(np.add(position, forward), "target"), up, float(np.degrees(angle)),
                    name, aspect)
             for name, position, forward, up, angle, aspect in self._core.cameras()
         ]
@@ -375,6 +400,8 @@ class Scene:
                 raise UsageError(f"there is no camera '{camera}'; there are {', '.join(names)}")
             return names.index(camera)
         number = camera or 0
+        if not isinstance(number, (int, np.integer)):
+            raise UsageError(f"camera: {camera!r} is neither a camera nor a name or number of one")
         if not 0 <= number < len(names):
             raise UsageError(f"there is no camera {number}; there are {len(names)}, from 0")
         return number
@@ -385,9 +412,26 @@ class Scene:
         )
 
 
+def _part(part: Any, kind: type[_Part], name: str) -> _Part:
+    if not isinstance(part, kind):
+        raise UsageError(f"{name}: {reprlib.repr(part)} is no photile.{kind.__name__}")
+    return part
+
+
 def _fields(part: Union[Material, Light]) -> dict[str, Any]:
     """The fields by name, arrays as they are."""
     return dict(part.__dict__)
+
+
+def _text(values: Any, *separators: str) -> str:
+    """As the command has them, for the parsers that refuse what does not fit."""
+    parts = [str(value) for value in values] if isinstance(values, (tuple, list)) else [str(values)]
+    between = iter(separators)
+    text, separator = "", ""
+    for part in parts:
+        text += separator + part
+        separator = next(between, separator or separators[-1])
+    return text
 
 
 def load(
@@ -461,14 +505,14 @@ def load(
         "emissive_scale": emissive_scale,
         "allow_outside": allow_outside,
         "light_groups": [f"{glob}={group}" for glob, group in (light_groups or {}).items()],
-        "profiles": [f"{light}={os.fspath(of)}" for light, of in (profiles or {}).items()],
+        "profiles": [f"{light}={of}" for light, of in (profiles or {}).items()],
         "temperatures": [f"{light}={kelvin}" for light, kelvin in (temperatures or {}).items()],
-        "panels": [f"{node}={w}x{h},{lumens}" for node, (w, h, lumens) in (panels or {}).items()],
+        "panels": [f"{node}={_text(size, 'x', ',')}" for node, size in (panels or {}).items()],
         "environment": os.fspath(environment) if environment is not None else "",
         "environment_scale": environment_scale,
         "environment_rotation": environment_rotation,
-        "sun": ",".join(str(number) for number in sun) if sun is not None else "",
-        "sky": f"{sky[0]}={sky[1]}" if sky is not None else "",
+        "sun": _text(sun, ",") if sun is not None else "",
+        "sky": _text(sky, "=") if sky is not None else "",
         "lumen_per_watt": lumen_per_watt,
     }
     return Scene._of(_photile.load(os.fspath(file), options, progress))

@@ -5,6 +5,7 @@
 
 #include "parts.hpp"
 #include "photile/device.hpp"
+#include "work.hpp"
 
 namespace py = pybind11;
 
@@ -15,7 +16,7 @@ py::list list_of_devices() {
   py::list list;
   std::vector<DeviceInfo> devices;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     devices = list_devices();
   }
   for (const DeviceInfo& device : devices) {
@@ -36,7 +37,7 @@ py::list list_of_devices() {
 }
 
 std::string test_devices(const std::string& selector) {
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   const auto open = devices_of(selector);
   const std::lock_guard lock(open->mutex);
   std::string found;

@@ -13,25 +13,26 @@ namespace {
 
 /// A list of (light, lux, standard errors), all lights together first.
 py::list measure(const std::shared_ptr<Scene>& scene, const Array<double>& points,
-                 const Array<double>& normals, int rays, int repeats, bool cylindrical,
-                 const std::string& integrator, double maintenance, double lumen_per_watt,
-                 const py::dict& settings, const std::string& device, const py::object& progress) {
+                 const Array<double>& normals, const py::dict& options, const py::dict& settings,
+                 const py::object& progress) {
   const auto places = rows_of<glm::dvec3>(points, "points");
   const auto directions = rows_of<glm::dvec3>(normals, "normals");
   if (places.size() != directions.size()) {
     throw InputError("normals: there are " + std::to_string(directions.size()) + " for " +
                      std::to_string(places.size()) + " points");
   }
+  const auto integrator = field<std::string>(options, "integrator");
+  const auto device = field<std::string>(options, "device");
   MeasuringParameters parameters;
   parameters.by_paths = integrator == "path";
   if (!parameters.by_paths && integrator != "photon-map") {
     throw UsageError("integrator: '" + integrator + "' is not one of photon-map, path");
   }
-  parameters.gathering.rays = rays;
+  parameters.gathering.rays = field<int>(options, "rays");
   parameters.gathering.response =
-      cylindrical ? SensorResponse::cylindrical : SensorResponse::planar;
-  parameters.repeats = repeats;
-  parameters.maintenance = maintenance;
+      field<bool>(options, "cylindrical") ? SensorResponse::cylindrical : SensorResponse::planar;
+  parameters.repeats = field<int>(options, "repeats");
+  parameters.maintenance = field<double>(options, "maintenance");
   set_all(parameters.photons, settings);
   std::vector<Sensor> sensors;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -41,7 +42,7 @@ py::list measure(const std::shared_ptr<Scene>& scene, const Array<double>& point
     }
     sensors.push_back({places[i], directions[i] / length});
   }
-  const LightMix mix = LightMix::of(*scene, lumen_per_watt);
+  const LightMix mix = LightMix::of(*scene, field<double>(options, "lumen_per_watt"));
   const auto found = run(progress, [&](Progress& told) {
     if (parameters.by_paths) {
       return measure_illuminance(*scene, sensors, mix, {}, parameters, told);

@@ -47,6 +47,7 @@ PYBIND11_MODULE(_photile, module) {
   module.attr("none") = 0xFFFF'FFFFu;
   module.attr("lumen_per_watt") = photile::defaults::lumen_per_watt;
   photile::python::define_array_memory(module);
+  photile::python::define_work(module);
   photile::python::define_devices(module);
   photile::python::define_scenes(module);
   photile::python::define_photons(module);

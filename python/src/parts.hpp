@@ -7,15 +7,18 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
+#include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::python {
 
+void define_work(pybind11::module_& module);
 void define_devices(pybind11::module_& module);
 void define_scenes(pybind11::module_& module);
 void define_photons(pybind11::module_& module);
@@ -28,6 +31,35 @@ struct OpenDevices {
   std::vector<Device> devices;
   std::mutex mutex;
 };
+
+/// What a value is called that cannot be a T.
+template <class T>
+constexpr const char* expected() {
+  if constexpr (std::is_same_v<T, bool>) return "True or False";
+  if constexpr (std::is_same_v<T, std::string>) return "text";
+  if constexpr (std::is_integral_v<T>) return "a whole number in its range";
+  if constexpr (std::is_floating_point_v<T>) return "a number";
+  return "as many numbers as it needs";
+}
+
+/// A value of Python's. Errors: UsageError that names it and what it is instead.
+template <class T>
+T value_of(const pybind11::handle& value, const std::string& name) {
+  try {
+    return value.cast<T>();
+  } catch (const pybind11::cast_error&) {
+    constexpr std::size_t most = 80;
+    auto found = pybind11::repr(value).cast<std::string>();
+    if (found.size() > most) found = found.substr(0, most) + " ...";
+    throw UsageError(name + ": " + found + " is not " + expected<T>());
+  }
+}
+
+/// A field of a dictionary, which has to be there; `of` is what its name begins with.
+template <class T>
+T field(const pybind11::dict& fields, const char* name, const std::string& of = "") {
+  return value_of<T>(fields[name], of + name);
+}
 
 /// The devices that a selector means, opened when they are first asked for. Errors: DeviceError.
 std::shared_ptr<OpenDevices> devices_of(const std::string& selector);

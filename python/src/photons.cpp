@@ -18,15 +18,14 @@
 namespace photile::python {
 namespace {
 
-std::shared_ptr<PhotonTracerResult> trace(const std::shared_ptr<Scene>& scene, std::uint64_t count,
-                                          std::uint64_t seed, const std::string& quota,
-                                          bool store_direct, int max_path_length,
-                                          const py::object& progress) {
+std::shared_ptr<PhotonTracerResult> trace(const std::shared_ptr<Scene>& scene,
+                                          const py::dict& options, const py::object& progress) {
   PhotonTracerParameters parameters;
-  parameters.emitted_photons = count;
-  parameters.seed = seed;
-  parameters.store_direct = store_direct;
-  parameters.max_path_length = max_path_length;
+  parameters.emitted_photons = field<std::uint64_t>(options, "photons");
+  parameters.seed = field<std::uint64_t>(options, "seed");
+  parameters.store_direct = field<bool>(options, "store_direct");
+  parameters.max_path_length = field<int>(options, "max_path_length");
+  const auto quota = field<std::string>(options, "quota");
   const auto found = std::find_if(all_photon_quotas.begin(), all_photon_quotas.end(),
                                   [&](PhotonQuota one) { return name_of(one) == quota; });
   if (found == all_photon_quotas.end()) {
@@ -43,7 +42,7 @@ py::object normals_of(const PhotonTracerResult& traced, const Scene& scene) {
   const Photons& photons = traced.photons;
   std::vector<glm::vec3> normals(photons.size());
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     for (std::uint32_t s = 0; s + 1 < photons.first_of.size(); ++s) {
       if (photons.first_of[s] == photons.first_of[s + 1]) continue;
       std::fill(normals.begin() + photons.first_of[s], normals.begin() + photons.first_of[s + 1],
@@ -72,15 +71,17 @@ class Maps {
  public:
   Maps(const Array<float>& positions, const std::optional<Array<float>>& normals,
        const std::optional<Array<float>>& flux, const std::optional<Array<std::uint16_t>>& lights,
-       double radius, int neighbours, double angle, float photons_per_cell,
-       const std::string& device, const py::object& progress) {
+       const py::dict& options, const py::object& progress) {
+    const auto neighbours = field<int>(options, "neighbours");
+    const auto device = field<std::string>(options, "device");
     const CloudPhotons photons{
         .position = rows_of<glm::vec3>(positions, "positions"),
         .normal = rows_or_none<glm::vec3>(normals, "normals"),
         .flux = rows_or_none<glm::vec3>(flux, "flux"),
         .light = lights ? values_of(*lights, "lights") : std::span<const std::uint16_t>()};
-    CloudParameters parameters{
-        .radius = radius, .angle_degrees = angle, .photons_per_cell = photons_per_cell};
+    CloudParameters parameters{.radius = field<double>(options, "radius"),
+                               .angle_degrees = field<double>(options, "angle"),
+                               .photons_per_cell = field<float>(options, "photons_per_cell")};
     run_in_thread(progress, [&](Progress& told) {
       if (parameters.radius == 0) {
         Photons copied;
@@ -99,7 +100,7 @@ class Maps {
 
   ~Maps() {
     if (!devices_) return;
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const std::lock_guard lock(devices_->mutex);
     cloud_.reset();
   }
@@ -107,12 +108,14 @@ class Maps {
   std::size_t size() const { return cloud_->size(); }
   double radius() const { return radius_; }
 
-  py::tuple nearest(const Array<float>& points, const std::optional<Array<float>>& normals, int k,
-                    double radius) {
+  py::tuple nearest(const Array<float>& points, const std::optional<Array<float>>& normals,
+                    const py::dict& options) {
+    const auto k = field<int>(options, "k");
+    const auto radius = field<double>(options, "radius");
     const auto where = rows_of<glm::vec3>(points, "points");
     const auto facing = rows_or_none<glm::vec3>(normals, "normals");
     CloudNeighbours found = [&] {
-      const py::gil_scoped_release release;
+      const Unlocked unlocked;
       const std::lock_guard lock(devices_->mutex);
       return cloud_->nearest(where, facing, k, radius);
     }();
@@ -123,13 +126,15 @@ class Maps {
 
   /// Shape (points, lights, 3).
   py::object irradiance(const Array<float>& points, const std::optional<Array<float>>& normals,
-                        int k, double radius, const std::string& kernel) {
+                        const py::dict& options) {
     const auto where = rows_of<glm::vec3>(points, "points");
     const auto facing = rows_or_none<glm::vec3>(normals, "normals");
     const CloudEstimateParameters parameters{
-        .neighbours = k, .radius = radius, .kernel = kernel_named(kernel)};
+        .neighbours = field<int>(options, "k"),
+        .radius = field<double>(options, "radius"),
+        .kernel = kernel_named(field<std::string>(options, "kernel"))};
     Estimates found = [&] {
-      const py::gil_scoped_release release;
+      const Unlocked unlocked;
       const std::lock_guard lock(devices_->mutex);
       return cloud_->irradiance(where, facing, parameters);
     }();
@@ -208,7 +213,7 @@ void define_photons(py::module_& module) {
   py::class_<Maps>(module, "PhotonMaps")
       .def(py::init<const Array<float>&, const std::optional<Array<float>>&,
                     const std::optional<Array<float>>&, const std::optional<Array<std::uint16_t>>&,
-                    double, int, double, float, const std::string&, const py::object&>())
+                    const py::dict&, const py::object&>())
       .def("__len__", &Maps::size)
       .def_property_readonly("radius", &Maps::radius)
       .def("statistics", &Maps::statistics)

@@ -9,7 +9,6 @@
 
 #include "arrays.hpp"
 #include "parts.hpp"
-#include "photile/defaults.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "work.hpp"
@@ -83,12 +82,14 @@ Camera chosen_camera(const Scene& scene, const py::object& camera) {
 }
 
 std::shared_ptr<Picture> render_picture(const std::shared_ptr<Scene>& scene, const py::object& view,
-                                        const std::optional<std::pair<int, int>>& size,
-                                        const std::string& integrator, const py::dict& settings,
-                                        double lumen_per_watt, const std::string& device,
+                                        const py::dict& options, const py::dict& settings,
                                         const py::object& progress) {
   const Camera camera = chosen_camera(*scene, view);
-  const RenderParameters parameters = parameters_of(camera, size, settings);
+  const RenderParameters parameters =
+      parameters_of(camera, field<std::optional<std::pair<int, int>>>(options, "size"), settings);
+  const auto integrator = field<std::string>(options, "integrator");
+  const auto device = field<std::string>(options, "device");
+  const auto lumen_per_watt = field<double>(options, "lumen_per_watt");
   const bool by_paths = integrator == "path";
   if (!by_paths && integrator != "photon-map") {
     throw UsageError("integrator: '" + integrator + "' is not one of photon-map, path");
@@ -117,7 +118,7 @@ std::shared_ptr<Picture> render_picture(const std::shared_ptr<Scene>& scene, con
 }
 
 std::shared_ptr<Picture> read_picture(const std::filesystem::path& file) {
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   const Image image = read_image(file);
   auto picture = std::make_shared<Picture>();
   try {
@@ -148,7 +149,7 @@ py::object mixed_layers(const Picture& picture, const Changes& changes) {
   std::vector<glm::vec3> sum(static_cast<std::size_t>(picture.layers.width) *
                              static_cast<std::size_t>(picture.layers.height));
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     combine_layers(picture.layers, picture.mix_of(changes), sum);
   }
   return taken<float>(std::move(sum), picture.shape(3));
@@ -161,21 +162,18 @@ DisplayView view_named(const std::string& name) {
   throw UsageError("view: '" + name + "' is not one of neutral, standard");
 }
 
-ToneMapping tone_mapping(const std::optional<double>& exposure, bool automatic,
-                         const std::string& display) {
-  return {.automatic_exposure = automatic,
-          .exposure = exposure.value_or(defaults::exposure),
-          .view = view_named(display)};
+ToneMapping tone_mapping(const py::dict& display) {
+  return {.automatic_exposure = field<bool>(display, "automatic"),
+          .exposure = field<double>(display, "exposure"),
+          .view = view_named(field<std::string>(display, "view"))};
 }
 
 /// Display-referred and linear, shape (height, width, 3).
-py::object displayed(const Picture& picture, const Changes& changes,
-                     const std::optional<double>& exposure, bool automatic,
-                     const std::string& display) {
-  const ToneMapping parameters = tone_mapping(exposure, automatic, display);
+py::object displayed(const Picture& picture, const Changes& changes, const py::dict& display) {
+  const ToneMapping parameters = tone_mapping(display);
   std::vector<glm::vec3> pixels;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const Image image = tone_map(picture.mixed(picture.mix_of(changes))->root(), parameters);
     pixels.resize(image.pixels());
     for (int c = 0; c < 3; ++c) {
@@ -187,14 +185,14 @@ py::object displayed(const Picture& picture, const Changes& changes,
 }
 
 void save_exr(const Picture& picture, const std::filesystem::path& file, const Changes& changes) {
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   write_exr(file, *picture.mixed(picture.mix_of(changes)));
 }
 
 void save_png(const Picture& picture, const std::filesystem::path& file, const Changes& changes,
-              const std::optional<double>& exposure, bool automatic, const std::string& display) {
-  const ToneMapping parameters = tone_mapping(exposure, automatic, display);
-  const py::gil_scoped_release release;
+              const py::dict& display) {
+  const ToneMapping parameters = tone_mapping(display);
+  const Unlocked unlocked;
   write_png(file, tone_map(picture.mixed(picture.mix_of(changes))->root(), parameters));
 }
 
@@ -236,7 +234,7 @@ py::list statistics_of(const Picture& picture) {
 
 void set_all(RenderParameters& parameters, const py::dict& settings) {
   if (settings.contains("quality")) {
-    const auto name = settings["quality"].cast<std::string>();
+    const auto name = field<std::string>(settings, "quality");
     const auto found = std::find_if(all_qualities.begin(), all_qualities.end(),
                                     [&](Quality one) { return name_of(one) == name; });
     if (found == all_qualities.end()) {
@@ -250,13 +248,19 @@ void set_all(RenderParameters& parameters, const py::dict& settings) {
     if (py::isinstance<py::str>(value)) {
       const auto text = value.cast<std::string>();
       set_by_name(parameters, name, std::string_view(text));
-    } else if (py::isinstance<py::float_>(value)) {
-      set_by_name(parameters, name, value.cast<double>());
-    } else if (value < py::int_(0)) {
-      set_by_name(parameters, name, value.cast<double>());
-    } else {
-      set_by_name(parameters, name, value.cast<std::uint64_t>());
+      continue;
     }
+    // Whole numbers of numpy are some, too; those below 0 and beyond 64 bits are in no range.
+    if (PyIndex_Check(value.ptr()) != 0) {
+      const std::uint64_t whole =
+          PyLong_AsUnsignedLongLong(py::int_(py::reinterpret_borrow<py::object>(value)).ptr());
+      if (PyErr_Occurred() == nullptr) {
+        set_by_name(parameters, name, whole);
+        continue;
+      }
+      PyErr_Clear();
+    }
+    set_by_name(parameters, name, value_of<double>(value, name));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "arrays.hpp"
@@ -29,13 +30,13 @@ constexpr std::array interactions{"opaque", "mirror", "glass"};
 constexpr std::array light_kinds{"area", "point", "spot", "directional", "environment"};
 
 template <class E, std::size_t n>
-E word(const std::array<const char*, n>& words, const std::string& found, const char* what) {
+E word(const std::array<const char*, n>& words, const std::string& found, const std::string& what) {
   std::string all;
   for (std::size_t i = 0; i < n; ++i) {
     if (found == words[i]) return static_cast<E>(i);
     all += (i > 0 ? ", " : "") + std::string(words[i]);
   }
-  throw UsageError(std::string(what) + ": '" + found + "' is not one of " + all);
+  throw UsageError(what + ": '" + found + "' is not one of " + all);
 }
 
 /// An array of shape (height, width, 3 or 4), 8 bits each.
@@ -58,19 +59,20 @@ Texture texture_of(const std::string& name, const Array<std::uint8_t>& texels) {
 /// By the fields of photile.Material.
 Material material_of(SceneBuilder& builder, const py::dict& fields) {
   Material material;
-  material.name = fields["name"].cast<std::string>();
-  material.interaction = word<Interaction>(interactions, fields["interaction"].cast<std::string>(),
-                                           "interaction of a material");
-  material.diffuse = vec(fields["diffuse"].cast<Vector3>());
-  material.specular = vec(fields["specular"].cast<Vector3>());
-  material.roughness = fields["roughness"].cast<float>();
-  material.transmission = vec(fields["transmission"].cast<Vector3>());
-  material.index_of_refraction = fields["index_of_refraction"].cast<float>();
-  material.thin = fields["thin"].cast<bool>();
-  material.opacity = fields["opacity"].cast<float>();
+  material.name = field<std::string>(fields, "name", "material: ");
+  const std::string of = "material '" + material.name + "': ";
+  material.interaction = word<Interaction>(
+      interactions, field<std::string>(fields, "interaction", of), of + "interaction");
+  material.diffuse = vec(field<Vector3>(fields, "diffuse", of));
+  material.specular = vec(field<Vector3>(fields, "specular", of));
+  material.roughness = field<float>(fields, "roughness", of);
+  material.transmission = vec(field<Vector3>(fields, "transmission", of));
+  material.index_of_refraction = field<float>(fields, "index_of_refraction", of);
+  material.thin = field<bool>(fields, "thin", of);
+  material.opacity = field<float>(fields, "opacity", of);
   if (!fields["texture"].is_none()) {
     material.diffuse_texture =
-        builder.add(texture_of(material.name, fields["texture"].cast<Array<std::uint8_t>>()));
+        builder.add(texture_of(material.name, field<Array<std::uint8_t>>(fields, "texture", of)));
   }
   return material;
 }
@@ -83,6 +85,10 @@ EnvironmentMap surroundings_of(const std::string& name, const Array<float>& texe
   }
   const auto* const rows = reinterpret_cast<const glm::vec3*>(texels.data());
   const auto pixels = static_cast<std::size_t>(texels.shape(0) * texels.shape(1));
+  if (!std::all_of(texels.data(), texels.data() + texels.size(),
+                   [](float texel) { return std::isfinite(texel); })) {
+    throw InputError("environment '" + name + "': a texel is no finite number");
+  }
   return {name,
           static_cast<int>(texels.shape(1)),
           static_cast<int>(texels.shape(0)),
@@ -92,26 +98,27 @@ EnvironmentMap surroundings_of(const std::string& name, const Array<float>& texe
 /// By the fields of photile.Light. Returns its number.
 std::uint32_t add_light(SceneBuilder& builder, const py::dict& fields) {
   Light light;
-  light.name = fields["name"].cast<std::string>();
-  light.group = fields["group"].cast<std::string>();
-  light.kind = word<LightKind>(light_kinds, fields["kind"].cast<std::string>(), "kind of a light");
-  light.power = fields["power"].cast<double>();
-  light.color = vec(fields["color"].cast<Vector3>());
-  light.position = vec(fields["position"].cast<Vector3>());
-  light.direction = vec(fields["direction"].cast<Vector3>());
-  light.two_sided = fields["two_sided"].cast<bool>();
-  light.inner_cone_angle = glm::radians(fields["inner_angle"].cast<float>());
-  light.outer_cone_angle = glm::radians(fields["outer_angle"].cast<float>());
-  light.angular_diameter = glm::radians(fields["diameter"].cast<float>());
+  light.name = field<std::string>(fields, "name", "light: ");
+  const std::string of = "light '" + light.name + "': ";
+  light.group = field<std::string>(fields, "group", of);
+  light.kind = word<LightKind>(light_kinds, field<std::string>(fields, "kind", of), of + "kind");
+  light.power = field<double>(fields, "power", of);
+  light.color = vec(field<Vector3>(fields, "color", of));
+  light.position = vec(field<Vector3>(fields, "position", of));
+  light.direction = vec(field<Vector3>(fields, "direction", of));
+  light.two_sided = field<bool>(fields, "two_sided", of);
+  light.inner_cone_angle = glm::radians(field<float>(fields, "inner_angle", of));
+  light.outer_cone_angle = glm::radians(field<float>(fields, "outer_angle", of));
+  light.angular_diameter = glm::radians(field<float>(fields, "diameter", of));
   if (light.kind == LightKind::environment) {
     if (fields["texels"].is_none()) {
       throw InputError("light '" + light.name + "': an environment needs texels");
     }
     return builder.add_surroundings(
-        light.name, surroundings_of(light.name, fields["texels"].cast<Array<float>>()));
+        light.name, surroundings_of(light.name, field<Array<float>>(fields, "texels", of)));
   }
   if (light.kind == LightKind::directional) {
-    return builder.add_distant(light, fields["illuminance"].cast<double>());
+    return builder.add_distant(light, field<double>(fields, "illuminance", of));
   }
   return builder.add(std::move(light));
 }
@@ -124,11 +131,11 @@ py::tuple tuple_of(const Camera& camera) {
 SharedScene load(const std::filesystem::path& file, const py::dict& options,
                  const py::object& progress) {
   SceneLoadOptions load;
-  load.emissive_scale = options["emissive_scale"].cast<float>();
-  load.allow_outside = options["allow_outside"].cast<bool>();
-  load.scene = options["scene"].cast<std::string>();
-  load.up = options["up"].cast<std::string>();
-  load.lumen_per_watt = options["lumen_per_watt"].cast<double>();
+  load.emissive_scale = field<float>(options, "emissive_scale");
+  load.allow_outside = field<bool>(options, "allow_outside");
+  load.scene = field<std::string>(options, "scene");
+  load.up = field<std::string>(options, "up");
+  load.lumen_per_watt = field<double>(options, "lumen_per_watt");
   const auto texts = [&](const char* name) {
     return options[name].cast<std::vector<std::string>>();
   };
@@ -139,10 +146,9 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
     load.temperatures.push_back(LightTemperature::parse(text));
   }
   for (const auto& text : texts("panels")) load.panels.push_back(LuminousPanel::parse(text));
-  if (const auto picture = options["environment"].cast<std::string>(); !picture.empty()) {
-    load.environment = {picture, options["environment_scale"].cast<double>(),
-                        options["environment_rotation"].cast<double>()};
-  }
+  load.environment = {field<std::string>(options, "environment"),
+                      field<double>(options, "environment_scale"),
+                      field<double>(options, "environment_rotation")};
   if (const auto text = options["sun"].cast<std::string>(); !text.empty())
     load.sun = Sun::parse(text);
   if (const auto text = options["sky"].cast<std::string>(); !text.empty())
@@ -173,7 +179,7 @@ SharedScene build(const std::string& name, const std::string& unit, const Arrays
                         .uv = rows_of<glm::vec2>(arrays.uv, "uv"),
                         .materials = values_of(arrays.materials, "triangle_materials"),
                         .lights = values_of(arrays.lights, "triangles of lights")};
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   builder.add(mesh);
   return std::make_shared<Scene>(std::move(builder).build());
 }
@@ -230,7 +236,7 @@ py::list layers_of(const Scene& scene) {
 py::object triangle_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(scene.triangle_count());
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     for (std::uint32_t t = 0; t < normals.size(); ++t) {
       normals[t] = sided_normal(scene, sided(t, scene.front_side[t]));
     }
@@ -249,13 +255,20 @@ py::object triangle_areas(const Scene& scene) {
 }  // namespace
 
 Camera camera_of(const Scene& scene, const py::tuple& parts) {
-  const glm::dvec3 position = vec(parts[1].cast<Vector3>());
-  const glm::dvec3 forward = vec(parts[2].cast<Vector3>());
+  const auto name = value_of<std::string>(parts[0], "camera: name");
+  const std::string of = "camera '" + name + "': ";
+  const auto vector = [&](std::size_t part, const char* what) {
+    return vec(value_of<Vector3>(parts[part], of + what));
+  };
+  const glm::dvec3 position = vector(1, "position"), forward = vector(2, "target");
   Camera camera =
-      in_scene(scene, Camera::look_at(position, position + forward, vec(parts[3].cast<Vector3>()),
-                                      parts[4].cast<double>()));
-  camera.name = parts[0].cast<std::string>();
-  camera.aspect_ratio = parts[5].cast<double>();
+      in_scene(scene, Camera::look_at(position, position + forward, vector(3, "up"),
+                                      value_of<double>(parts[4], of + "field_of_view")));
+  camera.name = name;
+  camera.aspect_ratio = value_of<double>(parts[5], of + "aspect_ratio");
+  if (!(camera.aspect_ratio >= 0) || !std::isfinite(camera.aspect_ratio)) {
+    throw UsageError(of + "aspect_ratio: it is width over height, or 0");
+  }
   return camera;
 }
 
@@ -300,11 +313,11 @@ void define_scenes(py::module_& module) {
       });
   module.def("load", &load);
   module.def(
-      "build", [](const std::string& name, const std::string& unit, Array<float> vertices,
+      "build", [](const py::object& name, const py::object& unit, Array<float> vertices,
                   Array<std::uint32_t> triangles, Array<float> normals, Array<float> uv,
                   Array<std::uint32_t> triangle_materials, Array<std::uint32_t> triangle_lights,
                   const py::list& materials, const py::list& lights, const py::list& cameras) {
-        return build(name, unit,
+        return build(value_of<std::string>(name, "name"), value_of<std::string>(unit, "unit"),
                      {std::move(vertices), std::move(normals), std::move(uv), std::move(triangles),
                       std::move(triangle_materials), std::move(triangle_lights)},
                      materials, lights, cameras);

@@ -1,5 +1,7 @@
 #include "work.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -9,10 +11,38 @@
 #include <thread>
 #include <vector>
 
+#include "parts.hpp"
+#include "photile/errors.hpp"
+
 namespace py = pybind11;
 
 namespace photile::python {
 namespace {
+
+/// The work of the process. Never destroyed: threads may outlive the interpreter.
+struct Work {
+  std::mutex mutex;
+  std::condition_variable finished;
+  std::size_t under_way = 0;
+  std::atomic<pid_t> process{0};  ///< the first that worked
+  std::atomic<bool> ending{false};
+};
+
+Work& all_work() {
+  static Work& work = *new Work;
+  return work;
+}
+
+/// Stops what is under way and waits for it: a thread that then asks an interpreter that has ended
+/// for its lock ends, and takes the process with it.
+void end_work() {
+  Work& work = all_work();
+  const py::gil_scoped_release release;
+  if (work.process != getpid()) return;  // a fork may have left the mutex locked
+  std::unique_lock lock(work.mutex);
+  work.ending = true;
+  work.finished.wait(lock, [&] { return work.under_way == 0; });
+}
 
 /// What the thread at work has told, until the waiting one passes it on.
 class Mailbox : public Progress {
@@ -36,7 +66,7 @@ class Mailbox : public Progress {
     const std::lock_guard lock(mutex_);
     notes_.push_back(line);
   }
-  bool cancelled() const override { return stop_; }
+  bool cancelled() const override { return stop_ || all_work().ending; }
 
   void stop() { stop_ = true; }
 
@@ -90,7 +120,32 @@ class Flag {
 
 }  // namespace
 
+Working::Working() {
+  Work& work = all_work();
+  if (work.process != 0 && work.process != getpid()) {
+    throw UsageError(
+        "this process was forked off one that has used photile, and lacks its threads; start it "
+        "anew, as multiprocessing.get_context('spawn') does");
+  }
+  const std::lock_guard lock(work.mutex);
+  if (work.ending) throw UsageError("the interpreter ends");
+  work.process = getpid();
+  ++work.under_way;
+}
+
+Working::~Working() {
+  Work& work = all_work();
+  const std::lock_guard lock(work.mutex);
+  --work.under_way;
+  work.finished.notify_all();
+}
+
+void define_work(py::module_&) {
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_work));
+}
+
 void run_in_thread(const py::object& callback, const std::function<void(Progress&)>& work) {
+  const Working working;
   Mailbox mailbox;
   Flag finished;
   std::exception_ptr error;

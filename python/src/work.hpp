@@ -12,6 +12,24 @@
 
 namespace photile::python {
 
+/// Counts as work of the library while it lives: the interpreter ends when none is left, and asks
+/// what is under way to stop. Made and destroyed with the interpreter's lock.
+/// Errors: UsageError in a child forked off a process that has worked, whose threads it lacks, and
+/// once the interpreter ends.
+class Working {
+ public:
+  Working();
+  ~Working();
+  Working(const Working&) = delete;
+  Working& operator=(const Working&) = delete;
+};
+
+/// Work without the interpreter's lock, for as long as this lives.
+class Unlocked {
+  Working working_;
+  pybind11::gil_scoped_release release_;
+};
+
 /// Runs `work` in a thread of its own without the interpreter's lock. The calling thread waits,
 /// hears Ctrl-C and tells `callback` (stage, done, total, unit) what is done, a few times a second;
 /// notes go to the logger "photile". `callback` may be None.

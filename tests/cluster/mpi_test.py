@@ -236,6 +236,22 @@ def glossy():
     same_pictures([2, 3], [*small, "--quality", "draft", "--set", "light_maps=off"], ROOM, by=1)
 
 
+def different():
+    """Ranks of other work than the first's end with a line, and write nothing."""
+    room = ["--quality", "draft", "--photons", "5k", "--size", "16x12", "--samples", "1"]
+    for other in ([ROOM, *room], [BOX, *room, "--seed", "2"], [BOX, *room[:4], "--size", "16x13"],
+                  [BOX, *room, "--projection", "fisheye"], [BOX, *room, "--set", "up=z"]):
+        with tempfile.TemporaryDirectory() as name:
+            output = ["-o", os.path.join(name, "mixed.exr")]
+            both = [mpiexec, "-n", "1", photile, "render", BOX, *room, *output, ":",
+                    "-n", "1", photile, "render", *other, *output]
+            done = subprocess.run([str(word) for word in both], env=os.environ | SETTINGS, text=True,
+                                  capture_output=True, check=False, timeout=120)
+            check(done.returncode == 2, f"{other}: ended with {done.returncode}: {done.stderr}")
+            check("rank 1 has" in done.stderr, f"{other}: {done.stderr}")
+            check(os.listdir(name) == [], f"{other}: left {os.listdir(name)}")
+
+
 def children_of(process):
     listed = subprocess.run(["pgrep", "-P", str(process), "photile"], text=True, capture_output=True, check=False)
     return [int(line) for line in listed.stdout.split()]

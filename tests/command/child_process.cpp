@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <sstream>
+#include <thread>
 
 #include "held_to_permissions.hpp"
 
@@ -55,6 +56,12 @@ Channel open_terminal() {
     const rlimit limit{*run.file_size_limit, *run.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (run.thread_limit) {
+    // The limit is of a user, and not of root; nobody else runs as this one.
+    const rlimit limit{*run.thread_limit, *run.thread_limit};
+    setrlimit(RLIMIT_NPROC, &limit);
+    if (getuid() == 0 && setuid(65'533) != 0) _exit(126);
+  }
   std::vector<char*> arguments{const_cast<char*>("photile")};
   for (const auto& argument : run.arguments) {
     arguments.push_back(const_cast<char*>(argument.c_str()));
@@ -81,10 +88,16 @@ bool read_some(int descriptor, std::string& text) {
   return count > 0;  // a terminal whose other end is closed gives an error, not an end
 }
 
+void send_signal(const Run& run, pid_t child) {
+  std::this_thread::sleep_for(run.signal_delay);
+  kill(child, run.signal);
+}
+
 void read_until_closed(const Run& run, pid_t child, int output, int errors, Outcome& outcome) {
   std::array<pollfd, 2> streams{pollfd{output, POLLIN, 0}, pollfd{errors, POLLIN, 0}};
   const auto deadline = Clock::now() + time_limit;
   bool signalled = run.signal_when.empty();
+  if (signalled && run.signal_delay.count() > 0) send_signal(run, child);
   while (streams[0].fd >= 0 || streams[1].fd >= 0) {
     poll(streams.data(), streams.size(), 1000);
     if (Clock::now() > deadline) {
@@ -96,7 +109,7 @@ void read_until_closed(const Run& run, pid_t child, int output, int errors, Outc
       if (!read_some(streams[i].fd, i == 0 ? outcome.output : outcome.errors)) streams[i].fd = -1;
     }
     if (!signalled && outcome.errors.find(run.signal_when) != std::string::npos) {
-      kill(child, run.signal);
+      send_signal(run, child);
       signalled = true;
     }
   }

@@ -14,6 +14,7 @@
 #include "child_process.hpp"
 #include "command/processes.hpp"
 #include "command/terminal_progress.hpp"
+#include "file_bytes.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "skipped.hpp"
@@ -76,6 +77,54 @@ TEST_CASE("where no more files can be opened, the limit is told, and not a lack 
       folder, "for n in $(seq 3 14); do ulimit -Sn $n; $photile render '" + scene + "' -o '" +
                   (folder / "a.exr") + "' --photons 1000 --size 4x4 -q; done");
   CHECK_THAT(outcome.errors, Contains("ulimit -n") && !Contains("install a runtime"));
+}
+
+TEST_CASE("a signal while kernels are compiled gives 130 and one line", "[slow]") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  for (int turn = 0; turn < 8; ++turn) {
+    const std::string cache = folder / "cache" + std::to_string(turn);
+    Run run;
+    run.arguments = typed("render", scene, "-o", folder / "out.png", "--photons 20M");
+    run.environment = {{"XDG_CACHE_HOME", cache}};
+    run.signal_when = "device: ";
+    run.signal_delay = std::chrono::milliseconds(120 * turn);
+    run.signal = turn % 2 == 0 ? SIGINT : SIGTERM;
+    const Outcome outcome = run_photile(run);
+    INFO(turn << ": " << outcome.errors);
+    CHECK(last_error(outcome, 130) == "interrupted");
+    std::filesystem::remove_all(cache);
+  }
+}
+
+TEST_CASE("a test of devices that is stopped leaves the verdict that is kept", "[slow]") {
+  const FileFolder folder;
+  // Of all that is kept, the verdicts alone stay.
+  const auto verdicts = [&] {
+    std::string all;
+    for (const auto& file : std::filesystem::recursive_directory_iterator(folder / "cache")) {
+      if (!file.is_regular_file()) continue;
+      if (file.path().extension() == ".test") {
+        all += bytes_of(file.path());
+      } else {
+        std::filesystem::remove(file.path());
+      }
+    }
+    return all;
+  };
+  Run run;
+  run.arguments = typed("devices --test");
+  run.environment = {{"XDG_CACHE_HOME", folder / "cache"}};
+  succeed(run);
+  const std::string passed = verdicts();
+  REQUIRE_THAT(passed, Contains("passed"));
+  for (int turn = 0; turn < 6; ++turn) {
+    run.signal_delay = std::chrono::milliseconds(100 + 120 * turn);
+    const Outcome outcome = run_photile(run);
+    INFO(turn << ": " << outcome.errors << outcome.output);
+    CHECK((outcome.exit_code == 130 || outcome.exit_code == 0));
+    CHECK(verdicts() == passed);
+  }
 }
 
 // Killed at any moment, and on a disk that is full: old files or whole new ones, and nothing else.
@@ -278,6 +327,32 @@ TEST_CASE("an error is coloured on a terminal, but not where NO_COLOR is set") {
 
 std::size_t allowed() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+TEST_CASE("where threads cannot be made, every command says so in one line") {
+  const FileFolder folder;
+  std::filesystem::permissions(folder / "", std::filesystem::perms::all);
+  write_box(folder);
+  const auto [limit, words] = GENERATE(
+      table<int, std::string>({{1, "trace SCENE -o NOWHERE.maps --photons 5k"},
+                               {3, "trace SCENE -o NOWHERE.maps --photons 5k"},
+                               {1, "render SCENE -o NOWHERE.png -q --photons 5k --size 4x4"},
+                               {4, "render SCENE -o NOWHERE.png -q --photons 5k --size 4x4"},
+                               {1, "devices"},
+                               {2, "devices --test"}}));
+  CAPTURE(words, limit);
+  Run run;
+  run.arguments = typed(filled(words, folder).c_str());
+  run.thread_limit = limit;
+  CHECK_THAT(only_error(run_photile(run), failure), Contains("threads can be made"));
+}
+
+TEST_CASE("numbers of threads that PoCL cannot have are bounded before it is asked") {
+  const FileFolder folder;
+  Run run = small_render(folder);
+  run.arguments.emplace_back("-q");
+  run.environment["POCL_MAX_PTHREAD_COUNT"] = GENERATE("-1", "0", "100000", "many");
+  succeed(run);
 }
 
 TEST_CASE("while a limit of threads lives, TBB keeps to it") {

@@ -65,6 +65,23 @@ TEST_CASE("an EXR with one bit flipped gives an error or a picture, 300 times") 
   CHECK(outcomes[1] > 0);
 }
 
+TEST_CASE("an EXR whose window is not that of its pixels is refused, not read as black") {
+  using namespace std::string_literals;
+  const TemporaryFolder folder;
+  LightMix mix;
+  mix.lights = {mixed("lamp", 800.0)};
+  write_exr(folder / "small.exr", mix_layers(LightLayers(8, 8, std::vector{"lamp"s}), mix));
+  // Several blocks, of which the window has one; and a single block of either.
+  for (std::string bytes : {layered_exr(), bytes_of(folder / "small.exr")}) {
+    const std::string attribute = "dataWindow\0box2i\0\x10\0\0\0"s;
+    const std::size_t place = bytes.find(attribute);
+    REQUIRE(place != std::string::npos);
+    bytes.replace(place + attribute.size(), 16, "\0\0\0\0\0\0\0\0\xFF\x3F\0\0\x01\0\0\0"s);
+    put(folder / "wide.exr", bytes);
+    CHECK_THROWS_WITH(read_image(folder / "wide.exr"), Catch::Contains("damaged"));
+  }
+}
+
 TEST_CASE("a small EXR that announces gigabytes is refused without taking them") {
   using namespace std::string_literals;
   const TemporaryFolder folder;

@@ -80,6 +80,66 @@ except KeyboardInterrupt:
     assert run.communicate(timeout=60)[0] == "heard\n" and run.returncode == 0
 
 
+SETUP = """
+import multiprocessing, os, threading, time
+import photile
+corners = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
+scene = photile.Scene(corners, lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))])
+def small():
+    photile.render(scene, size=(4, 4), quality="draft", photons_emitted=1000)
+"""
+
+
+def run(program, setup=SETUP):
+    return subprocess.run([sys.executable, "-c", setup + program], capture_output=True, text=True,
+                          timeout=60)
+
+
+@pytest.mark.parametrize("work", ["small()", "photile.trace(scene, 1000)", "photile.devices()"])
+def test_a_forked_child_of_a_process_that_worked_is_refused_in_words(work):
+    done = run(f"""
+small()
+child = os.fork()
+if child == 0:
+    try:
+        {work}
+    except photile.UsageError as error:
+        print(error, flush=True)
+        os._exit(0)
+    os._exit(1)
+print(os.waitpid(child, 0)[1])
+""")
+    assert "forked" in done.stdout and "spawn" in done.stdout, done
+    assert done.stdout.endswith("\n0\n")
+
+
+def test_a_forked_child_works_where_its_parent_has_not():
+    # Where a scene is made, threads check it.
+    done = run("""
+import os
+for _ in range(2):
+    child = os.fork()
+    if child == 0:
+        exec(setup)
+        small()
+        os._exit(0)
+    print(os.waitpid(child, 0)[1])
+exec(setup)
+small()
+""", f"setup = {SETUP!r}")
+    assert done.stdout == "0\n0\n" and done.returncode == 0, done
+
+
+@pytest.mark.parametrize("work", ["trace(scene, %d)" % LONG,
+                                  "render(scene, photons_emitted=%d, passes=50)" % LONG])
+def test_an_interpreter_ends_while_a_daemon_thread_works(work):
+    done = run(f"""
+threading.Thread(target=lambda: photile.{work}, daemon=True).start()
+time.sleep(1)
+""")
+    assert done.returncode == 0, done
+
+
 def test_notes_go_to_the_logger(caplog):
     # A scene of mirrors alone stores no photons, and a line says so.
     scene = photile.Scene(

@@ -176,4 +176,35 @@ TEST_CASE("asked for what a picture was made with, render gives it again, bit fo
   }
 }
 
+TEST_CASE("a picture of gigabytes is told of before anything is traced, or refused") {
+  /// Stops at the first line.
+  class FirstLine : public Progress {
+   public:
+    void note(const std::string& line) override {
+      told = line;
+      throw Interrupted();
+    }
+    std::string told;
+  } progress;
+  RenderParameters asked = small();
+  asked.film = {limits::max_image_side, limits::max_image_side, 1};
+  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const auto line_of = [&](const auto& make) {
+    progress.told.clear();
+    try {
+      make();
+    } catch (const Interrupted&) {
+      return progress.told;
+    } catch (const UsageError& error) {  // of a machine with less
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  // 16 bytes for each pixel and light.
+  CHECK_THAT(line_of([&] { render(scene, room_camera(), device(), asked, progress); }),
+             Contains("16384 x 16384 pixels with 1 light takes 4.3 GB"));
+  CHECK_THAT(line_of([&] { trace_paths(scene, room_camera(), eye_rays(asked), progress); }),
+             Contains("takes 4.3 GB"));
+}
+
 }  // namespace photile::test

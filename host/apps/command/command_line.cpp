@@ -155,10 +155,6 @@ int run_command_line(int argument_count, const char* const* arguments) {
   } catch (const SettingError& error) {
     problem = option_of(error.setting) + ": " + error.problem;
     code = exit_code_of(error);
-  } catch (const DeviceError& error) {
-    // At a signal PoCL's compiler removes what it is writing, and then fails for want of it.
-    problem = stop_requested() ? Interrupted().what() : error.what();
-    code = stop_requested() ? ExitCode::interrupted : exit_code_of(error);
   } catch (const Error& error) {
     problem = error.what();
     code = exit_code_of(error);

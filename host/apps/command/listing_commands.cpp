@@ -83,6 +83,7 @@ void run_tests(const DevicesOptions& options) {
   for (Device& device : open_devices({.selector = selector})) {
     const Stopwatch stopwatch;
     const std::string problem = test_device_and_remember(device);
+    throw_if_stop_requested();
     failed += !problem.empty();
     std::cout << fmt::format("{:<5} {}: {} ({:.1f} s)", device.info().id, device.info().name,
                              problem.empty() ? "passed" : "not passed: " + problem,

@@ -1,16 +1,22 @@
 #include "command/processes.hpp"
 
 #include <fmt/format.h>
+#include <pthread.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <thread>
 
+#include "command/command_line.hpp"
 #include "common/module.hpp"
+#include "common/threads.hpp"
 #include "mpi_communicator.hpp"
 #include "photile/errors.hpp"
 
@@ -23,17 +29,36 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not 
 
 void request_stop(int) { stop.store(true, std::memory_order_relaxed); }
 
+/// Takes the first signal, and leaves the next one its default action: a stage may take too long to
+/// stop.
+void take_signals(const sigset_t& signals) {
+  int signal = 0;
+  if (sigwait(&signals, &signal) != 0) return;
+  request_stop(signal);
+  for (const int next : {SIGINT, SIGTERM}) std::signal(next, SIG_DFL);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  for (;;) pause();
+}
+
 }  // namespace
 
 void handle_signals() {
+  // Of threads that were there before: those of MPI.
   struct sigaction action {};
   action.sa_handler = request_stop;
-  // SA_RESETHAND: the second signal has its default action, for a stage that takes too long to
-  // stop.
   action.sa_flags = SA_RESETHAND | SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A thread takes the signals, and all others block them: PoCL's compiler puts a handler of its
+  // own before ours, which removes the files that are being written.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  require_threads(1);
+  std::thread(take_signals, signals).detach();
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
@@ -52,12 +77,14 @@ struct ThreadLimit::Impl {
 };
 
 ThreadLimit::ThreadLimit(int count) {
+  const int used = count == 0 ? core_count() : std::min(count, core_count());
+  constexpr int own = 4;  // the progress bar, the next picture's kernels and the like
+  require_threads(2 * used + own);
   if (count == 0) return;
   impl_ = std::make_unique<Impl>(count);
-  // What the user set in the environment stays. PoCL before 4 knows the first name, later ones the
-  // second.
-  for (const char* variable : {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
-    setenv(variable, std::to_string(count).c_str(), 0);
+  // What the user set in the environment stays.
+  for (const char* variable : pocl_thread_variables) {
+    setenv(variable, std::to_string(used).c_str(), 0);
   }
 }
 
@@ -121,6 +148,11 @@ void join_processes(std::span<const char* const> arguments) {
       module.find<decltype(photile_mpi_other_failed)>("photile_mpi_other_failed");
   communicator = found();
   if (!communicator) throw UsageError("MPI cannot be initialised; see what mpirun says");
+  const std::string version = version_number();
+  for (const Communicator::Bytes& other : communicator->gather(std::as_bytes(std::span(version)))) {
+    if (std::ranges::equal(other, std::as_bytes(std::span(version)))) continue;
+    throw UsageError("the processes of one rendering are of several versions of photile");
+  }
 }
 
 Communicator* processes() { return communicator; }

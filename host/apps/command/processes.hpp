@@ -14,6 +14,7 @@ namespace photile::app {
 
 /// From now on SIGINT and SIGTERM ask the running command to stop at its next safe point; a second
 /// signal ends the process at once. A file-size limit becomes a write error instead of a signal.
+/// Errors: those of require_threads.
 void handle_signals();
 
 /// True once a signal asked to stop.
@@ -23,9 +24,11 @@ bool stop_requested();
 void throw_if_stop_requested();
 
 /// While it lives, TBB uses at most `count` threads (0: as many as there are cores), and so does a
-/// PoCL device that is opened later. The picture does not depend on it.
+/// PoCL device that is opened later, but for those beyond the cores. The picture does not depend on
+/// it.
 class ThreadLimit {
  public:
+  /// Errors: those of require_threads.
   explicit ThreadLimit(int count);
   ~ThreadLimit();
 

@@ -13,6 +13,7 @@
 
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 
@@ -173,7 +174,6 @@ NamedSettings rendering_settings(RenderParameters& parameters,
 
 NamedSettings scene_settings(SceneLoadOptions& options) {
   const char* group = "Scene";
-  const Numbers turn{-360, 360};
   return {
       {.name = "up",
        .group = group,
@@ -182,7 +182,7 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
        .initial = "y, and a warning where it seems to be z",
        .set = [&options](
                   const SettingValue& value) { options.up = std::get<std::string_view>(value); }},
-      bound_number("north", group, turn, options.situation.north_degrees,
+      bound_number("north", group, loading::turns, options.situation.north_degrees,
                    "where north lies, clockwise from -z as seen from above", "degrees"),
       bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,
                    "luminous efficacy: 683 or, as Radiance, 179", "lm/W"),
@@ -191,7 +191,7 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
       bound_number(
           "environment_scale", group, PositiveNumbers{}, options.environment.scale,
           "multiplies the picture of --environment, which is in cd/m2, or W/(m2 sr) for OBJ"),
-      bound_number("environment_rotation", group, turn, options.environment.rotation_degrees,
+      bound_number("environment_rotation", group, loading::turns, options.environment.rotation_degrees,
                    "clockwise as seen from above; at 0 the picture's middle lies towards -z",
                    "degrees"),
       bound_switch("lambertian", group, options.lambertian,

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
+#include "common/value_range.hpp"
 #include "geometry/box.hpp"
 #include "gltf/gltf_import.hpp"
 #include "gltf/lights.hpp"
@@ -57,6 +58,15 @@ void report_dropped_triangles(const ImportReport& report, files::Warnings& warni
         "{} triangles that lie exactly on others are dropped: of two materials the first counts",
         report.duplicate_triangles));
   }
+}
+
+/// The ranges are those of the command's settings. Errors: UsageError.
+void check_options(const SceneLoadOptions& options) {
+  check_value("lumen_per_watt", options.lumen_per_watt, PositiveNumbers{});
+  check_value("emissive_scale", shortest_double(options.emissive_scale), PositiveNumbers{});
+  check_value("environment_scale", options.environment.scale, PositiveNumbers{});
+  check_value("environment_rotation", options.environment.rotation_degrees, loading::turns);
+  check_value("north", options.situation.north_degrees, loading::turns);
 }
 
 /// An error about a scene that lacks something. What the import warned about is often the reason: a
@@ -121,6 +131,7 @@ namespace loading {
 
 SourcedScene load_sourced_scene(const std::filesystem::path& file,
                                 const SceneLoadOptions& options) {
+  check_options(options);
   Scene scene;
   scene.source = file;
   scene.turn = loading::turn_upright(options.up);

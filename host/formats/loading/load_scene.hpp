@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "common/value_range.hpp"
 #include "files/scene_files.hpp"
 #include "loading/luminaires.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
 
 namespace photile::loading {
+
+inline constexpr Numbers turns{-360, 360};  ///< degrees of north, and of surroundings
 
 /// A scene with the source of each of its lights.
 struct SourcedScene {

@@ -248,6 +248,10 @@ std::vector<LightIlluminance> measure_illuminance(const Scene& scene,
     throw UsageError(fmt::format("repeats: '{}' is not a whole number from 2 to {}",
                                  parameters.repeats, limits::max_repeats));
   }
+  if (!(parameters.maintenance > 0 && parameters.maintenance <= 1)) {
+    throw UsageError(fmt::format("maintenance: '{}' is not a number above 0, at most 1",
+                                 parameters.maintenance));
+  }
   const std::vector<measuring::SensorGrid> grids{
       {"points", {sensors.begin(), sensors.end()}, std::nullopt}};
   const measuring::Readings readings =

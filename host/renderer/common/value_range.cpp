@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "photile/errors.hpp"
+
 namespace photile {
 namespace {
 
@@ -67,6 +69,11 @@ std::string text_of(const ValueRange& range) {
 
 bool contains(const ValueRange& range, const SettingValue& value) {
   return std::visit([](const auto& r, const auto& v) { return holds(r, v); }, range, value);
+}
+
+void check_value(std::string_view name, const SettingValue& value, const ValueRange& range) {
+  if (contains(range, value)) return;
+  throw UsageError(fmt::format("{}: {}", name, out_of_range(text_of(value), range)));
 }
 
 std::string out_of_range(std::string_view found, const ValueRange& range) {

@@ -37,6 +37,9 @@ bool contains(const ValueRange& range, const SettingValue& value);
 /// "'0' is not a whole number from 1 to 4096".
 std::string out_of_range(std::string_view found, const ValueRange& range);
 
+/// Errors: UsageError "name: '-1' is not a number greater than 0".
+void check_value(std::string_view name, const SettingValue& value, const ValueRange& range);
+
 /// The double with the float's shortest text: 0.1 for 0.1f.
 double shortest_double(float value);
 inline double shortest_double(double value) { return value; }

@@ -12,6 +12,8 @@
 #include <string>
 #include <system_error>
 
+#include "common/ascii_text.hpp"
+#include "common/threads.hpp"
 #include "device/cache_folder.hpp"
 #include "device/context.hpp"
 #include "device/pocl_cache.hpp"
@@ -118,6 +120,21 @@ std::vector<cl_platform_id> platforms() {
 /// OpenCL call. What the user set stays.
 void keep_intel_from_vectorizing() { ::setenv("CL_CONFIG_CPU_VECTORIZER_MODE", "1", 0); }
 
+/// PoCL aborts for want of a thread, and for a number of them that is none. Call before the first
+/// OpenCL call.
+void bound_pocl_threads() {
+  int threads = core_count();
+  for (const char* variable : pocl_thread_variables) {
+    const char* const text = std::getenv(variable);
+    if (text == nullptr) continue;
+    const int asked = std::atoi(text);
+    if (asked > 0) threads = std::min(threads, asked);
+    ::setenv(variable, std::to_string(threads).c_str(), 1);
+  }
+  static const bool enough = (require_threads(threads), true);  // once: later PoCL has its threads
+  static_cast<void>(enough);
+}
+
 /// What the loader of libraries says of each runtime that is registered and cannot be loaded.
 std::vector<std::string> unloadable_runtimes() {
   const char* const given = std::getenv("OCL_ICD_VENDORS");
@@ -142,6 +159,7 @@ std::vector<std::string> unloadable_runtimes() {
 }  // namespace
 
 DeviceList enumerate_devices() {
+  bound_pocl_threads();
   prepare_pocl_work_folder();
   keep_intel_from_vectorizing();
   DeviceList list;
@@ -194,17 +212,7 @@ std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
 namespace photile {
 
 std::string_view name_of(DeviceType type) {
-  switch (type) {
-    case DeviceType::cpu:
-      return "cpu";
-    case DeviceType::gpu:
-      return "gpu";
-    case DeviceType::accelerator:
-      return "accelerator";
-    case DeviceType::other:
-      return "other";
-  }
-  return "unknown";
+  return name_in({"cpu", "gpu", "accelerator", "other"}, type);
 }
 
 std::vector<DeviceInfo> list_devices() {

@@ -178,6 +178,7 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   file_ = std::make_unique<File>(*stream_);
   std::uint64_t decoded = 0, pixels = 0, channels = 0;
   std::uint64_t blocks = 0;
+  bool deflated = true;
   std::vector<bool> tiled;
   for (int i = 0; i < file_->parts(); ++i) {
     const Part& part = parts_.emplace_back(part_of(file_->header(i)));
@@ -187,12 +188,18 @@ void ExrInput::find_parts(std::uint64_t bytes) {
     decoded += own * part.channels.size() * sizeof(float);
     blocks += blocks_of(file_->header(i));
     tiled.push_back(file_->header(i).hasTileDescription());
+    deflated &= file_->header(i).compression() <= Imf::ZIP_COMPRESSION;
   }
-  if (decoded <= unchecked_bytes) return;
-  constexpr std::uint64_t bytes_of_channel = 128;  // its name, what the header says of its light
   const std::uint64_t encoded = exr_pixel_bytes(*stream_, table, bytes, blocks, tiled);
-  if (pixels < encoded * limits::max_exr_pixels_per_byte &&
-      decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels) {
+  // What is missing OpenEXR reads as zeros. Deflate's longest match makes 258 bytes of 2 bits, and
+  // halves become floats.
+  constexpr std::uint64_t most_deflated = 2 * 4 * 258;
+  const bool lacks_bytes = deflated && decoded / most_deflated > encoded;
+  constexpr std::uint64_t bytes_of_channel = 128;  // its name, what the header says of its light
+  if (!lacks_bytes &&
+      (decoded <= unchecked_bytes ||
+       (pixels < encoded * limits::max_exr_pixels_per_byte &&
+        decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels))) {
     return;
   }
   throw DecodeError(

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/value_range.hpp"
 #include "image/light_change.hpp"
 #include "image/picture_file.hpp"
 #include "photile/errors.hpp"
@@ -85,6 +86,7 @@ LightLayers LightLayers::dense() const {
 }
 
 LightMix LightMix::of(const Scene& scene, double lumen_per_watt) {
+  check_value("lumen_per_watt", lumen_per_watt, PositiveNumbers{});
   LightMix mix;
   mix.lumen_per_watt = lumen_per_watt;
   for (const LightGroup& group : light_groups_of(scene).groups) {

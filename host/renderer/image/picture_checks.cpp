@@ -357,16 +357,21 @@ std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::ui
   const bool several = (little_endian(stream, 4) & several_parts) != 0;
   constexpr std::uint64_t entry_bytes = 8;
   std::uint64_t end = table + std::min(entries, (bytes - table) / entry_bytes) * entry_bytes,
-                sum = 0;
+                sum = 0, first = bytes;
   for (std::uint64_t entry = table; entry + entry_bytes <= end; entry += entry_bytes) {
     stream.seekg(entry);
     const std::uint64_t place = little_endian(stream, entry_bytes);
     if (place == 0) continue;
     if (place >= bytes) throw DecodeError("a block of pixels is not within the file");
+    first = std::min(first, place);
     end = std::min(end, place);
     sum += entry_bytes + std::min(block_bytes(stream, place, several, tiled), bytes - place);
   }
   stream.seekg(before);
+  // Of a window with fewer blocks than were written, OpenEXR would read the first as these.
+  if (sum > 0 && first > table + entries * entry_bytes) {
+    throw DecodeError("the header is damaged: its window has fewer blocks of pixels than the file");
+  }
   // A file whose writer was ended before it wrote the table: OpenEXR looks for the blocks.
   return sum == 0 ? bytes - end : sum;
 }

@@ -50,7 +50,7 @@ std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
 ///   bytes     those of the file
 ///   entries   of the tables: one a block, of all parts
 ///   tiled     whether a part has tiles in place of rows, per part
-/// Errors: DecodeError where a block is not within the file.
+/// Errors: DecodeError where a block is not within the file, or the tables have more entries.
 std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
                               std::uint64_t entries, const std::vector<bool>& tiled);
 

@@ -1,5 +1,6 @@
 #include "render/exchange.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -204,6 +205,18 @@ Estimates Exchange::at_common(const PrimaryHits& points, const Progress& progres
       own.empty() ? Communicator::Bytes()
                   : bytes_of(here_->at(estimate::reordered(points, 0, own), progress));
   return in_order(places, processes_.gather(bytes), points.size());
+}
+
+void require_same(Communicator& processes, const ContentHash& work, std::string_view what) {
+  const ContentHash::Digest own = work.digest();
+  const auto all = processes.gather_values<ContentHash::Digest>(std::span(&own, 1));
+  for (std::size_t rank = 1; rank < all.size(); ++rank) {
+    if (all[rank] == all.front()) continue;
+    throw UsageError(fmt::format(
+        "the processes of one rendering differ: rank {} has {} other than rank 0's; give all the "
+        "same files and options",
+        rank, what));
+  }
 }
 
 void bring_rows(Communicator& processes, LightLayers& layers) {

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "common/content_hash.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/light_layers.hpp"
@@ -61,6 +63,12 @@ class Exchange : public estimate::LightAtPoints {
   bool many_;
   PointTraffic& traffic_;
 };
+
+/// Refuses work that is not the same on all processes: their parts would make a mixed picture.
+/// Collective.
+///   what   the work, in the words of the refusal
+/// Errors: UsageError, on all of them.
+void require_same(Communicator& processes, const ContentHash& work, std::string_view what);
 
 /// Brings the rows of each process, its Shard of them all, to rank 0. The layers of the others stay
 /// as they are. Collective.

@@ -14,7 +14,34 @@ Film one_row(std::span<const Sensor> sensors, int samples) {
   return {static_cast<int>(sensors.size()), 1, samples};
 }
 
+void add_camera(const Camera& camera, ContentHash& hash) {
+  for (const glm::dvec3& vector : {camera.position, camera.forward, camera.up, camera.right}) {
+    hash.add(vector);
+  }
+  hash.add(camera.vertical_field_of_view);
+  hash.add(camera.projection);
+  hash.add(camera.orthographic_height);
+}
+
+void add_sensors(std::span<const Sensor> sensors, ContentHash& hash) {
+  for (const Sensor& sensor : sensors) {
+    for (const glm::dvec3& vector : {sensor.position, sensor.normal, sensor.facing}) {
+      hash.add(vector);
+    }
+    hash.add(sensor.sees_lamps);
+    hash.add(sensor.response.has_value() ? static_cast<int>(*sensor.response) : -1);
+  }
+}
+
 }  // namespace
+
+void CameraHits::add_to(ContentHash& hash) const { add_camera(camera_, hash); }
+void ReflectedHits::add_to(ContentHash& hash) const { add_camera(camera_, hash); }
+void SensorHits::add_to(ContentHash& hash) const { add_sensors(sensors_, hash); }
+void GatherHits::add_to(ContentHash& hash) const {
+  hash.add(response_);
+  add_sensors(sensors_, hash);
+}
 
 PrimaryHitBatch CameraHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
                                   int first_row, int last_row,

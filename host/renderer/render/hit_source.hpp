@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "common/content_hash.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/sensors.hpp"
@@ -14,6 +15,8 @@ namespace photile {
 class HitSource {
  public:
   virtual ~HitSource() = default;
+  /// Adds what tells these hits from others of the same scene and film.
+  virtual void add_to(ContentHash& hash) const = 0;
   /// The hits of rows [first_row, last_row), as trace_primary_hits returns them.
   virtual PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film,
                                 int first_row, int last_row,
@@ -31,6 +34,7 @@ class CameraHits : public HitSource {
   ///   errors   made, and filled beside the picture: the noise of nodes, by light; may be null
   explicit CameraHits(const Camera& camera, LightLayers* errors = nullptr)
       : camera_(camera), errors_(errors) {}
+  void add_to(ContentHash& hash) const override;
   bool dense() const override { return true; }
   LightLayers* errors() const override { return errors_; }
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
@@ -45,6 +49,7 @@ class CameraHits : public HitSource {
 class ReflectedHits : public HitSource {
  public:
   explicit ReflectedHits(const Camera& camera) : camera_(camera) {}
+  void add_to(ContentHash& hash) const override;
   bool dense() const override { return true; }
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
@@ -57,6 +62,7 @@ class ReflectedHits : public HitSource {
 class SensorHits : public HitSource {
  public:
   explicit SensorHits(std::span<const Sensor> sensors) : sensors_(sensors) {}
+  void add_to(ContentHash& hash) const override;
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 
@@ -69,6 +75,7 @@ class GatherHits : public HitSource {
  public:
   GatherHits(const Scene& scene, std::span<const Sensor> sensors, SensorResponse response)
       : sensors_(sensors), response_(response), lamps_(scene) {}
+  void add_to(ContentHash& hash) const override;
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 

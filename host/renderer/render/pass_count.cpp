@@ -12,6 +12,7 @@
 
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
+#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
 
 namespace photile {
@@ -107,6 +108,25 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
                     parameters.emitted_photons, static_cast<double>(memory) / 1e9, passes));
   }
   return passes;
+}
+
+void check_picture_memory(int width, int height, const Scene& scene, Progress& progress) {
+  constexpr double worth_telling = 1e9;
+  const std::size_t lights = light_groups_of(scene).groups.size();
+  if (lights > max_dense_lights) return;  // each pixel has those that reach it
+  const double bytes = 16.0 * width * height * static_cast<double>(lights);
+  if (bytes <= worth_telling) return;
+  const std::string found =
+      fmt::format("a picture of {} x {} pixels with {} light{} takes {:.1f} GB", width, height,
+                  lights, lights == 1 ? "" : "s", bytes / 1e9);
+  const auto installed = static_cast<double>(installed_host_bytes());
+  if (bytes > installed) {
+    throw UsageError(
+        fmt::format("{}, and this machine has {:.1f}; give a smaller size, or group "
+                    "lights",
+                    found, installed / 1e9));
+  }
+  progress.note(found + " of memory");
 }
 
 }  // namespace photile

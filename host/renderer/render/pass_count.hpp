@@ -47,4 +47,8 @@ int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t byt
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
                      Progress& progress, std::uint64_t memory);
 
+/// Tells of a picture that takes more than a gigabyte, before anything is traced for it. Errors:
+/// UsageError for one that takes more than is installed.
+void check_picture_memory(int width, int height, const Scene& scene, Progress& progress);
+
 }  // namespace photile

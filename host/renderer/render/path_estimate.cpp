@@ -10,6 +10,7 @@
 #include "photile/renderer.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
+#include "render/pass_count.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "trace/ray_query.hpp"
@@ -81,6 +82,7 @@ constexpr std::int64_t paths_per_batch = std::int64_t{1} << 18;
 
 PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source,
                                      const PrimaryHitParameters& parameters, Progress& progress) {
+  check_picture_memory(parameters.width, parameters.height, scene, progress);
   StageCost hits, paths, film_cost;
   const PreparedScene prepared(scene);
   const RayScene& rays = prepared.rays;

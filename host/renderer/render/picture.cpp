@@ -45,6 +45,13 @@ Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device>
 
 void Picture::add(const HitSource& source, PassLight& light, Progress& progress) {
   LightLayers* const errors = source.errors();
+  if (auto* const processes = plan_.used().processes; processes && film_.pass == 0) {
+    ContentHash hash;
+    source.add_to(hash);
+    hash.add(film_.width);
+    hash.add(film_.height);
+    require_same(*processes, hash, "a camera, a size or points");
+  }
   if (errors && film_.pass == 0) {
     *errors = LightLayers(film_.width, film_.height, scene_);
     film_.runs = std::min(defaults::runs_of_samples, film_.samples_per_pixel);

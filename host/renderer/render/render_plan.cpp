@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cache/surface_cache.hpp"
+#include "common/ascii_text.hpp"
 #include "estimate/neighbour_choice.hpp"
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
@@ -12,6 +13,7 @@
 #include "render/exchange.hpp"
 #include "render/pass_count.hpp"
 #include "render/setting.hpp"
+#include "scene/scene_queries.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile {
@@ -44,17 +46,7 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
 
 }  // namespace
 
-std::string_view name_of(GlossMode mode) {
-  switch (mode) {
-    case GlossMode::photons:
-      return "photons";
-    case GlossMode::rays:
-      return "rays";
-    case GlossMode::automatic:
-      return "auto";
-  }
-  return "unknown";
-}
+std::string_view name_of(GlossMode mode) { return name_in({"photons", "rays", "auto"}, mode); }
 
 bool nodes_gather(const RenderParameters& asked) {
   const bool read =
@@ -71,6 +63,19 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
           .max_specular_depth = parameters.max_specular_depth};
 }
 
+namespace {
+
+/// Before anything else is exchanged. Errors: UsageError.
+void require_same_work(const RenderParameters& asked, const Scene& scene) {
+  ContentHash hash_of_scene, hash_of_settings;
+  scene::add_scene(scene, hash_of_scene);
+  require_same(*asked.processes, hash_of_scene, "a scene");
+  for (const Setting& setting : settings()) hash_of_settings.add(text_of(setting.value(asked)));
+  require_same(*asked.processes, hash_of_settings, "settings");
+}
+
+}  // namespace
+
 RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits,
                        Progress& progress)
     : used_(asked),
@@ -78,6 +83,8 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
       least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
+  if (asked.processes) require_same_work(asked, rays.scene());
+  check_picture_memory(asked.film.width, asked.film.height, rays.scene(), progress);
   if (!nodes_gather(asked)) used_.light_map_rays = 0;
   if (asked.maps == MapMode::naive) used_.area = AreaMode::disc;
   if (asked.passes == 0) {

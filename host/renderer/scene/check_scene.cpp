@@ -218,6 +218,15 @@ class SceneCheck {
     if (light.kind == LightKind::environment && light.environment == none) {
       refuse(scene_, owner + " is of surroundings that it does not name");
     }
+    if (light.kind == LightKind::environment) {
+      constexpr double least = 1e-6 * limits::min_illuminance;  // of lux that became watts
+      const double sum = luminance(scene_.environments[light.environment].integral());
+      if (!(sum >= least)) {
+        refuse(scene_, fmt::format("{} is too dark: its radiance adds up to {:g} over all "
+                                   "directions, and {:g} is the least",
+                                   owner, sum, least));
+      }
+    }
     if (light.emission_texture != none && scene_.corner_emission_uv.empty() &&
         !light.triangles.empty()) {
       refuse(scene_, owner + " has an emission texture, but corner_emission_uv is empty");
