@@ -116,12 +116,6 @@ PhotonLists lists_of(const MapPage& page, device::Context& context, const Photon
 PhotonMaps build_each(const Structure& structure, const PhotonMaps& grids, const Photons& photons,
                       const Stopwatch& stopwatch) {
   const MapStore& of_grids = maps::store_of(grids);
-  if (!of_grids.tilings.empty()) {
-    throw DeviceError(
-        fmt::format("{}: the photons of one map do not fit in one buffer of the "
-                    "device; use fewer photons",
-                    structure.name));
-  }
   auto store = std::make_unique<MapStore>(*of_grids.device, of_grids.needs, of_grids.parameters);
   store->map_of = of_grids.map_of;
   store->angle_degrees = of_grids.angle_degrees;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "maps/map_tiling.hpp"
 #include "structures/halving.hpp"
 #include "structures/structure.hpp"
 
@@ -57,6 +56,13 @@ struct TreeBuilder {
   }
 };
 
+/// Coordinates in the plane of a grid, metres.
+glm::vec2 project(const glm::vec3& p, const PhotileGrid& grid) {
+  const glm::vec3 local = p - glm::vec3(grid.origin_x, grid.origin_y, grid.origin_z);
+  return {glm::dot(local, glm::vec3(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z)),
+          glm::dot(local, glm::vec3(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z))};
+}
+
 /// The tree of one list, whose part of `entries` it brings into the order of its leaves.
 std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list, int dimensions,
                                      std::vector<std::uint32_t>& entries) {
@@ -64,8 +70,7 @@ std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list,
   std::vector<glm::vec3> points(members.size());
   for (std::size_t i = 0; i < members.size(); ++i) {
     const glm::vec3& position = lists.photons.position[members[i]];
-    points[i] =
-        dimensions == 2 ? glm::vec3(maps::project(position, lists.planes[list]), 0.0f) : position;
+    points[i] = dimensions == 2 ? glm::vec3(project(position, lists.planes[list]), 0.0f) : position;
   }
   std::vector<std::uint32_t> order(members.size());
   std::iota(order.begin(), order.end(), 0u);

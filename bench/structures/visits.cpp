@@ -14,8 +14,8 @@ Visits count_visits(const PhotonMaps& maps, const PrimaryHits& hits, int k) {
 
   device::Context& context = device::context_of(*store.device);
   const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, 0, hits.size());
-  estimate::HitBuffers buffers;
-  estimate::upload_hits(context, hits, 0, hit_maps, store.normals, nullptr, {}, buffers);
+  const estimate::HitBuffers buffers =
+      estimate::upload_hits(context, hits, 0, hit_maps, store.normals, nullptr, {});
   const auto neighbours = static_cast<std::uint32_t>(k);
   estimate::QueryParameters parameters;
   parameters.neighbours = parameters.compiled_neighbours = neighbours;

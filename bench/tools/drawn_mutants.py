@@ -55,7 +55,6 @@ KERNEL_CASES = {
         "clipped irradiance on vertices and edges to the last bit equals the oracle's",
         "the exact law of the estimate in a corner of 45 degrees",
         "areas at corners, edges and T-junctions of the bundled rooms are the oracle's",
-        "tiles find the oracle's neighbours up to the radius, on either side of every border",
         "tiles on a floor read 1, in their middle and at the border of the floor",
         "thin plates of 1 to 20 mm read 1 on their faces: their insides count for nothing",
         "maps of patches find the oracle's neighbours on a fine torus",
@@ -86,8 +85,7 @@ KERNEL_CASES = {
 # These cases run with a layer around OpenCL, which shows what GPUs run, and what is read or written
 # beyond a buffer.
 LAYER_CASES = (
-    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"),
-    ("fence", "estimate", "estimates by tiles that leave out parts of rows have the bits of the whole map's"))
+    ("gpu", "maps", "[#grid_contents_test]~[slow]~[long]"),)
 # Beyond the tests of the folder itself.
 FURTHER_TESTS = {
     "groups": (("maps", "grid_contents"), ("estimate", "estimates_vs_oracle"),

@@ -6,10 +6,9 @@
 
 #include "grid/cell.clh"
 #include "grid/entry.clh"
-#include "grid/tile.clh"
 
 // Arguments of both kernels, besides members of EnteringPhotons:
-//   maps    of the page; with TILE one, of which it holds a tile
+//   maps    of the page
 //   grids   one per map of the page
 
 // One work-item per photon. Before: cell_start is zero. After: photons per cell.
@@ -31,8 +30,7 @@ __kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange ma
       const uint map = list_members[m];
       if (map < maps.first_map || map >= maps.last_map) continue;
       __global const PhotileGrid* grid = &grids[map - maps.first_map];
-      int2 cell = cell_of(project(photon.position, grid), grid);
-      if (TILE && !counted_cell(&cell, &maps)) continue;
+      const int2 cell = cell_of(project(photon.position, grid), grid);
       atomic_inc(&cell_start[cell_index(cell, grid) + 1u]);
     }
   }
@@ -60,7 +58,6 @@ __kernel void scatter(const PhotilePhotonPage page, const PhotileMapRange maps,
       if (map < maps.first_map || map >= maps.last_map) continue;
       __global const PhotileGrid* grid = &grids[map - maps.first_map];
       const int2 cell = cell_of(project(photon.position, grid), grid);
-      if (TILE && !in_tile(cell, &maps)) continue;
       const uint entry = atomic_inc(&cell_start[cell_index(cell, grid) + 1u]);
       entry_photon[entry] = page.first_photon + i;
     }

@@ -3,10 +3,12 @@
 #include "bake/baked_light.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
+#include "bake/open_sides.hpp"
 #include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
@@ -130,6 +132,31 @@ TEST_CASE("The brighter side of a triangle is baked, and the other where any lig
   REQUIRE(backs.size() == scene.triangle_count());
   for (std::uint32_t t = 0; t < backs.size(); ++t) CHECK(backs[t] == sided(t, 1));
   CHECK(sides_under(gentle).size() == 2 * std::size_t{scene.triangle_count()});
+}
+
+TEST_CASE("Sides that neither light nor an eye comes to are not open") {
+  // Sides of a closed box on a floor that look to its middle, and the others.
+  const auto open_of_box = [](const glm::vec3& lamp) {
+    SceneBuilder builder;
+    const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+    builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
+    builder.box({0.3f, 0.3f, 0.0f}, {0.7f, 0.7f, 0.5f}, white, false);
+    builder.add(point_light("lamp", lamp));
+    Scene scene = std::move(builder).build();
+    scene.cameras.clear();
+    const std::vector<std::uint8_t> open = bake::open_sides(RayScene(scene));
+    std::array<int, 2> count{};
+    for (std::uint32_t side = 4; side < open.size(); ++side) {
+      const glm::dvec3 corner(scene.corners(triangle_of(side))[0]);
+      const bool inwards =
+          glm::dot(sided_normal(scene, side), glm::dvec3(0.5, 0.5, 0.25) - corner) > 0;
+      count[inwards] += open[side];
+    }
+    return count;
+  };
+  // The faces of a box have edges in common: where one is seen all are, also the one below.
+  CHECK(open_of_box({0.5f, 0.5f, 2.0f}) == std::array{12, 0});
+  CHECK(open_of_box({0.5f, 0.5f, 0.2f}) == std::array{0, 12});
 }
 
 TEST_CASE(

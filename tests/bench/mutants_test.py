@@ -7,6 +7,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -31,6 +32,23 @@ class Texts(unittest.TestCase):
         for mutant in MUTANTS:
             for folder, _ in mutant.tests:
                 self.assertTrue((ROOT / "tests" / folder / "CMakeLists.txt").is_file(), folder)
+
+    def test_each_specification_names_tests_that_are_there(self):
+        for mutant in MUTANTS:
+            for folder, specification in mutant.tests:
+                sources = "".join(file.read_text(encoding="utf-8")
+                                  for file in (ROOT / "tests" / folder).glob("*_test.cpp"))
+                names = [re.sub(r'"\s+"', "", name)
+                         for name in re.findall(r'TEST_CASE\(\s*"((?:[^"\\]|\\.|"\s+")*)"', sources)]
+                if specification.startswith("~"):
+                    continue  # all but a few
+                for part in re.split(r"(?<!\\),", specification):
+                    if part.startswith("["):
+                        self.assertTrue(part in sources, f"{mutant.name}: {folder}, {part}")
+                    else:
+                        pattern = re.escape(part.replace("\\,", ",")).replace(r"\*", ".*")
+                        self.assertTrue(any(re.fullmatch(pattern, name, re.IGNORECASE | re.DOTALL)
+                                            for name in names), f"{mutant.name}: {folder}, {part}")
 
 
 class Drawn(unittest.TestCase):

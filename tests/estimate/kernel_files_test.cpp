@@ -100,7 +100,6 @@ std::multimap<std::string, std::string> host_programs() {
     device.max_work_group_size = 1024;
     const device::Defines groups = maps::group_defines(device);
     programs.emplace("shared/scan.cl", groups.options());
-    programs.emplace("grid/build_tiles.cl", device::Defines(groups).set("TILE").options());
     for (const SceneNeeds& needs : all_needs) {
       device::Defines entries = groups;
       maps::set_entry_defines(entries, needs);

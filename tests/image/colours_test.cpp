@@ -367,6 +367,15 @@ TEST_CASE("pixels that see a lamp in the reference do not count, nor do those ne
   CHECK(picture_error(picture, reference).relative_mse > 0.5);
 }
 
+TEST_CASE("a region that mostly sees lamps is never the worst") {
+  Image reference = grey(1.0f), picture = grey(1.0f);
+  const auto at = [](int x, int y) { return static_cast<std::size_t>(y * side + x); };
+  // Of the tile of 2 x 2 pixels at (6, 6) the borders of two lamps leave one pixel.
+  for (auto& plane : reference.channels) plane[at(5, 7)] = plane[at(8, 8)] = 1000.0f;
+  for (auto& plane : picture.channels) plane[at(7, 6)] = 30.0f;
+  CHECK(picture_error(picture, reference).worst_region == 0);
+}
+
 TEST_CASE("pictures that cannot be compared are refused") {
   const Image reference = grey(1.0f);
   Image other = grey(1.0f);

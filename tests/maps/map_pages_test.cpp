@@ -8,7 +8,6 @@
 #include "maps/candidate_maps.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
-#include "maps/map_tiling.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/resident_maps.hpp"
 #include "photile/device.hpp"
@@ -22,8 +21,6 @@ namespace photile::test {
 namespace {
 
 using maps::MapRange;
-using maps::MapTiling;
-using maps::Rectangle;
 
 TEST_CASE("map pages cover every map with photons once, in order, within the limit") {
   std::mt19937 random(7);
@@ -126,113 +123,6 @@ TEST_CASE("photon pages cover every photon once, in order, within the limit") {
   CHECK(next == photons.size());
 }
 
-// Tiles of a grid: whoever looks up a place finds the page that holds all cells within the radius.
-
-/// Metres. The border of a tile would be one bin narrower with less than 0.16.
-constexpr double radius = 0.165;
-
-/// A grid of cells 5 mm wide and 2 cm high around a rectangle of 4 x 1.5 m in the plane z = 0.
-PhotileGrid grid() {
-  PhotileGrid grid{};
-  grid.u_axis_x = 1;
-  grid.v_axis_y = 1;
-  grid.minimum_u = grid.minimum_v = -static_cast<float>(radius);
-  grid.cell_width = 0.005f;
-  grid.cell_height = 0.02f;
-  grid.inverse_cell_width = 200;
-  grid.inverse_cell_height = 50;
-  grid.slack = 1e-5f;
-  grid.columns = 866;
-  grid.rows = 92;
-  return grid;
-}
-
-/// A photon in every cell.
-MapTiling even_tiling() {
-  MapTiling tiling(grid(), radius);
-  std::vector<std::uint32_t> counts;
-  for (std::uint32_t row = 0; row < tiling.rows(); ++row) {
-    for (std::uint32_t column = 0; column < tiling.columns(); ++column) {
-      const std::uint32_t width = tiling.bin_width(), height = tiling.bin_height();
-      counts.push_back(std::min(width, grid().columns - column * width) *
-                       std::min(height, grid().rows - row * height));
-    }
-  }
-  tiling.set_photons(counts);
-  return tiling;
-}
-
-/// Tiles of at most `most` entries, as far as they can be cut.
-std::vector<Rectangle> cut(const MapTiling& tiling, std::uint64_t most) {
-  std::vector<Rectangle> todo{tiling.whole()}, tiles;
-  while (!todo.empty()) {
-    const Rectangle tile = todo.back();
-    todo.pop_back();
-    const auto halves = tiling.entries(tile) > most ? tiling.halves(tile) : std::nullopt;
-    if (halves) {
-      todo.insert(todo.end(), {halves->first, halves->second});
-    } else {
-      tiles.push_back(tile);
-    }
-  }
-  return tiles;
-}
-
-TEST_CASE("a tile counts the photons of its cells, the whole all photons") {
-  const MapTiling tiling = even_tiling();
-  CHECK(tiling.photons(tiling.whole()) == 866u * 92u);
-  CHECK(tiling.entries(tiling.whole()) == 866u * 92u);  // no gaps
-  const Rectangle tile{10, 3, 12, 9};
-  const Rectangle cells = tiling.cells(tile);
-  CHECK(tiling.photons(tile) == std::uint64_t{cells.width()} * cells.height());
-}
-
-TEST_CASE("the page of a place has all cells within the radius of it") {
-  MapTiling tiling = even_tiling();
-  const std::vector<Rectangle> tiles = cut(tiling, 12'000);
-  REQUIRE(tiles.size() > 4);
-  for (std::uint32_t i = 0; i < tiles.size(); ++i) tiling.assign(tiles[i], i);
-  const auto reach = static_cast<float>(radius) + grid().slack;
-  const auto column_of = [](float u) {
-    return static_cast<std::uint32_t>(std::clamp((u + 0.165f) * 200, 0.f, 865.f));
-  };
-  const auto row_of = [](float v) {
-    return static_cast<std::uint32_t>(std::clamp((v + 0.165f) * 50, 0.f, 91.f));
-  };
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<float> u(0, 4), v(0, 1.5f);
-  for (int i = 0; i < 20'000; ++i) {
-    const glm::vec3 place(u(random), v(random), 0.05f);
-    const std::uint32_t map = tiling.map_at(place);
-    REQUIRE(map < tiles.size());
-    const Rectangle cells = tiling.cells(tiles[map]);
-    REQUIRE(column_of(place.x - reach) >= cells.first_column);
-    REQUIRE(column_of(place.x + reach) < cells.last_column);
-    REQUIRE(row_of(place.y - reach) >= cells.first_row);
-    REQUIRE(row_of(place.y + reach) < cells.last_row);
-  }
-}
-
-TEST_CASE("indices of a tile's cells begin with 0, though those of its grid do not") {
-  const MapTiling tiling = even_tiling();
-  const Rectangle tile{10, 10, 12, 12};
-  const std::uint32_t first_row = tiling.cells(tile).first_row;
-  REQUIRE(first_row > 0);
-  CHECK(tiling.page_grid(tile).first_cell + first_row * grid().columns == 0u);
-}
-
-TEST_CASE("photons in one point cannot be cut apart") {
-  MapTiling tiling(grid(), radius);
-  std::vector<std::uint32_t> counts(std::size_t{tiling.columns()} * tiling.rows(), 0);
-  counts[5 * tiling.columns() + 7] = 1'000'000;
-  tiling.set_photons(counts);
-  CHECK_FALSE(tiling.halves(tiling.whole()).has_value());
-}
-
-TEST_CASE("places that no tile was assigned to have no map") {
-  CHECK(even_tiling().map_at({1, 1, 0}) == none);
-}
-
 // Only maps that photons come near are numbered, and take memory.
 
 /// Plates of 4 x 4 squares, 1 m wide, side by side 3 m apart.
@@ -301,79 +191,45 @@ TEST_CASE("device memory is that of the places with light, not of the 1,000 plac
   }
 }
 
-// The queue of pages to build: maps in order, then tiles; what cannot be cut is refused.
-
-/// A map of 64 x 64 bins with `photons` in each; queries reach as far as a bin is wide.
-MapTiling square(std::uint32_t photons) {
-  PhotileGrid grid{};
-  grid.cell_height = grid.inverse_cell_height = 1;
-  grid.cell_width = 1.0f / PHOTILE_CELL_ASPECT;
-  grid.inverse_cell_width = PHOTILE_CELL_ASPECT;
-  grid.columns = PHOTILE_CELL_ASPECT * 64;
-  grid.rows = 64;
-  MapTiling tiling(grid, 1);
-  tiling.set_photons(std::vector<std::uint32_t>(64 * 64, photons));
-  return tiling;
-}
-
-/// All of them in the middle.
-MapTiling point(std::uint32_t photons) {
-  MapTiling tiling = square(0);
-  std::vector<std::uint32_t> counts(64 * 64, 0);
-  counts[32 * 64 + 32] = photons;
-  tiling.set_photons(counts);
-  return tiling;
-}
+// The queue of pages to build: what cannot be cut is refused, or built as it is.
 
 struct Queue {
   std::vector<std::uint32_t> counts;
-  maps::MapTilings tilings;
   maps::PageQueue queue;
 
-  Queue(std::vector<std::uint32_t> map_counts, const maps::PageLimits& limits,
-        const maps::PageQueue::MakeTiling& make_tiling)
-      : counts(std::move(map_counts)),
-        queue(counts, limits, tilings, make_tiling,
-              [](std::uint32_t map) { return "triangle " + std::to_string(map / 2); }) {}
+  Queue(std::vector<std::uint32_t> map_counts, const maps::PageLimits& limits)
+      : counts(std::move(map_counts)), queue(counts, limits, [](std::uint32_t map) {
+          return "triangle " + std::to_string(map / 2);
+        }) {}
 };
 
-TEST_CASE("a map beyond the device's largest buffer comes in tiles, after all others") {
-  const maps::PageLimits limits{.largest_buffer = 40'000};
-  Queue queue({3, 4 * 64 * 64, 5}, limits, [](std::uint32_t) { return square(4); });
-  std::vector<MapRange> pages;
-  while (const auto page = queue.queue.next()) pages.push_back(*page);
-  REQUIRE(pages.size() > 5);
-  CHECK((pages[0].first == 0 && pages[1].first == 2));
-  std::vector<int> covered(64 * 64, 0);
-  for (std::size_t i = 2; i < pages.size(); ++i) {
-    REQUIRE(pages[i].tile.has_value());
-    CHECK(pages[i].first == 1);
-    CHECK((pages[i].entries + maps::most_entry_padding) * 12 <= limits.largest_buffer);
-    for (std::uint32_t row = pages[i].tile->first_row; row < pages[i].tile->last_row; ++row) {
-      for (std::uint32_t c = pages[i].tile->first_column; c < pages[i].tile->last_column; ++c) {
-        ++covered[row * 64 + c];
-      }
-    }
-  }
-  CHECK(std::count(covered.begin(), covered.end(), 1) == 64 * 64);
-}
-
-TEST_CASE("photons in one place beyond the device's largest buffer are refused with a remedy") {
-  Queue queue({3, 0, 5000}, {.largest_buffer = 12'000}, [](std::uint32_t) { return point(5000); });
+TEST_CASE("a map beyond the device's largest buffer is refused with a remedy") {
+  Queue queue({3, 0, 5000}, {.largest_buffer = 12'000});
   CHECK(queue.queue.next()->first == 0);
   CHECK_THROWS_WITH(queue.queue.next(),
                     Catch::Contains("triangle 1") && Catch::Contains("fewer photons"));
 }
 
 TEST_CASE("a page beyond what pages aim at that cannot be cut is built as it is") {
-  const maps::PageLimits limits{
-      .largest_buffer = 100'000, .page_bytes = 1'000, .bytes_per_entry = 40, .bytes_per_map = 80};
-  Queue queue({500}, limits, [](std::uint32_t) { return point(500); });
+  Queue queue(
+      {500},
+      {.largest_buffer = 100'000, .page_bytes = 1'000, .bytes_per_entry = 40, .bytes_per_map = 80});
   const auto page = queue.queue.next();
   REQUIRE(page.has_value());
-  CHECK((page->entries == 500 && !page->tile));
+  CHECK(page->entries == 500);
   CHECK_FALSE(queue.queue.cut(*page));
   CHECK_FALSE(queue.queue.next().has_value());
+}
+
+TEST_CASE("a page that did not fit comes again in two, in the order of its maps") {
+  Queue queue({4, 4, 4}, {.largest_buffer = 100'000});
+  const auto page = queue.queue.next();
+  REQUIRE((page.has_value() && page->first == 0 && page->last == 3));
+  REQUIRE(queue.queue.cut(*page));
+  const auto first = queue.queue.next(), second = queue.queue.next();
+  REQUIRE((first.has_value() && second.has_value()));
+  CHECK((first->first == 0 && first->last == second->first && second->last == 3));
+  CHECK(first->entries + second->entries == 12);
 }
 
 // Which items stay on the device while memory is short.

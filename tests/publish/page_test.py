@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Pages of `photile publish` in Chromium, beside `photile render` and `photile measure`.
 
-Usage: page_test.py cornell_box|many_lights PHOTILE SOURCE_FOLDER
+Usage: page_test.py cornell_box|living_room|office|controls|many_lights PHOTILE SOURCE_FOLDER
 """
 
 import base64
 import json
+import math
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -35,6 +37,17 @@ LARGEST_LUX = 0.01
 STANDARD_ERRORS = 3
 LARGEST_FRAME_MS = 4
 
+COUNT_FRAMES = """
+page.frames = 0;
+const frame = page.frame.bind(page);
+page.frame = (time) => {
+  ++page.frames;
+  frame(time);
+};
+"""
+KEY_CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27, "Tab": 9,
+             "Shift": 16}
+
 RADIANCE = """
 const [width, height] = arguments;
 const bytes = new Uint8Array(page.renderer.radiance(page.walker, width, height, 4).buffer);
@@ -42,13 +55,26 @@ let text = '';
 for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
 return btoa(text);
 """
-# A new state of a light, by what a user's slider and switch do.
+# Paints all that is not matt black, and back: pixels that do not change see matt surfaces alone.
+# Normal maps, which a page leaves out, count as not matt.
+SHOW_MATT_ONLY = """
+const [matt] = arguments;
+page.allMaterials ??= page.renderer.materials;
+page.renderer.materials = matt ? page.renderer.floatTexture(3, room.materials.length, Float32Array.from(
+    room.materials.flatMap((m, i) => {
+      const known = m.specular.every((part) => part === 0) && !arguments[1].includes(i);
+      return [...(known ? m.diffuse : [0, 0, 0]), m.alpha, 0, 0, 0, 1, 0, 0, 0, 0];
+    }))) : page.allMaterials;
+page.renderer.probeIsOld = false;
+"""
+# A new state of a light by its slider, as a user moves it.
 SET_POWER = """
 const [name, factor] = arguments;
 const i = room.lights.findIndex((light) => light.name === name);
-page.lights.states[i].power = factor * room.lights[i].power;
-page.lights.states[i].on = factor > 0;
-page.changed('light');
+const slider = document.getElementById('light' + i);
+slider.step = 'any';
+slider.value = sliderOfPower(factor * room.lights[i].power, room.lights[i].power);
+slider.dispatchEvent(new Event('input'));
 page.frame(performance.now());
 """
 CLICK = """
@@ -57,7 +83,8 @@ const hit = page.meet(x, y);
 if (!hit) return null;
 const [a, b, c] = page.surfaces.corners(hit.triangle);
 const {lux, error} = page.illuminance(hit);
-return {place: hit.place, normal: normalized(cross(subtract(b, a), subtract(c, a))), lux, error};
+const normal = normalized(cross(subtract(b, a), subtract(c, a)));
+return {place: add(hit.place, scaled(normal, 1e-5)), normal, lux, error};
 """
 
 
@@ -80,15 +107,18 @@ class Browser:
         self.run_command = self.driver.execute_cdp_cmd
         self.run_command("Emulation.setDeviceMetricsOverride",
                          {"width": SIZE[0], "height": SIZE[1], "deviceScaleFactor": 1, "mobile": False})
+        self.run_command("Emulation.setFocusEmulationEnabled", {"enabled": True})
         # The page must do without a network.
         self.run_command("Network.enable", {})
         self.run_command("Network.emulateNetworkConditions",
                          {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0})
 
-    def open(self, file):
-        self.driver.get(file.as_uri())
+    def open(self, file, state=""):
+        self.driver.get("about:blank")
+        self.driver.get(file.as_uri() + (f"#{state}" if state else ""))
         for _ in range(600):
             if not self.run("return document.getElementById('loading')"):
+                self.run(COUNT_FRAMES)
                 return
             time.sleep(0.1)
         raise AssertionError("the page did not open: " +
@@ -100,6 +130,52 @@ class Browser:
     def radiance(self):
         text = self.run(RADIANCE, *SIZE)
         return np.frombuffer(base64.b64decode(text), np.float32).reshape(SIZE[1], SIZE[0], 3)
+
+    def hold(self, key, seconds, code=None):
+        """Holds a key down; `code` is its place on the keyboard, where that is not its name."""
+        event = {"key": key, "code": code or key, "windowsVirtualKeyCode": KEY_CODES.get(key, ord(key[0].upper()))}
+        if len(key) == 1:
+            event["text"] = key
+        self.run_command("Input.dispatchKeyEvent", {"type": "keyDown", **event})
+        if seconds > 0:
+            self.wait(seconds)
+        event.pop("text", None)
+        self.run_command("Input.dispatchKeyEvent", {"type": "keyUp", **event})
+        self.rest()
+
+    def wait(self, seconds):
+        """For so long, and for five frames at least: a busy machine may draw few."""
+        first = self.run("return page.frames")
+        time.sleep(seconds)
+        for _ in range(600):
+            if self.run("return page.frames") >= first + 5:
+                return
+            time.sleep(0.05)
+        raise AssertionError("the page draws no frames")
+
+    def press(self, key):
+        self.hold(key, 0, f"Digit{key}" if key.isdigit() else f"Key{key.upper()}" if len(key) == 1 else key)
+
+    def mouse(self, kind, x, y, **more):
+        self.run_command("Input.dispatchMouseEvent",
+                         {"type": f"mouse{kind}", "x": x, "y": y, "button": "left", "clickCount": 1, **more})
+
+    def touch(self, kind, *points):
+        self.run_command("Input.dispatchTouchEvent",
+                         {"type": f"touch{kind}",
+                          "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+
+    def rest(self):
+        """Waits until nothing moves any more."""
+        time.sleep(0.1)
+        for _ in range(1500):
+            if not self.run("return page.scheduled"):
+                return
+            time.sleep(0.02)
+        raise AssertionError("the page does not come to rest")
+
+    def viewer(self):
+        return self.run("const {eye, yaw, pitch, angle, flies} = page.walker; return {eye, yaw, pitch, angle, flies}")
 
     def messages(self):
         return [entry["message"] for entry in self.driver.get_log("browser")]
@@ -116,21 +192,30 @@ def radiance_of(file):
     return channels_of(file, "RGB")
 
 
-def compare(what, page, reference):
+def compare_pixels(what, page, reference, counted):
     """Pixels that see a lamp or are next to one are left out, as in `photile compare`."""
-    page = page.astype(float)
     light = reference @ [0.2126, 0.7152, 0.0722]
     lamp = light > 20 * np.median(light[light > 0])
     wide = np.pad(lamp, 1)
     lamp = np.any([np.roll(wide, shift, (0, 1)) for shift in
                    [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]], axis=0)[1:-1, 1:-1]
-    counts = ~lamp & (light > 0)
+    counts = ~lamp & (light > 0) & counted
     mean = reference[counts].mean()
     error = ((page - reference) ** 2 / (reference ** 2 + 0.01 * mean ** 2))[counts].mean()
     ratio = page[counts].mean() / mean
-    print(f"{what}: relMSE {error:.5f}, mean {ratio:.4f}")
+    print(f"{what}: relMSE {error:.5f}, mean {ratio:.4f}, of {100 * counts.mean():.0f}% of the pixels", flush=True)
+    assert counts.mean() > 0.25, what
     assert error <= LARGEST_REL_MSE, what
     assert abs(ratio - 1) <= LARGEST_MEAN, what
+
+
+def compare(what, browser, reference, bumpy=()):
+    """Matt surface on the page beside a picture."""
+    page = browser.radiance().astype(float)
+    browser.run(SHOW_MATT_ONLY, True, list(bumpy))
+    matt = browser.radiance().astype(float)
+    browser.run(SHOW_MATT_ONLY, False, [])
+    compare_pixels(what, page, reference, np.abs(matt - page).max(axis=2) <= 1e-5 * page.max(axis=2))
 
 
 def check_clicks(browser, folder, scene, rendered, more):
@@ -162,36 +247,328 @@ def check_clicks(browser, folder, scene, rendered, more):
     assert beyond <= 1, f"{beyond} of 10 clicks are off"
 
 
-def test_cornell_box(browser, folder):
-    scene = SOURCE / "scenes/cornell-box/cornell-box.gltf"
-    page, picture = folder / "box.html", folder / "box.exr"
-    photile("publish", scene, "-o", page, "-q")
-    photile("render", scene, "-o", picture, "-q", "--size", "%dx%d" % SIZE)
+def room_in(folder, name, views, moods, lamps=()):
+    """A copy of a bundled scene with cameras by their places and what they look at, moods, and nodes
+    for lamps. The file, and the numbers of its materials with normal maps."""
+    shutil.copytree(SOURCE / "scenes" / name, folder, dirs_exist_ok=True)
+    file = folder / f"{name}.gltf"
+    scene = json.loads(file.read_text())
+    for number, (place, target) in enumerate(views):
+        x, y, z = (there - here for here, there in zip(place, target))
+        yaw, pitch = math.atan2(-x, -z) / 2, math.atan2(y, math.hypot(x, z)) / 2
+        turn = [math.cos(yaw) * math.sin(pitch), math.sin(yaw) * math.cos(pitch), -math.sin(yaw) * math.sin(pitch),
+                math.cos(yaw) * math.cos(pitch)]
+        scene["cameras"].append({"type": "perspective", "name": f"added {number}",
+                                 "perspective": {"yfov": 0.9, "znear": 0.01}})
+        scene["nodes"].append({"name": f"added {number}", "camera": len(scene["cameras"]) - 1,
+                               "translation": list(place), "rotation": turn})
+        scene["scenes"][scene.get("scene", 0)]["nodes"].append(len(scene["nodes"]) - 1)
+    for name, place in lamps:  # that shine downwards
+        scene["nodes"].append({"name": name, "translation": list(place), "rotation": [-0.5 ** 0.5, 0, 0, 0.5 ** 0.5]})
+        scene["scenes"][scene.get("scene", 0)]["nodes"].append(len(scene["nodes"]) - 1)
+    file.write_text(json.dumps(scene))
+    file.with_suffix(".moods.json").write_text(json.dumps({"photile_moods": 1, "moods": moods}))
+    bumpy = [i for i, material in enumerate(scene["materials"]) if "normalTexture" in material]
+    return file, bumpy
+
+
+def check_views(browser, folder, scene, bumpy, dimmed, mood, lights=()):
+    """The page's pictures from three cameras beside rendered ones: as published, with two sliders moved
+    and by a preset.
+
+    dimmed: what two lights are multiplied by
+    lights: options of all commands
+    """
+    page = folder / "page.html"
+    photile("publish", scene, "-o", page, "-q", *lights)
     browser.open(page)
-    compare("as published", browser.radiance(), radiance_of(picture))
-    photile("relight", picture, "--light", "lamp=x0.3", "-o", folder / "dimmed.exr")
-    browser.run(SET_POWER, "lamp", 0.3)
-    compare("dimmed", browser.radiance(), radiance_of(folder / "dimmed.exr"))
-    browser.run(SET_POWER, "lamp", 1)
-    check_clicks(browser, folder, scene, channels_of(picture, ["Illuminance_lamp.Y"])[:, :, 0],
-                 ["--photons", "2M"])
-    # A link keeps the light.
-    browser.run(SET_POWER, "lamp", 0.5)
-    state = browser.run("return page.state")
-    browser.driver.get("about:blank")
-    browser.driver.get(page.as_uri() + "#" + state)
-    for _ in range(300):
-        if not browser.run("return document.getElementById('loading')"):
-            break
-        time.sleep(0.1)
-    power = browser.run("return page.lights.states[0].power / room.lights[0].power")
-    assert abs(power - 0.5) < 1e-3, power
+    pictures = []
+    for camera in range(3):
+        pictures.append(folder / f"view{camera}.exr")
+        photile("render", scene, "--camera", camera, "-o", pictures[-1], "-q", "--size", "%dx%d" % SIZE, *lights)
+
+    def compare_views(what, relit=()):
+        for camera, picture in enumerate(pictures):
+            shown = picture
+            if relit:
+                shown = folder / "relit.exr"
+                photile("relight", picture, *relit, "-o", shown)
+            browser.run("page.walker.stand(room.cameras[arguments[0]])", camera)
+            compare(f"{what}, view {camera}", browser, radiance_of(shown), bumpy)
+
+    compare_views("as published")
+    for name, factor in dimmed.items():
+        browser.run(SET_POWER, name, factor)
+    compare_views("dimmed", [part for name, factor in dimmed.items() for part in ("--light", f"{name}=x{factor}")])
+    browser.run("[...document.querySelectorAll('#presets button')].find((b) => b.textContent === arguments[0]).click();"
+                "page.frame(performance.now())", mood)
+    compare_views("by a preset", ["--mood", mood, "--moods", scene.with_suffix(".moods.json")])
+    browser.run("document.querySelector('#presets button').click(); page.frame(performance.now());"
+                "page.walker.stand(room.cameras[0])")
+    return page, pictures
+
+
+CORNELL_VIEWS = [((0.1, 0.42, -0.3), (0.35, 0.15, 0.35)), ((0.47, 0.5, 0.03), (0.2, 0.0, 0.4))]
+CORNELL_MOOD = {"evening": {"lamp": {"power": 3000, "unit": "lm", "on": True, "kelvin": 2700},
+                            "front": {"power": 150, "unit": "lm", "on": True}}}
+
+
+def test_cornell_box(browser, folder):
+    scene, _ = room_in(folder, "cornell-box", CORNELL_VIEWS, CORNELL_MOOD, [("front", (0.28, 0.54, 0.08))])
+    front = ["--area-light", "front=0.2x0.1,1500"]
+    _, pictures = check_views(browser, folder, scene, (), {"lamp": 0.3, "front": 1.6}, "evening", front)
+    browser.run(SET_POWER, "front", 0)
+    check_clicks(browser, folder, scene, channels_of(pictures[0], ["Illuminance_lamp.Y"])[:, :, 0],
+                 ["--photons", "2M", *front, "--light", "front=off"])
     # Controls have names.
     unnamed = browser.run("""
 return [...document.querySelectorAll('button, input, select')].filter((control) =>
   !control.textContent.trim() && !control.labels?.length && !control.getAttribute('aria-label')).map((c) => c.outerHTML);
 """)
     assert not unnamed, unnamed
+
+
+def test_living_room(browser, folder):
+    dim = {name: {"power": 0, "unit": "lm", "on": False} for name in
+           ("daylight", "ceiling_panel", "picture_spot", "desk_lamp")}
+    scene, bumpy = room_in(folder, "living-room", [((1.0, 1.6, 3.9), (4.5, 0.6, 1.0))], {"evening": dim})
+    check_views(browser, folder, scene, bumpy, {"daylight": 0.2, "floor_lamp": 1.5}, "evening")
+
+
+def test_office(browser, folder):
+    moods = {"presentation": {"window_row": {"power": 1500, "unit": "lm", "on": True},
+                              "inner_row": {"power": 6000, "unit": "lm", "on": True, "kelvin": 3000}}}
+    scene, bumpy = room_in(folder, "office", [((3.0, 1.6, 4.6), (3.2, 0.8, 0.5))], moods)
+    panels = folder / "lamps.json"
+    panels.write_text(json.dumps([{"name": name, "file": "panel.ies", "position": [3, 2.795, z], "count": [3, 1],
+                                   "spacing": [2, 0]} for name, z in (("window_row", 3.75), ("inner_row", 1.25))]))
+    check_views(browser, folder, scene, bumpy, {"window_row": 0.2, "inner_row": 1.5}, "presentation",
+                ["--luminaires", panels])
+
+
+def obj_room(folder):
+    """A hall of 6 x 3 x 5 m with a table, two lamps under its ceiling, and a mood. Its file."""
+    quads = {"grey": [[(0, 0, 0), (0, 0, 5), (6, 0, 5), (6, 0, 0)], [(0, 3, 0), (6, 3, 0), (6, 3, 5), (0, 3, 5)],
+                      [(0, 0, 0), (6, 0, 0), (6, 3, 0), (0, 3, 0)], [(0, 0, 5), (0, 3, 5), (6, 3, 5), (6, 0, 5)],
+                      [(0, 0, 0), (0, 3, 0), (0, 3, 5), (0, 0, 5)], [(6, 0, 0), (6, 0, 5), (6, 3, 5), (6, 3, 0)],
+                      [(4, 0.8, 1), (4, 0.8, 2), (5, 0.8, 2), (5, 0.8, 1)]],
+             "left": [[(1, 2.9, 2), (2, 2.9, 2), (2, 2.9, 3), (1, 2.9, 3)]],
+             "right": [[(4, 2.9, 2), (5, 2.9, 2), (5, 2.9, 3), (4, 2.9, 3)]]}
+    lines, count = ["mtllib hall.mtl"], 0
+    for material, faces in quads.items():
+        lines.append(f"usemtl {material}")
+        for corners in faces:
+            lines += ["v %g %g %g" % corner for corner in corners]
+            lines.append("f " + " ".join(str(count + i) for i in (1, 2, 3, 4)))
+            count += 4
+    (folder / "hall.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl left\nKd 0 0 0\nKe 100 90 80\n"
+                                     "newmtl right\nKd 0 0 0\nKe 80 90 100\n")
+    (folder / "hall.moods.json").write_text(json.dumps({"photile_moods": 1, "moods": {
+        "left alone": {"right": {"power": 0, "unit": "lm", "on": False}}}}))
+    file = folder / "hall.obj"
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+STAND = """
+page.walker.flies = false;
+page.walker.stand({position: arguments[0], forward: arguments[1], angle: 1});
+page.wake();
+"""
+MIDDLE, NORTH = [3, 1.6, 2.5], [0, 0, -1]
+
+
+def near(value, wanted, tolerance):
+    assert np.all(np.abs(np.asarray(value, float) - wanted) <= tolerance), (value, wanted)
+
+
+def check_keyboard(browser):
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.hold("w", 0.5, "KeyW")
+    eye = browser.viewer()["eye"]
+    assert 0.1 < MIDDLE[2] - eye[2] < 2.2, eye
+    near(eye[:2], MIDDLE[:2], 1e-3)
+    browser.hold("w", 4, "KeyW")  # to the wall, which a body as wide as Walker's does not enter
+    near(browser.viewer()["eye"], [3, 1.6, 0.22], 0.01)
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.hold("ArrowRight", 0.3)
+    viewer = browser.viewer()
+    assert 0.1 < viewer["yaw"] < 1.5 and viewer["eye"] == MIDDLE, viewer
+    browser.hold("e", 0.3, "KeyE")
+    near(browser.viewer()["eye"][1], 1.9, 0.25)
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.press("f")
+    browser.hold("e", 0.5, "KeyE")
+    viewer = browser.viewer()
+    assert viewer["flies"] and viewer["eye"][1] > 1.8, viewer
+    assert browser.run("return document.getElementById('fly').getAttribute('aria-pressed')") == "true"
+    browser.press("1")
+    near(browser.viewer()["eye"], browser.run("return room.cameras[0].position"), 1e-6)
+    browser.press("f")
+    browser.press("h")
+    assert browser.run("return document.getElementById('about').open")
+    browser.press("Escape")
+    assert not browser.run("return document.getElementById('about').open")
+    # A slider has the keys while it has the focus: it moves, and nobody walks.
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.run("page.panel.unfold(true); document.getElementById('light0').focus()")
+    browser.press("ArrowLeft")
+    assert browser.run("return page.lights.states[0].power < room.lights[0].power")
+    assert browser.viewer()["eye"] == MIDDLE
+    browser.run("document.querySelector('#presets button').click(); page.canvas.focus(); page.panel.unfold(false)")
+
+
+def check_mouse(browser):
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.mouse("Pressed", 150, 100)
+    browser.mouse("Moved", 130, 110)
+    browser.mouse("Released", 130, 110)
+    browser.rest()
+    viewer = browser.viewer()  # what was under the pointer stays there, near the middle
+    near([viewer["yaw"], viewer["pitch"]], [20 / SIZE[1], 10 / SIZE[1]], 1e-6)
+    browser.run_command("Input.dispatchMouseEvent",
+                        {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0, "deltaY": -100})
+    browser.rest()
+    near(browser.viewer()["angle"], math.exp(-0.08), 1e-6)
+    browser.run(STAND, MIDDLE, [0, -0.8, -0.6])
+    for kind in ("Pressed", "Released"):
+        browser.mouse(kind, 160, 100)
+    text = browser.run("return document.getElementById('reading').textContent")
+    assert " lx" in text and "±" in text and "left" in text and "right" in text, text
+    browser.press("Escape")
+    assert browser.run("return document.getElementById('reading').hidden")
+
+
+def check_touch(browser):
+    browser.run_command("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.touch("Start", (180, 100))  # beside the pad
+    browser.touch("Move", (220, 100))
+    browser.touch("End")
+    browser.rest()
+    near(browser.viewer()["yaw"], -40 / SIZE[1], 1e-6)
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.touch("Start", (180, 80), (220, 80))
+    browser.touch("Move", (180, 120), (220, 120))
+    browser.touch("End")
+    browser.rest()
+    near(browser.viewer()["eye"], [3, 1.6, 2.5 - 2 * 40 * 2.5 / SIZE[1]], 1e-3)
+    browser.run(STAND, MIDDLE, [0, -0.8, -0.6])
+    browser.touch("Start", (160, 100))
+    browser.touch("End")
+    assert " lx" in browser.run("return document.getElementById('reading').textContent")
+    assert not browser.run("return document.getElementById('reading').hidden")
+    browser.run("page.forgetReading(); document.getElementById('pad').style.display = 'block'")
+    x, y, width = browser.run("""
+const box = document.getElementById('pad').getBoundingClientRect();
+return [box.left + box.width / 2, box.top + box.height / 2, box.width];""")
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.touch("Start", (x + 0.4 * width, y))
+    browser.wait(0.5)
+    browser.touch("End")
+    browser.rest()
+    eye = browser.viewer()["eye"]
+    assert eye[0] > 3.2 and abs(eye[2] - 2.5) < 0.1, eye
+    browser.run("document.getElementById('pad').style.display = ''")
+    browser.run_command("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
+
+def check_gamepad(browser):
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.run("""
+navigator.getGamepads = () => [{connected: true, axes: [0, -1, 0.5, 0]}];
+window.dispatchEvent(new Event('gamepadconnected'));
+""")
+    browser.wait(0.5)
+    browser.run("navigator.getGamepads = () => []")
+    browser.rest()
+    viewer = browser.viewer()
+    assert viewer["eye"][2] < 2.3 and 0.05 < viewer["yaw"] < 2, viewer
+
+
+def check_link(browser, page):
+    browser.run(STAND, [2, 1.5, 3], [0.6, 0, -0.8])
+    browser.run(SET_POWER, "left", 0.5)
+    browser.run("page.lights.setKelvin(1, 2700); page.setExposure(1.5); document.getElementById('link').click()")
+    time.sleep(0.2)
+    state = browser.run("return location.hash.slice(1)")
+    before = browser.viewer()
+    browser.open(page, state)
+    after = browser.viewer()
+    near(after["eye"] + [after["yaw"], after["pitch"]], before["eye"] + [before["yaw"], before["pitch"]], 1e-4)
+    power, kelvin, stops = browser.run(
+        "return [page.lights.states[0].power / room.lights[0].power, page.lights.states[1].kelvin, page.stops]")
+    near([power, kelvin, stops], [0.5, 2700, 1.5], 1e-3)
+    browser.open(page, "%7Bdamaged")
+    assert "damaged" in browser.run("return document.getElementById('message').textContent")
+
+
+def saved_picture(browser, folder):
+    for old in folder.glob("*.png"):
+        old.unlink()
+    browser.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+    browser.press("p")
+    for _ in range(100):
+        found = list(folder.glob("*.png"))
+        if found and found[0].stat().st_size > 0:
+            time.sleep(0.2)
+            break
+        time.sleep(0.05)
+    return np.asarray(oiio.ImageInput.open(str(found[0])).read_image(format=oiio.FLOAT))[:, :, :3].astype(float)
+
+
+def neutral_srgb(colour):
+    """Khronos PBR Neutral (https://github.com/KhronosGroup/ToneMapping, 2024), and the curve of sRGB."""
+    smallest = min(colour)
+    colour = np.asarray(colour) - (smallest - 6.25 * smallest ** 2 if smallest < 0.08 else 0.04)
+    peak = max(colour)
+    if peak > 0.76:
+        lower = 1 - 0.24 ** 2 / (peak + 0.24 - 0.76)
+        part = 1 - 1 / (0.15 * (peak - lower) + 1)
+        colour = colour * lower / peak * (1 - part) + lower * part
+    return np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * np.maximum(colour, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def check_pictures(browser, folder):
+    """What P saves is the picture by the display transform, and V's colours are the legend's."""
+    browser.run(STAND, [3, 1.6, 4], [0, -0.6, -0.8])
+    browser.rest()
+    radiance = browser.radiance()
+    white = browser.run("return page.renderer.exposure / page.renderer.unit")
+    picture = saved_picture(browser, folder)
+    assert picture.shape[:2] == (SIZE[1], SIZE[0]), picture.shape
+    places = [(40, 150), (160, 100), (280, 160), (100, 120)]
+    for x, y in places:
+        near(picture[y, x], neutral_srgb(white * radiance[y, x].astype(float)), 3 / 255)
+    browser.press("v")
+    ends = browser.run("return [...document.querySelectorAll('#legend span')].map((e) => parseFloat(e.textContent.replace(',', '')))")
+    assert not browser.run("return document.getElementById('legend').hidden")
+    near(np.array(ends) / ends[0], [1, 10, 100, 1000], 1e-6)
+    colours = saved_picture(browser, folder)
+    palette = np.array(browser.run("return room.palette")) / 255
+    for x, y in places:
+        lux = browser.run(CLICK, x + 0.5, y + 0.5)["lux"]
+        place = np.clip(np.log10(lux / ends[0]) / 3, 0, 1) * 255
+        near(colours[y, x], palette[int(round(place))], 8 / 255)
+    browser.press("v")
+    assert browser.run("return document.getElementById('legend').hidden")
+
+
+def check_presets(browser):
+    browser.run("[...document.querySelectorAll('#presets button')].find((b) => b.textContent === 'left alone').click()")
+    assert browser.run("return page.lights.states.map((state) => state.on)") == [True, False]
+    browser.run("document.querySelector('#presets button').click()")
+    assert browser.run("return page.lights.states.map((state) => state.on)") == [True, True]
+
+
+def test_controls(browser, folder):
+    page = folder / "hall.html"
+    photile("publish", obj_room(folder), "-o", page, "--quality", "draft", "--photons", "50k", "--texel", "0.2", "-q")
+    browser.open(page)
+    for check in (check_keyboard, check_mouse, check_touch, check_gamepad, check_presets):
+        check(browser)
+    check_pictures(browser, folder)
+    check_link(browser, page)
 
 
 def test_many_lights(browser, folder):
@@ -237,13 +614,12 @@ def main():
     browser = Browser()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            {"cornell_box": test_cornell_box, "many_lights": test_many_lights}[sys.argv[1]](
-                browser, pathlib.Path(folder))
+            result = globals()[f"test_{sys.argv[1]}"](browser, pathlib.Path(folder))
         messages = browser.messages()
         assert not messages, messages
     finally:
         browser.driver.quit()
-    return 0
+    return result or 0
 
 
 if __name__ == "__main__":

@@ -34,8 +34,6 @@ struct Case {
   std::string structure = "uniform-grid";
   int neighbours = 50;
   std::optional<EstimateTuning> tuning = std::nullopt;
-  /// Bytes that device memory is bounded by, so that maps are cut into tiles; 0 = no bound.
-  std::uint64_t memory_per_photon = 0;
   DensityKernel kernel = DensityKernel::constant;
 
   EstimateParameters parameters() const {
@@ -84,12 +82,6 @@ Scene torus_and_plate(std::size_t lights, bool glossy) {
 }
 
 /// Two large triangles with photons on one side: nothing comes near the other.
-Scene plate() {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {-1.5f, -1.5f, 0}, {3, 0, 0}, {0, 3, 0.1f}, 1);
-  return scene;
-}
-
 Photons photons_of(const Scene& scene, std::size_t count) {
   const std::size_t crowd = count / 4;
   Photons photons = test::uniform_photons(scene, count - crowd, 71);
@@ -116,27 +108,20 @@ PrimaryHits hits_of(const Scene& scene, std::size_t count) {
 }
 
 void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes& sizes) {
-  const bool tiled = test.memory_per_photon > 0;
-  const Photons photons = tiled ? test::uniform_photons(test.scene, sizes.photons, 71, false)
-                                : photons_of(test.scene, sizes.photons);
-  // Small tiles need small cells: pages reach beyond a tile by two of them and the radius.
-  const float photons_per_cell = tiled ? 0.25f : 4.0f;
+  const Photons photons = photons_of(test.scene, sizes.photons);
   const PrimaryHits hits = hits_of(test.scene, sizes.hits);
   const NeighbourGroups groups = find_neighbour_groups(test.scene, {radius, 60});
   std::vector<PhotonMaps> all_maps;
   if (test.structure == "uniform-grid") {
-    all_maps = estimate::build_maps_on_each(devices, test.scene, photons, groups,
-                                            {radius, photons_per_cell}, Progress::none());
+    all_maps = estimate::build_maps_on_each(devices, test.scene, photons, groups, {radius},
+                                            Progress::none());
   } else {
     for (Device& device : devices) {
       all_maps.push_back(structures::build(structures::named(test.structure), device, test.scene,
-                                           photons, groups, {radius, photons_per_cell}));
+                                           photons, groups, {radius}));
     }
   }
   const PhotonMaps& maps = all_maps.back();
-  if (tiled && maps::store_of(maps).tilings.empty()) {
-    throw DeviceError(test.name + ": no map was cut into tiles; take more photons");
-  }
   for (std::size_t i = 0; i < maps::store_of(maps).pages.size(); ++i) {
     const maps::MapPage& page = maps::store_of(maps).pages.use(i);
     device::Context& context = device::context_of(maps.device());
@@ -164,11 +149,10 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
 std::vector<Case> cases(bool every_kernel) {
   std::vector<Case> list{{"one-light", torus_and_plate(1, false)},
                          {"three-lights", torus_and_plate(3, false)},
-                         {"many-lights", torus_and_plate(300, false)},
-                         {"tiles", plate(), "uniform-grid", 10, std::nullopt, 50}};
+                         {"many-lights", torus_and_plate(300, false)}};
   const auto add_weighted = [&](DensityKernel kernel, std::size_t lights, bool glossy) {
     list.push_back({fmt::format("{}-{}-lights", name_of(kernel), lights),
-                    torus_and_plate(lights, glossy), "uniform-grid", 50, std::nullopt, 0, kernel});
+                    torus_and_plate(lights, glossy), "uniform-grid", 50, std::nullopt, kernel});
   };
   add_weighted(DensityKernel::cone, 1, false);
   add_weighted(DensityKernel::epanechnikov, 3, false);
@@ -194,7 +178,7 @@ std::vector<Case> cases_of_lanes() {
     const auto add = [&](std::string_view name, std::size_t lights, bool glossy, int neighbours,
                          DensityKernel kernel = DensityKernel::constant) {
       list.push_back({fmt::format("{}-lanes-{}", width, name), torus_and_plate(lights, glossy),
-                      "uniform-grid", neighbours, tuning, 0, kernel});
+                      "uniform-grid", neighbours, tuning, kernel});
     };
     add("one-light", 1, false, 50);
     add("three-lights", 3, false, 50);
@@ -231,14 +215,7 @@ int main(int count, char** arguments) {
       throw DeviceError(fmt::format("{} devices, not {}", devices.size(), expected_devices));
     }
     for (const Case& test : set == "--lanes" ? cases_of_lanes() : cases(set == "--every-kernel")) {
-      if (test.memory_per_photon == 0) {
-        print_fingerprint(devices, test, sizes);
-      } else {
-        DeviceOptions options;
-        options.memory_bytes = test.memory_per_photon * sizes.photons;
-        std::vector<Device> bounded = open_devices(options);
-        print_fingerprint(bounded, test, sizes);
-      }
+      print_fingerprint(devices, test, sizes);
     }
   } catch (const Error& error) {
     fmt::print(stderr, "photile_fingerprint: error: {}\n", error.what());

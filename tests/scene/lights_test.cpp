@@ -20,7 +20,7 @@ using std::numbers::pi;
 std::string hash_of(const Scene& scene) {
   ContentHash hash;
   scene::add_scene(scene, hash);
-  return hash.hex();
+  return hex(hash.digest());
 }
 
 /// A scene of one light of every kind that needs data of its own.

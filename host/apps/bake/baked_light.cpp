@@ -117,9 +117,10 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
 void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
                               const Progress& progress) {
   const std::span<const std::uint32_t> chart_of = maps_.charts().chart_of();
+  const auto open = [&](std::uint32_t s) { return parameters.open.empty() || parameters.open[s]; };
   PrimaryHits samples;  // the middle, and a point towards each corner
   for (std::uint32_t s = 0; s < chart_of.size(); ++s) {
-    if (chart_of[s] == none) continue;
+    if (chart_of[s] == none || !open(s)) continue;
     const std::array<glm::vec3, 3> corners = scene_.corners(triangle_of(s));
     const glm::vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
     add(samples, middle, s);
@@ -140,8 +141,9 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
   for (std::size_t i = 0; i < samples.size(); ++i) light[samples.sided_triangle[i]] += light_at[i];
   for (std::uint32_t t = 0; t < scene_.triangle_count(); ++t) {
     const std::uint32_t front = scene_.front_side[t];
+    const bool only_back = open(sided(t, 1 - front)) && !open(sided(t, front));
     const std::uint32_t brighter =
-        light[sided(t, 1 - front)] > light[sided(t, front)] ? 1 - front : front;
+        only_back || light[sided(t, 1 - front)] > light[sided(t, front)] ? 1 - front : front;
     for (const std::uint32_t side : {0u, 1u}) {
       if (side == brighter || light[sided(t, side)] > 0) sides_.push_back(sided(t, side));
     }

@@ -35,12 +35,13 @@ struct BakeParameters {
   bool exact = true;  ///< a texel that is given is not made larger where the picture is too small
   int most_side = 4096;                           ///< of the picture
   std::uint64_t most_texels = ~std::uint64_t{0};  ///< of the picture's area
-  std::vector<double> powers;  ///< per layer, by which the brighter side of a surface is told
+  std::vector<double> powers;      ///< per layer, by which the brighter side of a surface is told
+  std::vector<std::uint8_t> open;  ///< as open_sides; empty = all sides are
 };
 
 /// The charts of the light maps side by side: of each triangle the side on which more light falls,
-/// and the other where it is lit, too. Texels are points of the charts' lattices, so that a
-/// bilinear lookup blends neighbours of one chart; a border of one texel repeats the last. Texels
+/// and the other where it is open and lit, too. Texels are points of the charts' lattices, so that
+/// a bilinear lookup blends neighbours of one chart; a border of one texel repeats the last. Texels
 /// under things that stand on a surface hold the light beside these, for lookups there.
 class BakedLight {
  public:

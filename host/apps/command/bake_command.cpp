@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/open_sides.hpp"
 #include "bake/write_baked.hpp"
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
@@ -42,9 +43,10 @@ void run_bake(BakeOptions& options) {
   tell_scene(scene, mix, progress);
 
   std::optional<PreparedPhotons> prepared = load_maps(scene, render, progress);
-  RenderSession session(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
-                        prepared ? &*prepared : nullptr, keep_maps(scene, render, progress),
-                        progress);
+  const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
+  options.baking.open = bake::open_sides(prepared_scene->rays);
+  RenderSession session(prepared_scene, devices, render.parameters, prepared ? &*prepared : nullptr,
+                        keep_maps(scene, render, progress), progress);
   cache::SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
   const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),

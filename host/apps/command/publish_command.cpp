@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/open_sides.hpp"
 #include "cache/charts.hpp"
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
@@ -67,8 +68,9 @@ void run_publish(PublishOptions& options) {
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
 
-  RenderSession session(std::make_shared<const PreparedScene>(scene), devices, render.parameters,
-                        nullptr, {}, progress);
+  const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
+  options.baking.open = bake::open_sides(prepared_scene->rays);
+  RenderSession session(prepared_scene, devices, render.parameters, nullptr, {}, progress);
   cache::SurfaceCache& cache = *session.light().cache();
   if (!options.baking.exact) {  // in a small room finer, as nodes are
     options.baking.texel = std::min(defaults::published_texel, cache.maps().charts().spacing() / 2);

@@ -172,7 +172,7 @@ constexpr const char* attribute = "photile.settings";
 std::string digest_of(const Scene& scene) {
   ContentHash hash;
   scene::add_scene(scene, hash);
-  return hash.hex();
+  return hex(hash.digest());
 }
 
 std::string frame_settings(const std::string& scene_digest, const RunRecord& record,
@@ -189,7 +189,7 @@ std::string frame_settings(const std::string& scene_digest, const RunRecord& rec
     hash.add(v);
   }
   hash.add(camera.vertical_field_of_view);
-  return hash.hex();
+  return hex(hash.digest());
 }
 
 void set_settings(PictureHeader& picture, const std::string& settings) {

@@ -124,12 +124,15 @@ void Sections::add_texture(const std::string& name, std::span<const std::uint8_t
                            std::size_t width) {
   const std::size_t count = rgba.size() / 4;
   std::vector<std::uint8_t> bytes(rgba.size());
+  constexpr std::size_t green = 1, alpha = 3;
   for (std::size_t plane = 0; plane < 4; ++plane) {
-    for_each_residual(
-        count, width, [&](std::size_t i) { return int{rgba[4 * i + plane]}; },
-        [&](std::size_t i, int residual) {
-          bytes[plane * count + i] = static_cast<std::uint8_t>(residual);
-        });
+    const auto value = [&](std::size_t i) {
+      const int own = rgba[4 * i + plane];
+      return plane == green || plane == alpha ? own : (own - rgba[4 * i + green] + 128) & 255;
+    };
+    for_each_residual(count, width, value, [&](std::size_t i, int residual) {
+      bytes[plane * count + i] = static_cast<std::uint8_t>(residual);
+    });
   }
   add(name, bytes, "texture");
 }

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "cache/light_maps_impl.hpp"
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
@@ -60,17 +61,7 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
 }  // namespace
 }  // namespace cache
 
-std::string_view name_of(LightMapMode mode) {
-  switch (mode) {
-    case LightMapMode::off:
-      return "off";
-    case LightMapMode::on:
-      return "on";
-    case LightMapMode::automatic:
-      return "auto";
-  }
-  return "unknown";
-}
+std::string_view name_of(LightMapMode mode) { return name_in({"off", "on", "auto"}, mode); }
 
 using cache::Charts;
 using cache::MissingCell;

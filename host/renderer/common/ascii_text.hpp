@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +27,13 @@ std::vector<std::string_view> lines_of(std::string_view text);
 
 /// The word that the fewest letters make of `text`: put in, left out, or changed. "" of none.
 std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words);
+
+/// The word of an enumerator, by a list of the words of all, in their order.
+template <class Enum>
+std::string_view name_in(std::initializer_list<std::string_view> words, Enum value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < words.size() ? words.begin()[index] : "unknown";
+}
 
 /// The number that all of a text spells, with a decimal point, in digits of `base` where it is a
 /// whole one. Nothing for NaN, infinities and all else.

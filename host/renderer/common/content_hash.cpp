@@ -33,9 +33,9 @@ ContentHash::Digest ContentHash::digest() const {
   return result;
 }
 
-std::string ContentHash::hex() const {
+std::string hex(const ContentHash::Digest& digest) {
   std::string digits;
-  for (const unsigned char byte : digest()) digits += fmt::format("{:02x}", byte);
+  for (const unsigned char byte : digest) digits += fmt::format("{:02x}", byte);
   return digits;
 }
 

@@ -38,11 +38,13 @@ class ContentHash {
 
   using Digest = std::array<unsigned char, 16>;  ///< canonical: big-endian
   Digest digest() const;
-  std::string hex() const;  ///< 32 digits
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// 32 digits.
+std::string hex(const ContentHash::Digest& digest);
 
 }  // namespace photile

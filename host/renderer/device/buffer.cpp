@@ -26,6 +26,19 @@ void check_range(const RawBuffer& buffer, std::size_t bytes, std::size_t offset,
   }
 }
 
+void release(void* memory) { clReleaseMemObject(static_cast<cl_mem>(memory)); }
+
+/// Counts the bytes of a buffer. Returns what releases it, and counts them off.
+std::function<void(void*)> counted(std::size_t bytes,
+                                   const std::shared_ptr<MemoryCounter>& counter) {
+  counter->live += bytes;
+  counter->peak = std::max(counter->peak, counter->live.load());
+  return [bytes, counter](void* memory) {
+    release(memory);
+    counter->live -= bytes;
+  };
+}
+
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 constexpr std::size_t least_bytes = 4 * huge_page;
 
@@ -65,34 +78,6 @@ std::vector<unsigned char> repeated(const void* element, std::size_t element_byt
 
 }  // namespace
 
-RawBuffer::RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory,
-                     std::shared_ptr<void> queue)
-    : handle_(handle), bytes_(bytes), memory_(std::move(memory)), queue_(std::move(queue)) {
-  if (memory_ == nullptr) return;
-  memory_->live += bytes_;
-  memory_->peak = std::max(memory_->peak, memory_->live.load());
-}
-
-RawBuffer::RawBuffer(RawBuffer&& other) noexcept
-    : handle_(std::exchange(other.handle_, nullptr)),
-      bytes_(std::exchange(other.bytes_, 0)),
-      memory_(std::move(other.memory_)),
-      queue_(std::move(other.queue_)) {}
-
-RawBuffer& RawBuffer::operator=(RawBuffer&& other) noexcept {
-  std::swap(handle_, other.handle_);
-  std::swap(bytes_, other.bytes_);
-  std::swap(memory_, other.memory_);
-  std::swap(queue_, other.queue_);
-  return *this;
-}
-
-RawBuffer::~RawBuffer() {
-  if (handle_ == nullptr) return;
-  clReleaseMemObject(static_cast<cl_mem>(handle_));
-  if (memory_ != nullptr) memory_->live -= bytes_;
-}
-
 RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_bytes,
                                      std::string_view what, MemoryPages pages) {
   // OpenCL has no empty buffers; 16 bytes hold an element of any basic type.
@@ -122,7 +107,7 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
   if (pages == MemoryPages::large && info.type == DeviceType::cpu) {
     prefer_huge_pages(impl_->queue.get(), memory, bytes);
   }
-  return RawBuffer(memory, bytes, impl_->memory);
+  return RawBuffer({memory, counted(bytes, impl_->memory)}, bytes);
 }
 
 void Context::write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
@@ -148,42 +133,15 @@ void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
   impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
 }
 
-void Context::write_bytes_beside(const RawBuffer& buffer, const void* data, std::size_t bytes) {
-  if (shares_host_memory()) {
-    write_bytes(buffer, data, bytes, 0);
-    return;
-  }
-  check_range(buffer, bytes, 0, "write");
-  if (bytes == 0) return;
-  Transfers& transfers = impl_->beside();
-  impl_->check(impl_->persevere([&] { return transfers.write(memory_of(buffer), data, bytes); }),
-               "clEnqueueWriteBuffer", fmt::format("{} bytes", bytes));
-}
-
-void Context::read_bytes_after(const Event& event, const RawBuffer& buffer, void* data,
-                               std::size_t bytes) {
-  if (event.handle() == nullptr) {
-    read_bytes(buffer, data, bytes, 0);
-    return;
-  }
-  check_range(buffer, bytes, 0, "read");
-  if (bytes == 0) return;
-  Transfers& transfers = impl_->beside();
-  const auto after = static_cast<cl_event>(event.handle());
-  const cl_int status =
-      impl_->persevere([&] { return transfers.read(after, memory_of(buffer), data, bytes); });
-  impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
-}
-
 bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }
 
 RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_view what,
                                SharedMemory counts) {
-  const bool counted = counts == SharedMemory::counted;
   cl_mem memory = nullptr;
   const cl_int status = impl_->persevere([&] {
     const std::uint64_t live = impl_->memory->live;
-    if (counted && bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
+    if (counts == SharedMemory::counted &&
+        bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     cl_int created = CL_SUCCESS;
@@ -195,12 +153,18 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
   if (status != CL_SUCCESS) {
     impl_->check(status, "clCreateBuffer", fmt::format("sharing {} ({} bytes)", what, bytes));
   }
-  clRetainCommandQueue(impl_->queue.get());
-  return RawBuffer(memory, bytes, counted ? impl_->memory : nullptr,
-                   std::shared_ptr<void>(impl_->queue.get(), [](void* queue) {
-                     clFinish(static_cast<cl_command_queue>(queue));
-                     clReleaseCommandQueue(static_cast<cl_command_queue>(queue));
-                   }));
+  // The host's memory is in use until the queue is empty.
+  cl_command_queue queue = impl_->queue.get();
+  clRetainCommandQueue(queue);
+  const auto release_memory =
+      counts == SharedMemory::counted ? counted(bytes, impl_->memory) : std::function(release);
+  return RawBuffer({memory,
+                    [=](void* shared) {
+                      release_memory(shared);
+                      clFinish(queue);
+                      clReleaseCommandQueue(queue);
+                    }},
+                   bytes);
 }
 
 void Context::fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,

@@ -138,28 +138,6 @@ std::uint64_t Context::largest_buffer() const {
   return std::min(impl_->info.max_allocation_bytes, impl_->memory_limit);
 }
 
-Transfers& Context::Impl::beside() {
-  if (transfers == nullptr) transfers = std::make_unique<Transfers>(context.get(), device);
-  return *transfers;
-}
-
-Event Context::mark() {
-  if (shares_host_memory()) return {};
-  cl_event event = nullptr;
-  impl_->check(clEnqueueMarkerWithWaitList(impl_->queue.get(), 0, nullptr, &event),
-               "clEnqueueMarkerWithWaitList", impl_->info.name);
-  Event marked(std::shared_ptr<void>(
-      event, [](void* handle) { clReleaseEvent(static_cast<cl_event>(handle)); }));
-  impl_->check(clFlush(impl_->queue.get()), "clFlush", impl_->info.name);
-  return marked;
-}
-
-void Context::wait(const Event& event) {
-  if (event.handle() == nullptr) return;
-  const auto handle = static_cast<cl_event>(event.handle());
-  impl_->check(clWaitForEvents(1, &handle), "clWaitForEvents", impl_->info.name);
-}
-
 void Context::finish() { impl_->check(clFinish(impl_->queue.get()), "clFinish", impl_->info.name); }
 
 double Context::compile_seconds() const { return impl_->programs->compile_seconds(); }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -58,23 +59,17 @@ class ReclaimerEntry {
 class RawBuffer {
  public:
   RawBuffer() = default;
-  RawBuffer(RawBuffer&& other) noexcept;
-  RawBuffer& operator=(RawBuffer&& other) noexcept;
-  ~RawBuffer();
-
-  std::size_t bytes() const { return bytes_; }
-  void* handle() const { return handle_; }  ///< a cl_mem
+  std::size_t bytes() const { return memory_ == nullptr ? 0 : bytes_; }
+  void* handle() const { return memory_.get(); }  ///< a cl_mem
 
  private:
   friend class Context;
-  /// `memory` counts the bytes; null where they are the host's. Those are in use until the queue is
-  /// empty: the deleter of `queue` waits for it.
-  RawBuffer(void* handle, std::size_t bytes, std::shared_ptr<MemoryCounter> memory,
-            std::shared_ptr<void> queue = {});
-  void* handle_ = nullptr;
+  /// With what releases it.
+  using Memory = std::unique_ptr<void, std::function<void(void* memory)>>;
+  RawBuffer(Memory memory, std::size_t bytes) : memory_(std::move(memory)), bytes_(bytes) {}
+
+  Memory memory_;
   std::size_t bytes_ = 0;
-  std::shared_ptr<MemoryCounter> memory_;
-  std::shared_ptr<void> queue_;
 };
 
 /// A device buffer of `size()` elements of T. A buffer of zero elements is a valid kernel argument.
@@ -96,18 +91,6 @@ class Buffer {
 /// memory. What comes in parts does, so that a bound makes the parts small; what is there in any
 /// case does not.
 enum class SharedMemory { uncounted, counted };
-
-/// A point of a context's queue, reached once all that was enqueued before it is done. Empty where
-/// nothing needs to be waited for. May outlive the context.
-class Event {
- public:
-  Event() = default;
-  explicit Event(std::shared_ptr<void> handle) : handle_(std::move(handle)) {}
-  void* handle() const { return handle_.get(); }  ///< a cl_event, or null
-
- private:
-  std::shared_ptr<void> handle_;
-};
 
 /// What memory a buffer of a CPU device is to be made of.
 enum class MemoryPages {
@@ -214,23 +197,6 @@ class Context {
   void read(const Buffer<T>& buffer, std::span<T> out, std::size_t first = 0) {
     read_bytes(buffer.raw(), out.data(), out.size_bytes(), first * sizeof(T));
   }
-  /// Whether transfers run beside kernels: the device has a memory of its own.
-  bool transfers_beside_kernels() const { return !shares_host_memory(); }
-  /// The point that the queue has come to; empty where transfers do not run beside kernels.
-  Event mark();
-  void wait(const Event& event);
-  /// Writes, as `write` does, beside the kernels that were enqueued before, none of which may use
-  /// the buffer.
-  template <class T>
-  void write_beside(Buffer<T>& buffer, std::span<const T> values) {
-    write_bytes_beside(buffer.raw(), values.data(), values.size_bytes());
-  }
-  /// Reads, as `read` does, once the event has happened, beside the kernels that were enqueued
-  /// after it.
-  template <class T>
-  void read_after(const Event& event, const Buffer<T>& buffer, std::span<T> out) {
-    read_bytes_after(event, buffer.raw(), out.data(), out.size_bytes());
-  }
   /// The content of a buffer, to be restored later.
   template <class T>
   std::vector<std::byte> save(const Buffer<T>& buffer) {
@@ -292,8 +258,6 @@ class Context {
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
-  void write_bytes_beside(const RawBuffer& buffer, const void* data, std::size_t bytes);
-  void read_bytes_after(const Event& event, const RawBuffer& buffer, void* data, std::size_t bytes);
   /// With blocks of bytes one after the other, where the device shares memory with the host.
   void fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
                            std::size_t bytes, std::size_t first);

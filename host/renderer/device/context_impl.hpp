@@ -13,7 +13,6 @@
 #include "device/kernel.hpp"
 #include "device/opencl.hpp"
 #include "device/program_library.hpp"
-#include "device/transfers.hpp"
 
 namespace photile::device {
 
@@ -62,9 +61,6 @@ struct Context::Impl {
     return status;
   }
 
-  /// Made where there is none yet. Errors: DeviceError.
-  Transfers& beside();
-
   /// Whether a reclaimer has released memory.
   bool reclaim();
 
@@ -76,7 +72,6 @@ struct Context::Impl {
   std::uint64_t memory_limit = 0;
   ContextHandle context;
   QueueHandle queue;
-  std::unique_ptr<Transfers> transfers;  ///< of cards, from the first use on
   std::unique_ptr<ProgramLibrary> programs;
   std::map<std::tuple<std::string, std::string, std::string>, Kernel>
       kernels;  ///< file, name, defines

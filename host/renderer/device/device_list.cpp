@@ -12,6 +12,7 @@
 #include <string>
 #include <system_error>
 
+#include "common/ascii_text.hpp"
 #include "common/process_limits.hpp"
 #include "device/cache_folder.hpp"
 #include "device/context.hpp"
@@ -222,17 +223,7 @@ std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
 namespace photile {
 
 std::string_view name_of(DeviceType type) {
-  switch (type) {
-    case DeviceType::cpu:
-      return "cpu";
-    case DeviceType::gpu:
-      return "gpu";
-    case DeviceType::accelerator:
-      return "accelerator";
-    case DeviceType::other:
-      return "other";
-  }
-  return "unknown";
+  return name_in({"cpu", "gpu", "accelerator", "other"}, type);
 }
 
 std::vector<DeviceInfo> list_devices() {

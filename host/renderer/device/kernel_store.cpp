@@ -1,21 +1,19 @@
 #include "device/kernel_store.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "common/files.hpp"
 #include "device/cache_folder.hpp"
+#include "photile/errors.hpp"
 
 namespace photile::device {
 
@@ -42,28 +40,9 @@ std::set<std::string> variables_of(std::string_view runtime) {
 
 }  // namespace
 
-std::string CacheKey::hex() const {
-  std::string digits;
-  for (const unsigned char byte : bytes) digits += fmt::format("{:02x}", byte);
-  return digits;
-}
-
-CacheKey hash(std::string_view text) {
-  XXH128_canonical_t canonical;
-  XXH128_canonicalFromHash(&canonical, XXH3_128bits(text.data(), text.size()));
-  CacheKey key;
-  static_assert(sizeof canonical.digest == sizeof key.bytes);
-  std::copy(std::begin(canonical.digest), std::end(canonical.digest), key.bytes.begin());
-  return key;
-}
-
 CacheKey program_key(const DeviceInfo& device, std::string_view options, std::string_view source) {
-  // The length before each field keeps ("ab", "c") and ("a", "bc") apart.
-  std::string text;
-  const auto add = [&](std::string_view field) {
-    text += fmt::format("{}:", field.size());
-    text += field;
-  };
+  ContentHash hash;
+  const auto add = [&](std::string_view field) { hash.add(std::string(field)); };
   add(device.platform);
   add(device.platform_version);
   add(device.name);
@@ -74,72 +53,46 @@ CacheKey program_key(const DeviceInfo& device, std::string_view options, std::st
   add(source);
   // Variables of PoCL, or of Intel's runtime, which others ignore.
   for (const auto& variable : variables_of(device.is_pocl ? "POCL_" : "CL_CONFIG_")) add(variable);
-  return hash(text);
+  return hash.digest();
 }
 
 namespace {
 
 constexpr std::string_view magic = "PHOTILEC";
 constexpr std::uint32_t format_version = 1;
-constexpr std::uint64_t max_payload_bytes = 1ull << 30;  ///< far above any program
 constexpr std::size_t checksum_offset = 40;
-
-/// Closes on scope exit.
-struct Descriptor {
-  int value;
-  ~Descriptor() {
-    if (value >= 0) ::close(value);
-  }
-};
 
 std::string header_of(const CacheKey& key, std::string_view payload) {
   std::string header(checked_file_header_bytes, '\0');
   const std::uint64_t length = payload.size();
   std::memcpy(header.data(), magic.data(), magic.size());
   std::memcpy(header.data() + 8, &format_version, sizeof format_version);
-  std::memcpy(header.data() + 16, key.bytes.data(), key.bytes.size());
+  std::memcpy(header.data() + 16, key.data(), key.size());
   std::memcpy(header.data() + 32, &length, sizeof length);
-  const auto checksum = hash(header.substr(0, checksum_offset).append(payload));
-  std::memcpy(header.data() + checksum_offset, checksum.bytes.data(), checksum.bytes.size());
+  ContentHash hash;
+  hash.add_bytes(header.data(), checksum_offset);
+  hash.add_bytes(payload.data(), payload.size());
+  const auto checksum = hash.digest();
+  std::memcpy(header.data() + checksum_offset, checksum.data(), checksum.size());
   return header;
-}
-
-bool write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const auto written = ::write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
-
-bool read_all(int file, std::string& bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const auto got = ::read(file, bytes.data() + done, bytes.size() - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    done += static_cast<std::size_t>(got);
-  }
-  return true;
 }
 
 }  // namespace
 
-CheckedRead read_checked_file(const std::filesystem::path& path, const CacheKey& key) {
-  // O_NONBLOCK: opening a FIFO of that name must not hang.
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (file.value < 0) return {{}, errno == ENOENT ? "" : std::strerror(errno)};
-  struct stat status {};
-  if (::fstat(file.value, &status) != 0) return {{}, std::strerror(errno)};
-  if (!S_ISREG(status.st_mode)) return {{}, "not a regular file"};
-  const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size < checked_file_header_bytes) return {{}, fmt::format("{} bytes, no header", size)};
-  if (size - checked_file_header_bytes > max_payload_bytes) return {{}, "too large"};
+namespace fs = std::filesystem;
 
-  std::string bytes(size, '\0');
-  if (!read_all(file.value, bytes)) return {{}, "cannot be read to its end"};
+CheckedRead read_checked_file(const fs::path& path, const CacheKey& key) {
+  std::error_code error;
+  if (!fs::exists(path, error) && !error) return {};
+  std::string bytes;
+  try {
+    bytes = read_own_text(path);
+  } catch (const InputError& problem) {
+    return {{}, problem.what()};
+  }
+  if (bytes.size() < checked_file_header_bytes) {
+    return {{}, fmt::format("{} bytes, no header", bytes.size())};
+  }
   std::string payload = bytes.substr(checked_file_header_bytes);
   // Magic, version, key, length and checksum are all functions of key and payload.
   if (bytes.compare(0, checked_file_header_bytes, header_of(key, payload)) != 0) {
@@ -148,22 +101,9 @@ CheckedRead read_checked_file(const std::filesystem::path& path, const CacheKey&
   return {std::move(payload), {}};
 }
 
-std::string write_checked_file(const std::filesystem::path& path, const CacheKey& key,
-                               std::string_view payload) {
-  std::string temporary = path.string() + ".XXXXXX";
-  Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
-  if (file.value < 0) return std::strerror(errno);
-  const bool written = write_all(file.value, header_of(key, payload)) &&
-                       write_all(file.value, payload) && ::fsync(file.value) == 0;
-  // close() reports what a network file system kept for itself until then.
-  const bool closed = ::close(std::exchange(file.value, -1)) == 0;
-  if (written && closed && ::rename(temporary.c_str(), path.c_str()) == 0) return {};
-  const std::string problem = std::strerror(errno);
-  ::unlink(temporary.c_str());
-  return problem;
+void write_checked_file(const fs::path& path, const CacheKey& key, std::string_view payload) {
+  write_file(path, header_of(key, payload).append(payload));
 }
-
-namespace fs = std::filesystem;
 
 KernelStore::KernelStore(fs::path folder, std::vector<fs::path> installed, std::string ending)
     : folder_(std::move(folder)), installed_(std::move(installed)), ending_(std::move(ending)) {
@@ -186,10 +126,13 @@ std::optional<std::string> KernelStore::load(const CacheKey& key) const {
 }
 
 bool KernelStore::store(const CacheKey& key, std::string_view kernels) const {
-  const std::string problem = write_checked_file(file(key), key, kernels);
-  if (problem.empty()) return true;
-  warn(fmt::format("compiled kernels are not kept in '{}': {}", folder_.string(), problem));
-  return false;
+  try {
+    write_checked_file(file(key), key, kernels);
+    return true;
+  } catch (const OutputError& error) {
+    warn(fmt::format("compiled kernels are not kept: {}", error.what()));
+    return false;
+  }
 }
 
 }  // namespace photile::device

@@ -2,25 +2,18 @@
 // and one checked file per program.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/content_hash.hpp"
 #include "photile/device.hpp"
 
 namespace photile::device {
 
-struct CacheKey {
-  std::array<unsigned char, 16> bytes{};
-  std::string hex() const;  ///< 32 digits
-  friend bool operator==(const CacheKey&, const CacheKey&) = default;
-};
-
-/// XXH3-128 of `text`, in the canonical (big-endian) form.
-CacheKey hash(std::string_view text);
+using CacheKey = ContentHash::Digest;
 
 /// Key of the program `source` built with `options` on `device`: platform name and version, device
 /// name, vendor, device and driver versions, options and source; on PoCL also the POCL_* variables,
@@ -48,10 +41,9 @@ struct CheckedRead {
 /// Reads and verifies. Never throws on account of the file.
 CheckedRead read_checked_file(const std::filesystem::path& file, const CacheKey& key);
 
-/// Writes to a temporary name in the same folder, syncs, renames: a reader sees the old file or the
-/// whole new one. Returns "" or what went wrong; the temporary file is gone then.
-std::string write_checked_file(const std::filesystem::path& file, const CacheKey& key,
-                               std::string_view payload);
+/// A reader sees the old file or the whole new one. Errors: OutputError.
+void write_checked_file(const std::filesystem::path& file, const CacheKey& key,
+                        std::string_view payload);
 
 class KernelStore {
  public:
@@ -71,7 +63,7 @@ class KernelStore {
   std::filesystem::path file(const CacheKey& key) const { return folder_ / name(key); }
 
  private:
-  std::string name(const CacheKey& key) const { return key.hex() + ending_; }
+  std::string name(const CacheKey& key) const { return hex(key) + ending_; }
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> installed_;

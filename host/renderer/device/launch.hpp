@@ -67,10 +67,8 @@ inline std::uint32_t next_launch(std::uint32_t last, double seconds) {
   return static_cast<std::uint32_t>(std::clamp(last * growth, least, most));
 }
 
-/// Cuts the items of a kernel into launches by their measured time. Two are in the queue at a time,
-/// so that the device need not wait for the host between them; run() returns before the last has
-/// ended. On CPUs, which have no watchdog and whose runtimes share time with others, one launch
-/// does all.
+/// Cuts the items of a kernel into launches by their measured time. On CPUs, which have no watchdog
+/// and whose runtimes share time with others, one launch does all.
 class LaunchPace {
  public:
   explicit LaunchPace(Context& context)
@@ -87,40 +85,18 @@ class LaunchPace {
     for (std::uint32_t first = 0; first < total;) {
       const std::uint32_t part = (items_ + unit - 1) / unit * unit;
       const std::uint32_t count = std::min(part, total - first);
-      const double enqueued = clock_.seconds();
+      const Stopwatch stopwatch;
       launch(first, count);
-      // Small rests say little.
-      const InQueue launched{context_.mark(), enqueued, count == part ? part : 0};
-      end_last();
-      last_ = launched;
+      context_.finish();
+      if (count == part) items_ = next_launch(part, stopwatch.seconds());  // small rests say little
       first += count;
     }
   }
 
  private:
-  struct InQueue {
-    Event end;
-    double enqueued = 0;         ///< seconds
-    std::uint32_t measured = 0;  ///< items, where its time is to be taken
-  };
-
-  /// Waits for the last launch but the one just enqueued. It ran from the end of the one before, or
-  /// from when it was enqueued.
-  void end_last() {
-    context_.wait(last_.end);
-    const double ended = clock_.seconds();
-    if (last_.measured > 0) {
-      items_ = next_launch(last_.measured, ended - std::max(last_.enqueued, ended_));
-    }
-    ended_ = ended;
-  }
-
   Context& context_;
   bool cuts_;
   std::uint32_t items_ = 1u << 14;
-  Stopwatch clock_;
-  InQueue last_;
-  double ended_ = 0;  ///< when the launch before the last ended, seconds
 };
 
 /// A kernel file and the definitions that it is built with, on one context.

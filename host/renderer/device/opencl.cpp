@@ -8,9 +8,6 @@
 namespace photile::device {
 namespace {
 
-/// Drivers pad with blanks and zeros.
-std::string without_padding(const std::string& text) { return std::string(trimmed(text.c_str())); }
-
 const char* name_of(int status) {
 #define PHOTILE_STATUS(code) \
   case code:                 \
@@ -99,19 +96,14 @@ void throw_status(cl_int status, std::string_view call, std::string_view detail)
 }
 
 std::string device_text(cl_device_id device, cl_device_info name) {
-  std::size_t bytes = 0;
-  check(clGetDeviceInfo(device, name, 0, nullptr, &bytes), "clGetDeviceInfo");
-  std::string text(bytes, '\0');
-  check(clGetDeviceInfo(device, name, bytes, text.data(), nullptr), "clGetDeviceInfo");
-  return without_padding(text);
+  // Drivers pad with blanks, too.
+  return std::string(trimmed(text_of(
+      "clGetDeviceInfo", [&](auto... to) { return clGetDeviceInfo(device, name, to...); })));
 }
 
 std::string platform_text(cl_platform_id platform, cl_platform_info name) {
-  std::size_t bytes = 0;
-  check(clGetPlatformInfo(platform, name, 0, nullptr, &bytes), "clGetPlatformInfo");
-  std::string text(bytes, '\0');
-  check(clGetPlatformInfo(platform, name, bytes, text.data(), nullptr), "clGetPlatformInfo");
-  return without_padding(text);
+  return std::string(trimmed(text_of(
+      "clGetPlatformInfo", [&](auto... to) { return clGetPlatformInfo(platform, name, to...); })));
 }
 
 }  // namespace photile::device

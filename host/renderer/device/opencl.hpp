@@ -56,7 +56,6 @@ using ContextHandle = Handle<cl_context, clReleaseContext>;
 using QueueHandle = Handle<cl_command_queue, clReleaseCommandQueue>;
 using ProgramHandle = Handle<cl_program, clReleaseProgram>;
 using KernelHandle = Handle<cl_kernel, clReleaseKernel>;
-using MemoryHandle = Handle<cl_mem, clReleaseMemObject>;
 using EventHandle = Handle<cl_event, clReleaseEvent>;
 
 /// A property of a device or platform. Errors: DeviceError.
@@ -67,6 +66,17 @@ T device_property(cl_device_id device, cl_device_info name) {
   check(clGetDeviceInfo(device, name, sizeof value, &value, nullptr), "clGetDeviceInfo");
   return value;
 }
+/// A text that query(bytes, text, &bytes_needed), one of the API's, tells. Errors: DeviceError that
+/// names `call`.
+template <class Query>
+std::string text_of(std::string_view call, const Query& query) {
+  std::size_t bytes = 0;
+  check(query(std::size_t{0}, static_cast<char*>(nullptr), &bytes), call);
+  std::string text(bytes, '\0');
+  check(query(bytes, text.data(), static_cast<std::size_t*>(nullptr)), call);
+  return text.c_str();  // without what pads it
+}
+
 std::string device_text(cl_device_id device, cl_device_info name);
 std::string platform_text(cl_platform_id platform, cl_platform_info name);
 

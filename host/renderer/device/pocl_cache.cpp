@@ -196,7 +196,7 @@ void PoclCache::restore(Program& program) const {
 
 bool PoclCache::build(const CacheKey& key, const std::function<void()>& build) {
   const std::lock_guard lock(mutex_);
-  const auto [entry, is_new] = programs_.try_emplace(key.hex(), Program{key});
+  const auto [entry, is_new] = programs_.try_emplace(key, Program{key});
   if (is_new) restore(entry->second);
 
   const auto before = program_folders(work_);
@@ -213,7 +213,7 @@ bool PoclCache::build(const CacheKey& key, const std::function<void()>& build) {
 void PoclCache::publish() noexcept {
   try {
     const std::lock_guard lock(mutex_);
-    for (auto& [name, program] : programs_) {
+    for (auto& [key, program] : programs_) {
       if (program.folder.empty()) continue;
       const std::vector<fs::path> files = useful_files(program.folder);
       if (files.size() == program.stored_files) continue;

@@ -58,7 +58,7 @@ class PoclCache {
 
   std::filesystem::path work_;
   KernelStore store_;
-  std::map<std::string, Program> programs_;  ///< by hexadecimal key
+  std::map<CacheKey, Program> programs_;
   std::mutex mutex_;
 };
 

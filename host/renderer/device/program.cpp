@@ -29,9 +29,6 @@ std::optional<std::string_view> take_line(std::string_view& text) {
   return line;
 }
 
-/// What the runtime wrote, without the end of a C string.
-std::string text_of(const std::string& written) { return written.c_str(); }
-
 }  // namespace
 
 std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
@@ -45,10 +42,9 @@ std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
         bytes < 2) {
       return std::nullopt;
     }
-    std::string name(bytes, '\0');
-    check(clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, bytes, name.data(), nullptr),
-          "clGetKernelArgInfo");
-    names.push_back(text_of(name));
+    names.push_back(text_of("clGetKernelArgInfo", [&](auto... to) {
+      return clGetKernelArgInfo(kernel, i, CL_KERNEL_ARG_NAME, to...);
+    }));
   }
   return names;
 }
@@ -62,15 +58,13 @@ std::optional<ArgumentNames> argument_names(cl_program program) {
   const std::vector<KernelHandle> kernels(created.begin(), created.end());
   ArgumentNames names;
   for (const KernelHandle& kernel : kernels) {
-    std::size_t bytes = 0;
-    check(clGetKernelInfo(kernel.get(), CL_KERNEL_FUNCTION_NAME, 0, nullptr, &bytes),
-          "clGetKernelInfo");
-    std::string name(bytes, '\0');
-    check(clGetKernelInfo(kernel.get(), CL_KERNEL_FUNCTION_NAME, bytes, name.data(), nullptr),
-          "clGetKernelInfo");
     auto arguments = argument_names(kernel.get());
     if (!arguments) return std::nullopt;
-    names.emplace(text_of(name), std::move(*arguments));
+    names.emplace(text_of("clGetKernelInfo",
+                          [&](auto... to) {
+                            return clGetKernelInfo(kernel.get(), CL_KERNEL_FUNCTION_NAME, to...);
+                          }),
+                  std::move(*arguments));
   }
   return names;
 }

@@ -83,23 +83,23 @@ bool EstimateBuffers::reclaim() {
   return true;
 }
 
-void EstimateBuffers::read(Estimates& result, std::size_t first, const device::Event& after) {
+void EstimateBuffers::read(Estimates& result, std::size_t first) {
   if (sums_.many_lights) {
     result.append(read_slots());
   } else {
     const auto part = [&](std::vector<glm::vec3>& values) {
       return std::span(values).subspan(first * sums_.per_hit, std::size_t{hits_} * sums_.per_hit);
     };
-    read_vectors(irradiance, part(result.irradiance), after);
-    if (sums_.glossy) read_vectors(radiance, part(result.radiance), after);
+    read_vectors(irradiance, part(result.irradiance));
+    if (sums_.glossy) read_vectors(radiance, part(result.radiance));
   }
   in_use_ = false;
 }
 
-void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer, std::span<glm::vec3> values,
-                                   const device::Event& after) {
+void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,
+                                   std::span<glm::vec3> values) {
   if (values.empty()) return;
-  context_.read_after(after, buffer, std::span(&values.front().x, 3 * values.size()));
+  context_.read(buffer, std::span(&values.front().x, 3 * values.size()));
 }
 
 /// Takes the empty slots out on the device: it is fast there, and less is read.

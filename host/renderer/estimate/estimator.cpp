@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
+#include "common/ascii_text.hpp"
 #include "common/value_range.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
@@ -28,22 +28,9 @@ namespace {
 /// that of the search or, where it is less, the size of the scene.
 constexpr double least_disc_over_radius = 1e-5;
 
-/// Hits of a batch where transfers run beside kernels: while one is computed another is on its way,
-/// and its kernels take many times what a launch does.
-constexpr std::size_t overlapped_hits = std::size_t{1} << 17;
-
 }  // namespace
 
 struct Estimator::Impl {
-  /// A batch on the device: its hits, and its estimates until they are read.
-  struct Batch {
-    HitBuffers hits;
-    std::optional<estimate::EstimateBuffers> estimates;
-    device::Event computed;
-    std::size_t place = 0;  ///< in the result
-    bool unread = false;
-  };
-
   const maps::MapStore& store;
   device::Context& context;
   std::uint32_t neighbours;
@@ -52,8 +39,7 @@ struct Estimator::Impl {
   std::shared_ptr<const SurfaceIndex> surface;  ///< where areas are clipped
   std::optional<estimate::SurfaceBuffers> surface_buffers;
   std::unique_ptr<estimate::Query> query;
-  std::array<Batch, 2> in_flight;  ///< the second where transfers run beside kernels
-  std::size_t turn = 0;            ///< whose is next
+  std::optional<estimate::EstimateBuffers> estimates;
 
   Impl(const PhotonMaps& photon_maps, const Scene& scene, const EstimateParameters& parameters)
       : store(maps::store_of(photon_maps)),
@@ -79,12 +65,8 @@ struct Estimator::Impl {
                 .tuning = parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
                 .surface = clipped_to(),
                 .kernel = kernel_used(parameters.kernel, parameters.neighbours)});
-    for (Batch& batch : in_flight) batch.estimates.emplace(context, query->sums());
+    estimates.emplace(context, query->sums());
   }
-
-  /// Whether the next batch is prepared and sent while one is computed. Not with many lights, whose
-  /// estimates are packed on the device first.
-  bool overlaps() const { return context.transfers_beside_kernels() && !store.needs.many_lights(); }
 
   /// What areas are clipped to, or null.
   const estimate::SurfaceBuffers* clipped_to() const {
@@ -92,59 +74,24 @@ struct Estimator::Impl {
   }
 
   HitBatchNeeds needs(std::uint64_t largest_output, std::uint64_t outputs) const {
-    return {.largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
-            .bytes_per_hit =
-                (estimate::hit_bytes(store.needs, !store.normals.empty(), surface != nullptr) +
-                 outputs) *
-                (overlaps() ? 2 : 1)};
+    return {
+        .largest_bytes_per_hit = std::max<std::uint64_t>(3 * sizeof(float), largest_output),
+        .bytes_per_hit =
+            estimate::hit_bytes(store.needs, !store.normals.empty(), surface != nullptr) + outputs};
   }
 
   /// The estimates of hits [first, first + count) become those of hits from `place` on in
   /// `result`.
   void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t place,
                 Estimates& result) {
-    Batch& batch = in_flight[turn];
-    read(batch, result);
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
-    estimate::upload_hits(context, hits, first, hit_maps, store.normals, clipped_to(), store.needs,
-                          batch.hits);
-    batch.estimates->begin(static_cast<std::uint32_t>(count));
-    estimate::for_each_page(store, batch.hits, hit_maps, [&](const estimate::PageHits& page_hits) {
-      query->estimate(page_hits, *batch.estimates);
+    const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
+                                                     clipped_to(), store.needs);
+    estimates->begin(static_cast<std::uint32_t>(count));
+    estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
+      query->estimate(page_hits, *estimates);
     });
-    batch.computed = context.mark();
-    batch.place = place;
-    batch.unread = true;
-    if (overlaps()) {
-      turn = 1 - turn;
-    } else {
-      read(batch, result);
-    }
-  }
-
-  void read(Batch& batch, Estimates& result) {
-    if (!batch.unread) return;
-    batch.estimates->read(result, batch.place, batch.computed);
-    batch.unread = false;
-  }
-
-  /// What a call that failed has left: its kernels may still run.
-  void forget_failed() {
-    for (Batch& batch : in_flight) {
-      if (batch.hits.count > 0) context.finish();
-      batch.hits = {};
-      batch.unread = false;
-    }
-  }
-
-  /// Reads what is left and releases the hits' memory. A call of one batch uses the first of those
-  /// in flight, whose buffer the call before it has made.
-  void end(Estimates& result) {
-    for (Batch& batch : in_flight) {
-      read(batch, result);
-      batch.hits = {};
-    }
-    turn = 0;
+    estimates->read(result, place);
   }
 
   /// The neighbours of hits [first, first + count).
@@ -152,8 +99,8 @@ struct Estimator::Impl {
                NeighbourLists& result) {
     const std::size_t k = neighbours;
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
-    HitBuffers buffers;
-    estimate::upload_hits(context, hits, first, hit_maps, store.normals, nullptr, {}, buffers);
+    const HitBuffers buffers =
+        estimate::upload_hits(context, hits, first, hit_maps, store.normals, nullptr, {});
     auto photons = context.allocate<std::uint32_t>(count * k, "neighbour lists");
     auto squared_radius = context.allocate<float>(count, "neighbour radii");
     context.fill(photons, none);
@@ -170,15 +117,7 @@ struct Estimator::Impl {
   }
 };
 
-std::string_view name_of(AreaMode area) {
-  switch (area) {
-    case AreaMode::disc:
-      return "disc";
-    case AreaMode::clipped:
-      return "clipped";
-  }
-  return "unknown";
-}
+std::string_view name_of(AreaMode area) { return name_in({"disc", "clipped"}, area); }
 
 Estimator::Estimator(const PhotonMaps& maps, const Scene& scene,
                      const EstimateParameters& parameters) {
@@ -220,22 +159,13 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
   const std::size_t most =
       impl_->store.needs.many_lights()
           ? std::max<std::size_t>(comfortable_bytes / together / least_hits, 1) * least_hits
-          : (impl_->overlaps() ? overlapped_hits : hit_count);
-  impl_->forget_failed();
-  const auto estimate = [&](std::size_t first, std::size_t count) {
-    try {
-      impl_->estimate(hits, begin + first, count, first, result);
-    } catch (const DeviceMemoryError&) {
-      impl_->end(result);  // the batch before is whole, and in the way
-      throw;
-    }
-  };
+          : hit_count;
   for (std::size_t part = 0; part < hit_count; part += most) {
-    impl_->batches.run(
-        std::min(most, hit_count - part), impl_->needs(largest, together),
-        [&](std::size_t first, std::size_t count) { estimate(part + first, count); });
+    impl_->batches.run(std::min(most, hit_count - part), impl_->needs(largest, together),
+                       [&](std::size_t first, std::size_t count) {
+                         impl_->estimate(hits, begin + part + first, count, part + first, result);
+                       });
   }
-  impl_->end(result);
   return result;
 }
 
@@ -260,15 +190,7 @@ NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
 }
 
 std::string_view name_of(DensityKernel kernel) {
-  switch (kernel) {
-    case DensityKernel::constant:
-      return "constant";
-    case DensityKernel::cone:
-      return "cone";
-    case DensityKernel::epanechnikov:
-      return "epanechnikov";
-  }
-  return "unknown";
+  return name_in({"constant", "cone", "epanechnikov"}, kernel);
 }
 
 }  // namespace photile

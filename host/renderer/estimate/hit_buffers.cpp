@@ -41,17 +41,6 @@ void store(float (&to)[3], const glm::vec3& value) {
   to[0] = value.x, to[1] = value.y, to[2] = value.z;
 }
 
-/// Makes a buffer hold the values, allocated anew where it has no room for them.
-template <class T>
-void put(device::Context& context, device::Buffer<T>& buffer, const std::vector<T>& values,
-         std::string_view what) {
-  if (buffer.size() < values.size()) {
-    buffer = {};
-    buffer = context.allocate<T>(values.size(), what);
-  }
-  context.write_beside(buffer, std::span<const T>(values));
-}
-
 /// The surface at hits whose areas are clipped.
 PhotileHitSurface clipped_surface(const SurfaceBuffers& surface, std::uint32_t sided_triangle,
                                   const glm::vec3& position) {
@@ -93,18 +82,21 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
          (needs.glossy ? sizeof(PhotileHitLobe) : 0);
 }
 
-void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
-                 std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                 const SurfaceBuffers* surface, const SceneNeeds& needs, HitBuffers& buffers) {
+HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
+                       std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
+                       const SurfaceBuffers* surface, const SceneNeeds& needs) {
   const std::size_t count = maps.size();
-  buffers.count = static_cast<std::uint32_t>(count);
-  if (count == 0) return;
+  HitBuffers buffers{.count = static_cast<std::uint32_t>(count)};
+  const auto upload = [&](const auto& values, std::string_view what) {
+    return context.upload(std::span(values), what);
+  };
+  if (count == 0) return buffers;
   std::vector<PhotileHit> positions(count);
   for (std::size_t i = 0; i < count; ++i) {
     store(positions[i].position, hits.position[first + i]);
     positions[i].map = maps[i];
   }
-  put(context, buffers.hits, positions, "hits");
+  buffers.hits = upload(positions, "hits");
   if (surface != nullptr || !normals.empty()) {
     std::vector<PhotileHitSurface> surfaces(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -115,12 +107,13 @@ void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t 
         store(surfaces[i].normal, normals[own]);
       }
     }
-    put(context, buffers.surfaces, surfaces, "surfaces at hits");
+    buffers.surfaces = upload(surfaces, "surfaces at hits");
   }
-  if (!needs.glossy) return;
+  if (!needs.glossy) return buffers;
   std::vector<PhotileHitLobe> lobes(count);
   for (std::size_t i = 0; i < count; ++i) lobes[i] = hit_lobe(hits, first + i, needs.normal_maps);
-  put(context, buffers.lobes, lobes, "reflections at hits");
+  buffers.lobes = upload(lobes, "reflections at hits");
+  return buffers;
 }
 
 std::size_t plan_hit_batch(const HitBatchNeeds& needs, std::uint64_t largest_buffer,

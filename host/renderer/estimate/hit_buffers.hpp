@@ -30,9 +30,9 @@ struct SurfaceBuffers {
 /// Hits [first, first + count) of PrimaryHits.
 struct HitBuffers {
   std::uint32_t count = 0;
-  device::Buffer<PhotileHit> hits;
-  device::Buffer<PhotileHitSurface> surfaces;  ///< where normals are compared or areas clipped
-  device::Buffer<PhotileHitLobe> lobes;        ///< in glossy scenes
+  device::Buffer<PhotileHit> hits = {};
+  device::Buffer<PhotileHitSurface> surfaces = {};  ///< where normals are compared or areas clipped
+  device::Buffer<PhotileHitLobe> lobes = {};        ///< in glossy scenes
 };
 
 /// Device memory that a hit takes as input.
@@ -40,15 +40,14 @@ struct HitBuffers {
 ///   clipped   whether areas are clipped
 std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 
-/// Makes `buffers` those of the hits [first, first + maps.size()), in place of others where they
-/// have room. Kernels that use them must have ended; others may run.
+/// The hits [first, first + maps.size()).
 ///   maps      of those hits
 ///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
 ///   surface   where areas are clipped, else null
 ///   needs     of which `glossy` asks for lobes
-void upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
-                 std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
-                 const SurfaceBuffers* surface, const SceneNeeds& needs, HitBuffers& buffers);
+HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
+                       std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
+                       const SurfaceBuffers* surface, const SceneNeeds& needs);
 
 /// Device memory that each hit of a batch takes.
 struct HitBatchNeeds {

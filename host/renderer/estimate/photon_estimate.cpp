@@ -10,18 +10,13 @@
 #include "estimate/neighbour_choice.hpp"
 #include "geometry/radix_sort.hpp"
 #include "photile/statistics.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::estimate {
 namespace {
 
 /// Lists of neighbours at a time: 26 MB of them at k = 100.
 constexpr std::size_t lists_at_a_time = std::size_t{1} << 16;
-
-geometry::Box bounds_of(const Scene& scene) {
-  geometry::Box box;
-  for (const glm::vec3& vertex : scene.vertices) box.extend(vertex);
-  return box;
-}
 
 }  // namespace
 
@@ -48,7 +43,7 @@ PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Pa
                                std::span<const double> layer_powers)
     : devices_(devices),
       layer_powers_(layer_powers),
-      cells_(bounds_of(scene)),
+      cells_(scene::bounds_of(scene)),
       maps_(std::move(parts.maps)),
       seen_(std::move(parts.seen)) {
   for (const EstimateParameters& parameters : parts.levels) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/ascii_text.hpp"
 #include "maps/map_page.hpp"
 #include "photile/device/constants.h"
 #include "photile/errors.hpp"
@@ -11,13 +12,7 @@
 namespace photile {
 
 std::string_view name_of(EstimateStrategy strategy) {
-  switch (strategy) {
-    case EstimateStrategy::select:
-      return "select";
-    case EstimateStrategy::lanes:
-      return "lanes";
-  }
-  return "unknown";
+  return name_in({"select", "lanes"}, strategy);
 }
 
 EstimateTuning shipped_tuning(const DeviceInfo& device) {

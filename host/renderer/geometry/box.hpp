@@ -26,6 +26,15 @@ struct BoxOf {
   }
   Point centre() const { return Scalar(0.5) * (lower + upper); }
   Point size() const { return upper - lower; }
+  /// Half of the surface; 0 of an empty box.
+  Scalar half_area() const {
+    const Point side = glm::max(size(), Point(0));
+    return side.x * side.y + side.y * side.z + side.z * side.x;
+  }
+  int longest_axis() const {
+    const Point side = size();
+    return side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+  }
 };
 
 using Box = BoxOf<float>;

@@ -32,10 +32,7 @@ class BoxTree::Builder {
       tree_.nodes_[node] = {all, first, last - first};
       return;
     }
-    const glm::vec3 extent = centres.upper - centres.lower;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
-                     : extent.y >= extent.z                       ? 1
-                                                                  : 2;
+    const int axis = centres.longest_axis();
     const std::uint32_t middle = first + (last - first) / 2;
     const auto order = tree_.order_.begin();
     std::nth_element(order + first, order + middle, order + last,

@@ -17,16 +17,13 @@
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::groups {
 namespace {
 
+using geometry::corners_of;
 using geometry::TriangleCorners;
-
-TriangleCorners corners_of(const Scene& scene, std::uint32_t triangle) {
-  const auto corners = scene.corners(triangle);
-  return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
-}
 
 /// Centre of the smallest ball that holds the triangle. It lies in the triangle: the middle of the
 /// longest edge of an obtuse one, the circumcentre of an acute one.
@@ -68,22 +65,11 @@ double squared_corner_distance(const TriangleCorners& a, const TriangleCorners& 
   return squared;
 }
 
-/// Bound on the rounding of distances in this scene, metres: coordinates times some hundred units
-/// of double precision.
-double rounding_margin(const Scene& scene, double radius) {
-  double largest = radius;
-  for (const glm::vec3& vertex : scene.vertices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      largest = std::max(largest, static_cast<double>(std::abs(vertex[axis])));
-    }
-  }
-  return 1e-12 * largest;
-}
-
 }  // namespace
 
 ProximityTest::ProximityTest(const Scene& scene, double radius) : scene_(scene), radius_(radius) {
-  const double margin = rounding_margin(scene, radius);
+  // The rounding of distances in this scene is less: some hundred units of double precision.
+  const double margin = 1e-12 * std::max(radius, double{scene::largest_coordinate(scene)});
   outer_ = radius + margin;
   squared_inner_ = radius > margin ? (radius - margin) * (radius - margin) : -1.0;
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "common/ascii_text.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
 
@@ -279,17 +280,7 @@ class Collector {
 }  // namespace
 
 std::string_view name_of(MapMode mode) {
-  switch (mode) {
-    case MapMode::naive:
-      return "naive";
-    case MapMode::triangle:
-      return "triangle";
-    case MapMode::patch:
-      return "patch";
-    case MapMode::automatic:
-      return "auto";
-  }
-  return "unknown";
+  return name_in({"naive", "triangle", "patch", "auto"}, mode);
 }
 
 Patches find_patches(const Scene& scene, double radius, MapMode mode) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "image/light_layers.hpp"
 #include "photile/errors.hpp"
@@ -163,15 +164,7 @@ std::vector<std::uint8_t> image::tone_mapped_texels(std::span<const glm::vec3> r
   return texels;
 }
 
-std::string_view name_of(DisplayView view) {
-  switch (view) {
-    case DisplayView::neutral:
-      return "neutral";
-    case DisplayView::standard:
-      return "standard";
-  }
-  return "unknown";
-}
+std::string_view name_of(DisplayView view) { return name_in({"neutral", "standard"}, view); }
 
 double automatic_exposure(const Image& scene_referred) {
   const RootPlanes root = root_of(scene_referred);

@@ -19,6 +19,7 @@
 #include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
 #include "maps/photon_pages.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::maps {
 namespace {
@@ -34,12 +35,8 @@ device::Buffer<float> upload_normals(Context& context, const MapStore& store) {
 }  // namespace
 
 float reach_of(const Scene& scene, double radius) {
-  float largest = 0;
-  for (const glm::vec3& v : scene.vertices) {
-    largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  }
-  return static_cast<float>(radius * (1.0 + 1e-5) +
-                            8.0 * std::numeric_limits<float>::epsilon() * largest);
+  return static_cast<float>(radius * (1.0 + 1e-5) + 8.0 * std::numeric_limits<float>::epsilon() *
+                                                        scene::largest_coordinate(scene));
 }
 
 namespace {
@@ -108,20 +105,10 @@ MapPage build_page(const Build& build, const CountedMaps& counted, const MapRang
   MapPage page;
   page.first_map = range.first;
   page.last_map = range.last;
-  std::optional<Rectangle> cells;
-  if (range.tile) {
-    const MapTiling& tiling = store.tilings.at(range.first);
-    const PhotileGrid grid = tiling.page_grid(*range.tile);
-    cells = tiling.cells(*range.tile);
-    page.grids = build.context.upload(std::span(&grid, 1), "photon map grids");
-    page.cell_count = cells->height() * grid.columns;
-  } else {
-    place_grids(build, page);
-  }
-  fill_cells(build, page, cells);
+  place_grids(build, page);
+  fill_cells(build, page);
   gather_entries(build.kernels, store.needs, *build.photon_pages,
                  {.normals = counted.any_mixed(range) ? &build.normals : nullptr,
-                  .gaps = range.tile.has_value(),
                   .release = release,
                   .memory = memory_pages(store)},
                  page);
@@ -138,24 +125,14 @@ void set_map_sizes(std::vector<std::uint32_t> counts, PhotonMapStatistics& stati
   statistics.map_sizes = std::move(counts);
 }
 
-/// Gives the page of a tile a map of its own, numbered `map`.
-void renumber_tile(MapStore& store, const MapRange& range, std::uint32_t map, MapPage& page) {
-  store.tilings.at(range.first).assign(*range.tile, map);
-  page.first_map = map;
-  page.last_map = map + 1;
-}
-
-/// Builds the pages of `queue` into the store. Tiles are numbered after all whole maps.
+/// Builds the pages of `queue` into the store.
 ///   release   what lets go of photons, for the last page; null: they stay
 void build_pages(MapStore& store, const Build& build, const CountedMaps& counted, PageQueue& queue,
                  const PhotonRelease* release, Progress& progress) {
-  auto tile_number = static_cast<std::uint32_t>(counted.photons.size());
   while (const auto range = queue.next()) {
     progress.throw_if_cancelled();
     try {
-      MapPage page = build_page(build, counted, *range, queue.empty() ? release : nullptr);
-      if (range->tile) renumber_tile(store, *range, tile_number++, page);
-      add_page(store, std::move(page));
+      add_page(store, build_page(build, counted, *range, queue.empty() ? release : nullptr));
       progress.advance(range->entries);
     } catch (const DeviceMemoryError&) {
       if (build.photon_pages->released()) throw;
@@ -215,7 +192,6 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   Build build{.context = context,
               .store = store,
               .kernels = build_kernels(store, plan.normals),
-              .tile_kernels = tile_kernels(store),
               .patches = plan.normals,
               .squared_reach = plan.reach * plan.reach,
               .radius = static_cast<float>(store.parameters.radius)};
@@ -234,10 +210,8 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   PhotonMapStatistics& statistics = store.statistics;
   statistics.mixed_maps =
       static_cast<std::uint64_t>(std::count(counted.mixed.begin(), counted.mixed.end(), 1u));
-  PageQueue queue(
-      counted.photons, page_limits(context, store, statistics.mixed_maps > 0), store.tilings,
-      [&](std::uint32_t map) { return tiling_of(build, map); },
-      [&](std::uint32_t map) { return plan.name_of(map / 2); });
+  PageQueue queue(counted.photons, page_limits(context, store, statistics.mixed_maps > 0),
+                  [&](std::uint32_t map) { return plan.name_of(map / 2); });
   const PhotonRelease release{[&] { plan.candidates = CandidateMaps(); },
                               [&] { give_back_records(*spent); }};
   build_pages(store, build, counted, queue, spent ? &release : nullptr, progress);

@@ -19,12 +19,6 @@ device::KernelSet build_kernels(const MapStore& store, bool patches) {
   return {device::context_of(*store.device), "grid/build.cl", std::move(defines)};
 }
 
-device::KernelSet tile_kernels(const MapStore& store) {
-  device::Defines defines = group_defines(store.device->info());
-  defines.set("TILE");
-  return {device::context_of(*store.device), "grid/build_tiles.cl", std::move(defines)};
-}
-
 namespace {
 
 using device::Buffer;
@@ -41,9 +35,8 @@ PhotilePhotonPage photon_page(const PhotonPage& photons, float squared_reach) {
 }
 
 /// A launch over photons of a page, given what tells which maps they enter.
-device::Launch photon_launch(const Build& build, const device::KernelSet& kernels,
-                             const char* kernel, const PhotonPage& photons) {
-  device::Launch launch = kernels.launch(kernel);
+device::Launch photon_launch(const Build& build, const char* kernel, const PhotonPage& photons) {
+  device::Launch launch = build.kernels.launch(kernel);
   launch.set("page", photon_page(photons, build.squared_reach))
       .set("position", photons.position)
       .set("sided_triangle", photons.sided_triangle)
@@ -57,25 +50,10 @@ device::Launch photon_launch(const Build& build, const device::KernelSet& kernel
 }
 
 /// A launch over the photons where the maps that they are inserted into are found.
-device::Launch entered_launch(const Build& build, const device::KernelSet& kernels,
-                              const char* kernel, const PhotonPage& photons) {
-  device::Launch launch = photon_launch(build, kernels, kernel, photons);
+device::Launch entered_launch(const Build& build, const char* kernel, const PhotonPage& photons) {
+  device::Launch launch = photon_launch(build, kernel, photons);
   launch.set("entered", photons.entered);
   return launch;
-}
-
-/// The maps of a page, and where it holds a tile the cells of that.
-PhotileMapRange map_range(const MapPage& page, const std::optional<Rectangle>& tile) {
-  PhotileMapRange range{};
-  range.first_map = page.first_map;
-  range.last_map = page.last_map;
-  if (tile) {
-    range.first_column = tile->first_column;
-    range.first_row = tile->first_row;
-    range.last_column = tile->last_column;
-    range.last_row = tile->last_row;
-  }
-  return range;
 }
 
 /// With the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
@@ -83,7 +61,7 @@ void try_to_count(Build& build) {
   build.context.fill(build.counts.photons, 0u);
   build.context.fill(build.counts.mixed, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
-    device::Launch launch = entered_launch(build, build.kernels, "count_photons", page);
+    device::Launch launch = entered_launch(build, "count_photons", page);
     launch.set("map_count", build.counts.photons)
         .set("normal", build.normals)
         .set("map_mixed", build.counts.mixed);
@@ -153,7 +131,7 @@ void sort_cells(const device::KernelSet& kernels, const MapPage& page) {
 
 void find_entered(const Build& build, PhotonPage& page) {
   page.entered = build.context.allocate<std::uint32_t>(page.count, "maps that photons enter");
-  photon_launch(build, build.kernels, "find_entered", page)
+  photon_launch(build, "find_entered", page)
       .set("entered", page.entered)
       .run(page.count, work_group_size);
 }
@@ -178,31 +156,6 @@ std::vector<std::uint32_t> read_all(Context& context, const Buffer<std::uint32_t
   return values;
 }
 
-MapTiling tiling_of(const Build& build, std::uint32_t map) {
-  MapPage page;
-  page.first_map = map;
-  page.last_map = map + 1;
-  size_grids(build, page);
-  PhotileGrid grid{};
-  build.context.read(page.grids, std::span(&grid, 1));
-  MapTiling tiling(grid, build.store.parameters.radius);
-  auto bins = build.context.allocate<std::uint32_t>(std::size_t{tiling.columns()} * tiling.rows(),
-                                                    "bins of a photon map");
-  build.context.fill(bins, 0u);
-  for (const PhotonPage& photons : build.photon_pages->entering(map, map + 1)) {
-    entered_launch(build, build.tile_kernels, "count_bins", photons)
-        .set("map", map)
-        .set("grid", page.grids)
-        .set("bin_width", tiling.bin_width())
-        .set("bin_height", tiling.bin_height())
-        .set("columns", tiling.columns())
-        .set("bin_count", bins)
-        .run(photons.count, work_group_size);
-  }
-  tiling.set_photons(read_all(build.context, bins));
-  return tiling;
-}
-
 void place_grids(const Build& build, MapPage& page) {
   auto first_cell = size_grids(build, page);
   page.cell_count = total_cells(build.context, first_cell);
@@ -215,38 +168,26 @@ void place_grids(const Build& build, MapPage& page) {
       .run(maps, work_group_size);
 }
 
-void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile) {
+void fill_cells(const Build& build, MapPage& page) {
   page.cell_start = build.context.allocate<std::uint32_t>(
       std::size_t{page.cell_count} + 2, "cell offsets", memory_pages(build.store));
   build.context.fill(page.cell_start, 0u);
   const auto over_photons = [&](const char* kernel, const PhotonPage& photons) {
-    device::Launch launch =
-        entered_launch(build, tile ? build.tile_kernels : build.kernels, kernel, photons);
-    launch.set("maps", map_range(page, tile))
+    device::Launch launch = entered_launch(build, kernel, photons);
+    launch.set("maps", PhotileMapRange{page.first_map, page.last_map})
         .set("grids", page.grids)
         .set("cell_start", page.cell_start);
     return launch;
-  };
-  const auto over_gaps = [&](const char* kernel) {
-    if (!tile) return;
-    build.tile_kernels.launch(kernel)
-        .set("tile", map_range(page, tile))
-        .set("grid", page.grids)
-        .set("cell_start", page.cell_start)
-        .run(tile->height(), work_group_size);
   };
   const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
   for (const PhotonPage& photons : photon_pages) {
     over_photons("count_cells", photons).run(photons.count, work_group_size);
   }
-  over_gaps("narrow_gaps");
   exclusive_prefix_sum(build.kernels, page.cell_start);
   build.context.read(page.cell_start, std::span(&page.entry_count, 1),
                      std::size_t{page.cell_count} + 1);
-  over_gaps("skip_gaps");
 
   page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
-  if (tile) build.context.fill(page.entry_photon, none);  // that gaps have
   for (const PhotonPage& photons : photon_pages) {
     over_photons("scatter", photons)
         .set("entry_photon", page.entry_photon)
@@ -259,14 +200,13 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
                     PhotonPages& photon_pages, const EntryGathering& gathering, MapPage& page) {
   device::Context& context = build.context();
   page.entry_stride = entry_stride(page.entry_count);
-  // Vector loads reach into padding and gaps; what they find there is masked, but must be a number.
+  // Vector loads reach into padding; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
     auto buffer =
         context.allocate<float>(3 * std::size_t{page.entry_stride}, what, gathering.memory);
-    const std::size_t first_empty = gathering.gaps ? 0 : page.entry_count;
     for (std::size_t plane = 0; plane < 3; ++plane) {
-      context.fill(buffer, 0.0f, plane * page.entry_stride + first_empty,
-                   page.entry_stride - first_empty);
+      context.fill(buffer, 0.0f, plane * page.entry_stride + page.entry_count,
+                   page.entry_stride - page.entry_count);
     }
     return buffer;
   };

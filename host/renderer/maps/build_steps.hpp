@@ -11,7 +11,6 @@
 #include "device/launch.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
-#include "maps/map_tiling.hpp"
 #include "maps/photon_pages.hpp"
 #include "photile/device/build.h"
 #include "photile/device/map_shape.h"
@@ -23,9 +22,6 @@ namespace photile::maps {
 /// (works_in_groups).
 device::KernelSet build_kernels(const MapStore& store, bool patches);
 
-/// The kernels of pages that hold a tile of a map.
-device::KernelSet tile_kernels(const MapStore& store);
-
 /// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
 struct MapCounts {
   device::Buffer<std::uint32_t> photons, mixed;  ///< `mixed` only with patches
@@ -36,7 +32,6 @@ struct Build {
   device::Context& context;
   const MapStore& store;
   device::KernelSet kernels;
-  device::KernelSet tile_kernels;
   bool patches;         ///< maps may serve several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
@@ -61,15 +56,11 @@ void count_photons(Build& build, std::size_t map_count);
 std::vector<std::uint32_t> read_all(device::Context& context,
                                     const device::Buffer<std::uint32_t>& buffer);
 
-/// The tiling of a map, with its photons counted.
-MapTiling tiling_of(const Build& build, std::uint32_t map);
-
 /// Grids and cells of the page's maps, whose photons are counted.
 void place_grids(const Build& build, MapPage& page);
 
 /// References to the photons of the page's cells: cell_start, entry_count and entry_photon.
-/// `tile`: cells that the page holds, where it holds a tile; else nothing.
-void fill_cells(const Build& build, MapPage& page, const std::optional<Rectangle>& tile);
+void fill_cells(const Build& build, MapPage& page);
 
 /// Brings the photons of each of page.cell_count cells into ascending order. `kernels`: of a
 /// program that holds grid/sort_cells.cl.
@@ -85,7 +76,6 @@ struct PhotonRelease {
 struct EntryGathering {
   /// 3 floats per sided triangle, where the entries keep normals; else null.
   const device::Buffer<float>* normals = nullptr;
-  bool gaps = false;  ///< there are entries without a photon, as in tiles
   /// Is called as soon as no kernel reads what it lets go of, where photons are one page; null:
   /// photons are needed for further pages of maps.
   const PhotonRelease* release = nullptr;

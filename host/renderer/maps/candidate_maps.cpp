@@ -55,15 +55,12 @@ class Splitter {
         near.push_back(member);
       }
     }
-    const glm::vec3 extent = box.size();
-    const bool small = glm::length(extent) <= 0.5f * reach_;
+    const bool small = glm::length(box.size()) <= 0.5f * reach_;
     if (near.size() <= few_members || photons.size() <= few_photons || small) {
       add_list(photons, near);
       return;
     }
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
-                     : extent.y >= extent.z                       ? 1
-                                                                  : 2;
+    const int axis = box.longest_axis();
     const float middle = 0.5f * (box.lower[axis] + box.upper[axis]);
     const auto half = std::partition(photons.begin(), photons.end(), [&](std::uint32_t photon) {
       return positions_[photon][axis] < middle;

@@ -6,22 +6,18 @@
 #include <deque>
 #include <functional>
 #include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "maps/map_tiling.hpp"
-
 namespace photile::maps {
 
-/// Maps [first, last) with their photons, or a tile of the single map `first`.
+/// Maps [first, last) with their photons.
 struct MapRange {
   std::uint32_t first = 0, last = 0;
   std::uint64_t entries = 0;
-  std::optional<Rectangle> tile{};  ///< of the map's MapTiling
 };
 
 /// How large a page may be.
@@ -34,10 +30,10 @@ struct PageLimits {
 
   /// Three planes of floats are the largest buffer, and kernels index them in 32 bits.
   std::uint64_t most_entries() const;
-  /// What a page takes. `cells`: that it has beside those that bytes_per_entry expects.
-  std::uint64_t bytes(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells = 0) const;
+  /// What a page takes.
+  std::uint64_t bytes(std::uint64_t entries, std::uint64_t maps) const;
   /// Whether a page keeps to all limits.
-  bool fit(std::uint64_t entries, std::uint64_t maps, std::uint64_t cells = 0) const;
+  bool fit(std::uint64_t entries, std::uint64_t maps) const;
 };
 
 /// Splits the maps into pages; maps without photons at either end of a page are left out. A map
@@ -50,28 +46,22 @@ std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
 std::optional<std::pair<MapRange, MapRange>> halves_of(const MapRange& range,
                                                        std::span<const std::uint32_t> map_count);
 
-/// Maps that are cut into tiles, by their numbers.
-using MapTilings = std::map<std::uint32_t, MapTiling>;
-
-/// Pages of several maps are cut between maps, single maps into tiles. Tiles come after all whole
-/// maps.
+/// Pages are cut between maps.
 class PageQueue {
  public:
-  using MakeTiling = std::function<MapTiling(std::uint32_t map)>;
   using NameMap = std::function<std::string(std::uint32_t map)>;
 
-  /// `map_count`: photons per map, for the life of the queue. `make_tiling` counts the photons of a
-  /// map on its grid; `name_map` says what a map serves, for errors.
-  PageQueue(std::span<const std::uint32_t> map_count, const PageLimits& limits, MapTilings& tilings,
-            MakeTiling make_tiling, NameMap name_map);
+  /// `map_count`: photons per map, for the life of the queue. `name_map` says what a map serves,
+  /// for errors.
+  PageQueue(std::span<const std::uint32_t> map_count, const PageLimits& limits, NameMap name_map);
 
-  /// The next page, as far as possible within the limits; nothing at the end. Errors: DeviceError
-  /// where the photons within the radius of one point need a buffer larger than the largest.
+  /// The next page, as far as possible within the limits; nothing at the end. Errors:
+  /// DeviceMemoryError where one map needs a buffer larger than the largest.
   std::optional<MapRange> next();
   /// Whether `next` will return none, unless a page is cut or put back.
   bool empty() const { return pages_.empty(); }
 
-  /// Cuts a page that did not fit, and puts its parts back; false where it cannot be cut.
+  /// Cuts a page that did not fit, and puts its parts back; false where it is one map.
   bool cut(const MapRange& page);
 
   /// Device memory that a page is expected to take.
@@ -81,13 +71,8 @@ class PageQueue {
   void put_back(const MapRange& page) { pages_.push_front(page); }
 
  private:
-  std::uint64_t cells_of_tile(const MapRange& page) const;
-  MapRange tile_of(std::uint32_t map, const Rectangle& tile) const;
-
   std::span<const std::uint32_t> map_count_;
   PageLimits limits_;
-  MapTilings& tilings_;
-  MakeTiling make_tiling_;
   NameMap name_map_;
   std::deque<MapRange> pages_;
 };

@@ -10,19 +10,11 @@
 
 #include "geometry/box.hpp"
 #include "groups/patch_shape.hpp"
+#include "scene/scene_queries.hpp"
 
 namespace photile::maps {
 
 namespace {
-
-/// What rounding to float may move a corner by, metres.
-double rounding_margin(const Scene& scene) {
-  float largest = 0;
-  for (const glm::vec3& v : scene.vertices) {
-    largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  }
-  return 4.0 * std::numeric_limits<float>::epsilon() * largest;
-}
 
 double perimeter_of(const Scene& scene, std::uint32_t triangle) {
   const auto corners = scene.corners(triangle);
@@ -102,7 +94,9 @@ PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts
 MapShapes map_shapes(const Scene& scene, const Patches& patches,
                      std::span<const std::uint32_t> pairs, double angle_radians) {
   const groups::TriangleFacts facts(scene);
-  const double margin = rounding_margin(scene);
+  // What rounding to float may move a corner by, metres.
+  const double margin =
+      4.0 * std::numeric_limits<float>::epsilon() * scene::largest_coordinate(scene);
   MapShapes result;
   result.shapes.resize(pairs.size());
   tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {

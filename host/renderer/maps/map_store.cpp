@@ -26,11 +26,6 @@ std::vector<std::uint32_t> MapStore::maps_of(const PrimaryHits& hits, std::size_
   if (!map_of.empty()) {
     for (std::uint32_t& map : maps) map = map_of[map];
   }
-  if (tilings.empty()) return maps;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto tiling = tilings.find(maps[i]);
-    if (tiling != tilings.end()) maps[i] = tiling->second.map_at(hits.position[first + i]);
-  }
   return maps;
 }
 

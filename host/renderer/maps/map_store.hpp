@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "device/context.hpp"
-#include "maps/map_pages.hpp"
 #include "maps/resident_maps.hpp"
 #include "photile/device/constants.h"
 #include "photile/photon_maps.hpp"
@@ -32,7 +31,6 @@ struct MapStore {
   mutable ResidentMaps pages;  ///< maps without photons may lie in none; using one moves others
   /// Per sided triangle; `none` where no photon comes near. Empty where that is the map itself.
   std::vector<std::uint32_t> map_of;
-  MapTilings tilings;                 ///< of maps that lie in several pages
   double angle_degrees = 0;           ///< largest angle between normals of neighbours
   double cos_angle = 0;               ///< its cosine
   bool naive = false;                 ///< maps hold the photons of their own triangle only
@@ -44,8 +42,7 @@ struct MapStore {
   std::function<std::unique_ptr<estimate::Query>(const MapStore&, const estimate::QueryParameters&)>
       make_query;
 
-  /// The maps of hits [first, first + count); those on tiles get the tiles' numbers, which follow
-  /// those of all maps.
+  /// The maps of hits [first, first + count).
   std::vector<std::uint32_t> maps_of(const PrimaryHits& hits, std::size_t first,
                                      std::size_t count) const;
 };

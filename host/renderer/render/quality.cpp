@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "common/ascii_text.hpp"
 #include "photile/defaults.hpp"
 #include "photile/renderer.hpp"
 #include "render/render_plan.hpp"
@@ -12,28 +13,12 @@
 
 namespace photile {
 
-std::string_view name_of(Quality quality) {
-  switch (quality) {
-    case Quality::draft:
-      return "draft";
-    case Quality::good:
-      return "good";
-    case Quality::best:
-      return "final";
-  }
-  return "unknown";
-}
+std::string_view name_of(Quality quality) { return name_in({"draft", "good", "final"}, quality); }
 
 std::string_view description_of(Quality quality) {
-  switch (quality) {
-    case Quality::draft:
-      return "quick, and blurred: light is averaged over many photons";
-    case Quality::good:
-      return "clean to the eye";
-    case Quality::best:
-      return "more of everything, for stills";
-  }
-  return "unknown";
+  return name_in({"quick, and blurred: light is averaged over many photons", "clean to the eye",
+                  "more of everything, for stills"},
+                 quality);
 }
 
 void set_quality(RenderParameters& parameters, Quality quality) {

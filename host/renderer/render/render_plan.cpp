@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cache/surface_cache.hpp"
+#include "common/ascii_text.hpp"
 #include "estimate/neighbour_choice.hpp"
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
@@ -45,17 +46,7 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
 
 }  // namespace
 
-std::string_view name_of(GlossMode mode) {
-  switch (mode) {
-    case GlossMode::photons:
-      return "photons";
-    case GlossMode::rays:
-      return "rays";
-    case GlossMode::automatic:
-      return "auto";
-  }
-  return "unknown";
-}
+std::string_view name_of(GlossMode mode) { return name_in({"photons", "rays", "auto"}, mode); }
 
 bool nodes_gather(const RenderParameters& asked) {
   const bool read =

@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
+#include "common/ascii_text.hpp"
 #include "geometry/box.hpp"
 #include "photile/camera.hpp"
 #include "photile/defaults.hpp"
@@ -67,9 +68,8 @@ Camera Camera::look_at(const glm::dvec3& position, const glm::dvec3& target,
 }
 
 std::string_view name_of(Projection projection) {
-  constexpr std::array names{"perspective", "fisheye", "angular", "equirectangular",
-                             "orthographic"};
-  return names[static_cast<std::size_t>(projection)];
+  return name_in({"perspective", "fisheye", "angular", "equirectangular", "orthographic"},
+                 projection);
 }
 
 FilmDirections::FilmDirections(const Camera& camera, int width, int height)
@@ -116,12 +116,6 @@ namespace photile::scene {
 namespace {
 
 using Box = geometry::BoxOf<double>;
-
-Box bounds_of(const Scene& scene) {
-  Box box;
-  for (const glm::vec3& vertex : scene.vertices) box.extend(glm::dvec3(vertex));
-  return box;
-}
 
 constexpr double face_thickness = 0.02;  // of the extent: walls need not be exactly flat
 constexpr double closed_coverage = 0.5;
@@ -213,7 +207,8 @@ Camera outside(const Box& box) {
 }  // namespace
 
 Camera place_camera(const Scene& scene) {
-  const Box box = bounds_of(scene);
+  const geometry::Box bounds = bounds_of(scene);
+  const Box box{bounds.lower, bounds.upper};
   const std::array<double, 6> coverage = coverage_of(scene, box);
   const auto closed = std::count_if(coverage.begin(), coverage.end(),
                                     [](double share) { return share >= closed_coverage; });

@@ -70,17 +70,28 @@ double triangle_area(const Scene& scene, std::uint32_t triangle) {
 
 BoundingSphere bounding_sphere(const Scene& scene) {
   if (scene.vertices.empty()) return {};
-  glm::dvec3 low(scene.vertices[0]), high = low;
-  for (const glm::vec3& vertex : scene.vertices) {
-    low = glm::min(low, glm::dvec3(vertex));
-    high = glm::max(high, glm::dvec3(vertex));
-  }
+  const geometry::Box box = scene::bounds_of(scene);
+  const glm::dvec3 low(box.lower), high(box.upper);
   return {0.5 * (low + high), 0.5 * glm::length(high - low)};
 }
 
 }  // namespace photile
 
 namespace photile::scene {
+
+geometry::Box bounds_of(const Scene& scene) {
+  geometry::Box box;
+  for (const glm::vec3& vertex : scene.vertices) box.extend(vertex);
+  return box;
+}
+
+float largest_coordinate(const Scene& scene) {
+  float largest = 0;
+  for (const glm::vec3& v : scene.vertices) {
+    largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  }
+  return largest;
+}
 
 std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene) {
   std::vector<std::uint32_t> glass;
@@ -93,13 +104,9 @@ std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene) {
   }
   const geometry::BoxTree tree(boxes);
   const double size = scene_diagonal(scene);
-  const auto corners_of = [&](std::uint32_t t) {
-    const auto corners = scene.corners(t);
-    return geometry::TriangleCorners{corners[0], corners[1], corners[2]};
-  };
   std::vector<std::uint32_t> open(scene.materials.size(), 0);
   for (std::uint32_t i = 0; i < glass.size(); ++i) {
-    const geometry::TriangleCorners corners = corners_of(glass[i]);
+    const geometry::TriangleCorners corners = geometry::corners_of(scene, glass[i]);
     for (int c = 0; c < 3; ++c) {
       const glm::dvec3 middle = 0.5 * (corners[c] + corners[(c + 1) % 3]);
       const double tolerance = 2e-6 * (size + glm::length(middle)), limit = tolerance * tolerance;
@@ -108,7 +115,7 @@ std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene) {
       bool touched = false;
       tree.visit_within(box, static_cast<float>(2 * limit), [&](std::uint32_t j) {
         return touched = i != j && geometry::squared_point_triangle_distance(
-                                       middle, corners_of(glass[j])) <= limit;
+                                       middle, geometry::corners_of(scene, glass[j])) <= limit;
       });
       if (!touched) ++open[scene.triangle_material[glass[i]]];
     }

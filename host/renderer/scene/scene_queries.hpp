@@ -1,4 +1,5 @@
-// Questions about a scene: which positions it can hold, which glass encloses nothing, and its hash.
+// Questions about a scene: how far it reaches, which positions it can hold, which glass encloses
+// nothing, and its hash.
 #pragma once
 
 #include <cmath>
@@ -7,10 +8,16 @@
 #include <vector>
 
 #include "common/content_hash.hpp"
+#include "geometry/box.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::scene {
+
+geometry::Box bounds_of(const Scene& scene);
+
+/// Of all vertices, without its sign, metres: what rounding is in proportion to.
+float largest_coordinate(const Scene& scene);
 
 /// Per material: edges of its triangles that no other triangle of solid glass touches, so that the
 /// glass ends in the open there. 0 for all but solid glass. Solids may consist of several meshes

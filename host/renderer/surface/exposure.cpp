@@ -10,6 +10,7 @@
 
 #include "geometry/box_tree.hpp"
 #include "geometry/triangle_bvh.hpp"
+#include "geometry/triangle_distance.hpp"
 #include "groups/neighbour_groups.hpp"
 #include "photile/device/surface.h"
 
@@ -21,7 +22,7 @@ constexpr double coincident = 1e-4;     ///< over the radius: layers so close li
 constexpr float least_open = 0.5f;      ///< with less a triangle counts as covered
 constexpr int samples = 64;
 
-using Corners = std::array<glm::dvec3, 3>;
+using Corners = geometry::TriangleCorners;
 
 /// Weights of the second and third corner in points that are evenly spread over a triangle:
 /// Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences" (2018), folded into the
@@ -141,7 +142,8 @@ class ExposureFinder {
     for (std::uint32_t t = 0; t < mesh.corner.size(); ++t) {
       const bool front = is_dark(sided(t, 0)), back = is_dark(sided(t, 1));
       if (!mesh.counts(t) || (!front && !back)) continue;
-      dark_.push_back({mesh.normal[t], mesh.scene.corners(t), facets.plane[t], front, back});
+      dark_.push_back(
+          {mesh.normal[t], geometry::corners_of(mesh.scene, t), facets.plane[t], front, back});
       dark_boxes_.push_back(geometry::triangle_box(mesh.scene, t));
     }
     dark_tree_ = geometry::BoxTree(dark_boxes_);
@@ -157,11 +159,11 @@ class ExposureFinder {
       if (mesh_.original[s] != s || is_dark(s)) continue;
       sides.push_back(lit_side(s));
       all.extend(sides.back().prism);
-      each += half_area(sides.back().prism);
+      each += sides.back().prism.half_area();
     }
     if (sides.empty()) return;
     std::vector<std::uint32_t> near;
-    const bool together = half_area(all) <= 2 * each;
+    const bool together = all.half_area() <= 2 * each;
     if (together) {
       dark_tree_.visit_overlapping(dark_boxes_, all, [&](std::uint32_t i) { near.push_back(i); });
     }
@@ -183,7 +185,7 @@ class ExposureFinder {
   /// A triangle with a side that no light reaches.
   struct DarkTriangle {
     glm::dvec3 normal;  ///< of side 0
-    std::array<glm::vec3, 3> corners;
+    Corners corners;
     std::uint32_t plane;
     bool front, back;  ///< which sides are dark
   };
@@ -195,14 +197,9 @@ class ExposureFinder {
     geometry::Box prism;  ///< covers lie within it
   };
 
-  static float half_area(const geometry::Box& box) {
-    const glm::vec3 size = glm::max(box.size(), glm::vec3(0.0f));
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-  }
-
   LitSide lit_side(std::uint32_t s) const {
     const glm::dvec3 normal = normal_of(s);
-    const Corners corners = corners_of(mesh_.scene.corners(triangle_of(s)));
+    const Corners corners = geometry::corners_of(mesh_.scene, triangle_of(s));
     // A cover lies within the slab, and so where it covers within the prism over the triangle.
     return {s, facets_.plane[triangle_of(s)], normal, corners,
             box_of_prism(corners, -coincident * radius_ * normal, reach * radius_ * normal)};
@@ -225,10 +222,6 @@ class ExposureFinder {
     return side_of(s) == 0 ? mesh_.normal[triangle_of(s)] : -mesh_.normal[triangle_of(s)];
   }
 
-  static Corners corners_of(const std::array<glm::vec3, 3>& corners) {
-    return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
-  }
-
   /// Whether a side of the triangle that no light reaches looks against `normal`.
   bool faces_in_the_dark(const DarkTriangle& dark, const glm::dvec3& normal) const {
     const std::uint32_t sides = groups::agreeing_sides(dark.normal, -normal, cos_angle_);
@@ -242,7 +235,7 @@ class ExposureFinder {
   void add_cover(const LitSide& side, const Projection& outline, const DarkTriangle& dark,
                  std::vector<Projection>& covers) const {
     if (dark.plane == side.plane || !faces_in_the_dark(dark, side.normal)) return;
-    const Corners corners = corners_of(dark.corners);
+    const Corners& corners = dark.corners;
     double lowest = reach * radius_, highest = 0;
     for (const glm::dvec3& corner : corners) {
       const double height = glm::dot(corner - side.corners[0], side.normal);

@@ -98,14 +98,11 @@ class FacetGrower {
 };
 
 double diagonal_of(const Scene& scene, std::span<const std::uint32_t> triangles) {
-  glm::vec3 lower(std::numeric_limits<float>::infinity()), upper(-lower);
+  geometry::Box box;
   for (const std::uint32_t triangle : triangles) {
-    for (const glm::vec3& corner : scene.corners(triangle)) {
-      lower = glm::min(lower, corner);
-      upper = glm::max(upper, corner);
-    }
+    box.extend(geometry::triangle_box(scene, triangle));
   }
-  return glm::distance(glm::dvec3(lower), glm::dvec3(upper));
+  return glm::distance(glm::dvec3(box.lower), glm::dvec3(box.upper));
 }
 
 void add_borders(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, std::uint32_t triangle,

@@ -21,11 +21,6 @@ constexpr int bin_count = 16;
 constexpr int heuristic_depth = 10;
 static_assert((width - 1) * (heuristic_depth + 10) + 1 <= PHOTILE_SURFACE_STACK);
 
-float half_area(const Box& box) {
-  const glm::vec3 size = glm::max(box.upper - box.lower, glm::vec3(0.0f));
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
 struct Range {
   std::span<std::uint32_t> pieces;
   Box box;
@@ -119,7 +114,8 @@ class TreeBuilder {
   }
 
   static float priority(const Range& range, int depth) {
-    return depth < heuristic_depth ? half_area(range.box) : static_cast<float>(range.pieces.size());
+    return depth < heuristic_depth ? range.box.half_area()
+                                   : static_cast<float>(range.pieces.size());
   }
 
   glm::vec3 centre(std::uint32_t piece) const {
@@ -134,10 +130,7 @@ class TreeBuilder {
       const std::size_t middle = split_by_area(range, centres);
       if (middle > 0) return middle;
     }
-    const glm::vec3 extent = centres.upper - centres.lower;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0
-                     : extent.y >= extent.z                       ? 1
-                                                                  : 2;
+    const int axis = centres.longest_axis();
     std::stable_sort(
         range.pieces.begin(), range.pieces.end(),
         [&](std::uint32_t a, std::uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
@@ -163,7 +156,7 @@ class TreeBuilder {
       for (int bin = bin_count - 1; bin > 0; --bin) {
         box.extend(boxes[bin]);
         count += counts[bin];
-        above[bin] = count == 0 ? 0.0f : half_area(box) * static_cast<float>(count);
+        above[bin] = count == 0 ? 0.0f : box.half_area() * static_cast<float>(count);
       }
       box = {};
       count = 0;
@@ -171,7 +164,7 @@ class TreeBuilder {
         box.extend(boxes[bin]);
         count += counts[bin];
         if (count == 0 || count == range.pieces.size()) continue;
-        const float cost = half_area(box) * static_cast<float>(count) + above[bin + 1];
+        const float cost = box.half_area() * static_cast<float>(count) + above[bin + 1];
         if (cost < best) best = cost, best_axis = axis, best_bin = bin;
       }
     }

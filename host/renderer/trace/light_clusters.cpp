@@ -7,6 +7,8 @@
 #include <numeric>
 #include <string>
 
+#include "common/ascii_text.hpp"
+#include "geometry/box.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::trace {
@@ -32,14 +34,7 @@ glm::dvec3 middle_of(const Scene& scene, std::uint32_t triangle) {
   return (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0;
 }
 
-struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()};
-  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-  void add(const glm::dvec3& point) {
-    low = glm::min(low, point);
-    high = glm::max(high, point);
-  }
-};
+using Box = geometry::BoxOf<double>;
 
 }  // namespace
 
@@ -114,12 +109,12 @@ void LightClusters::enclose(const Scene& scene, Cluster& cluster) const {
   Box box;
   glm::dvec3 normals(0.0);
   visit([&](std::uint32_t triangle) {
-    for (const glm::vec3& corner : scene.corners(triangle)) box.add(corner);
+    for (const glm::vec3& corner : scene.corners(triangle)) box.extend(glm::dvec3(corner));
     const double area = triangle_area(scene, triangle);
     if (area > 0)
       normals += area * sided_normal(scene, sided(triangle, scene.front_side[triangle]));
   });
-  cluster.center = glm::vec3(0.5 * (box.low + box.high));
+  cluster.center = glm::vec3(box.centre());
   double squared_radius = 0;
   visit([&](std::uint32_t triangle) {
     for (const glm::vec3& corner : scene.corners(triangle)) {
@@ -167,10 +162,9 @@ bool LightClusters::cut(const Scene& scene, std::size_t index) {
   };
   const auto begin = triangles_.begin() + cluster.first, end = triangles_.begin() + cluster.last;
   Box box;
-  std::for_each(begin, end, [&](const Triangle& triangle) { box.add(middle(triangle)); });
-  const glm::dvec3 size = box.high - box.low;
-  const int axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
-  const double place = 0.5 * (box.low[axis] + box.high[axis]);
+  std::for_each(begin, end, [&](const Triangle& triangle) { box.extend(middle(triangle)); });
+  const int axis = box.longest_axis();
+  const double place = 0.5 * (box.lower[axis] + box.upper[axis]);
   const double whole_area = area(static_cast<std::uint32_t>(index));  // while its order stands
   const auto second = std::stable_partition(
       begin, end, [&](const Triangle& triangle) { return middle(triangle)[axis] < place; });
@@ -277,15 +271,7 @@ std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota q
 }  // namespace trace
 
 std::string_view name_of(PhotonQuota quota) {
-  switch (quota) {
-    case PhotonQuota::balanced:
-      return "balanced";
-    case PhotonQuota::power:
-      return "power";
-    case PhotonQuota::equal:
-      return "equal";
-  }
-  return "unknown";
+  return name_in({"balanced", "power", "equal"}, quota);
 }
 
 namespace {

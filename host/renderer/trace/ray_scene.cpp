@@ -8,6 +8,7 @@
 #include "photile/errors.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/scene_builder.hpp"
+#include "scene/scene_queries.hpp"
 #include "trace/surface.hpp"
 
 namespace photile {
@@ -38,16 +39,10 @@ bool finite(const glm::vec3& origin, const glm::vec3& direction) {
   return sum < std::numeric_limits<float>::infinity();  // false for NaN as well
 }
 
-geometry::Box bounds_of(const Scene& scene) {
-  geometry::Box box;
-  for (const glm::vec3& vertex : scene.vertices) box.extend(vertex);
-  return box;
-}
-
 }  // namespace
 
 RayScene::Impl::Impl(const Scene& scene)
-    : scene(&scene), needs(needs_of(scene)), bounds(bounds_of(scene)) {
+    : scene(&scene), needs(needs_of(scene)), bounds(scene::bounds_of(scene)) {
   try {
     build();
   } catch (...) {

@@ -10,11 +10,9 @@ typedef struct {
   float squared_reach;       /* square of the radius, grown by the rounding of positions */
 } PhotilePhotonPage;
 
-/* Maps [first_map, last_map), and where these are a tile of one map the cells of that: columns
-   [first_column, last_column), rows [first_row, last_row). */
+/* Maps [first_map, last_map). */
 typedef struct {
   unsigned int first_map, last_map;
-  unsigned int first_column, first_row, last_column, last_row;
 } PhotileMapRange;
 
 #endif

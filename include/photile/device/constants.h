@@ -16,9 +16,8 @@
    kernels/grid/sort_cells.cl). */
 #define PHOTILE_COOPERATIVE_GROUP 256
 
-/* Floats of the widest vector: of one work-item, and of a group whose work-items are lanes. Records
-   of photons are padded to the latter. */
-#define PHOTILE_WIDEST_VECTOR 16
+/* Floats of the widest vector, of a group whose work-items are lanes, to which records of photons
+   are padded. */
 #define PHOTILE_MOST_LANES 64
 
 /* Reductions combine lanes that lie so far apart, then these columns. */

@@ -1,0 +1,177 @@
+#include "bake/open_sides.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tsl/robin_map.h>
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <numeric>
+
+#include "photile/camera.hpp"
+#include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::bake {
+namespace {
+
+/// A side that none of these paths meets and that joins none which one meets stays unseen.
+constexpr std::uint64_t open_paths = 131'072;
+constexpr std::uint32_t open_bounces = 16;
+
+struct PathStart {
+  glm::vec3 position, direction;
+};
+
+/// A place to see from, or one that light comes from.
+class PathSource {
+ public:
+  explicit PathSource(const glm::vec3& position) : position_(position) {}
+  explicit PathSource(const Light& light) : position_(light.position), light_(&light) {}
+
+  PathStart start(const Scene& scene, const trace::RandomBlock& place,
+                  const trace::RandomBlock& way) const {
+    const float u1 = way.uniform(0), u2 = way.uniform(1);
+    if (!light_ || (light_->triangles.empty() && !light_->is_distant())) {
+      return {position_, trace::sample_sphere(u1, u2)};
+    }
+    if (light_->is_distant()) {
+      const BoundingSphere sphere = bounding_sphere(scene);
+      const glm::vec3 outwards = trace::sample_sphere(place.uniform(0), place.uniform(1));
+      return {glm::vec3(sphere.center + 1.01 * sphere.radius * glm::dvec3(outwards)),
+              trace::Frame(-outwards).to_world(trace::sample_cosine_hemisphere(u1, u2))};
+    }
+    const auto count = static_cast<float>(light_->triangles.size());
+    const std::uint32_t triangle =
+        light_->triangles[static_cast<std::size_t>(place.uniform(0) * count)];
+    const glm::vec2 uv = trace::sample_triangle(place.uniform(1), place.uniform(2));
+    const std::uint32_t front = scene.front_side[triangle];
+    const std::uint32_t side = light_->two_sided && place.bit(3) ? 1 - front : front;
+    const trace::SurfacePoint point = trace::surface_point(scene, {triangle, uv.x, uv.y}, side);
+    const glm::vec3 direction =
+        trace::Frame(point.normal).to_world(trace::sample_cosine_hemisphere(u1, u2));
+    return {point.origin_towards(direction), direction};
+  }
+
+ private:
+  glm::vec3 position_;
+  const Light* light_ = nullptr;
+};
+
+std::vector<PathSource> sources_of(const Scene& scene) {
+  std::vector<PathSource> sources;
+  for (const Camera& camera : scene.cameras) sources.emplace_back(glm::vec3(camera.position));
+  for (const Light& light : scene.lights) sources.emplace_back(light);
+  return sources;
+}
+
+/// Sides that paths meet.
+std::vector<std::uint8_t> met_sides(const RayScene& rays) {
+  const Scene& scene = rays.scene();
+  std::vector<std::uint8_t> met(2 * std::size_t{scene.triangle_count()});
+  const std::vector<PathSource> sources = sources_of(scene);
+  if (sources.empty()) return met;
+  tbb::parallel_for(std::uint64_t{0}, open_paths, [&](std::uint64_t path) {
+    const trace::FlushDenormals flush_denormals;
+    const trace::RandomStream random(0, path, 0);
+    const auto numbers = [&](std::uint32_t index) {
+      return random.block(trace::Purpose::eye_scattering, index);
+    };
+    auto [origin, direction] = sources[path % sources.size()].start(scene, numbers(0), numbers(1));
+    for (std::uint32_t bounce = 0; bounce < open_bounces; ++bounce) {
+      const auto hit = trace::intersect(rays, origin, direction);
+      if (!hit) return;
+      const trace::SurfacePoint point = trace::surface_hit(scene, *hit, direction);
+      std::atomic_ref(met[point.sided_triangle()]).store(1, std::memory_order_relaxed);
+      const Material& material = trace::material_of(scene, point);
+      const trace::RandomBlock block = numbers(bounce + 2);
+      const bool passes =
+          (material.interaction == Interaction::glass || material.has_holes()) && block.bit(2);
+      if (!passes) {
+        direction =
+            trace::Frame(point.normal)
+                .to_world(trace::sample_cosine_hemisphere(block.uniform(0), block.uniform(1)));
+      }
+      origin = point.origin_towards(direction);
+    }
+  });
+  return met;
+}
+
+/// The ends of an edge, in the order of their bits.
+struct Edge {
+  std::array<std::array<std::uint32_t, 3>, 2> ends;
+  bool operator==(const Edge&) const = default;
+};
+
+struct EdgeHash {
+  std::size_t operator()(const Edge& edge) const {
+    std::uint64_t hash = 0;
+    for (const auto& end : edge.ends) {
+      for (const std::uint32_t bits : end) {
+        hash = (hash ^ bits) * 0x9E37'79B9'7F4A'7C15ull;
+        hash ^= hash >> 29;
+      }
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+std::array<std::uint32_t, 3> bits_of(const glm::vec3& v) {
+  return {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y),
+          std::bit_cast<std::uint32_t>(v.z)};
+}
+
+/// Of sided triangles that go on over common edges: a disjoint-set forest.
+class Sheets {
+ public:
+  explicit Sheets(const Scene& scene) : parent_(2 * std::size_t{scene.triangle_count()}) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    /// A triangle, and whether it runs from the first end of its edge to the second.
+    struct Neighbour {
+      std::uint32_t triangle;
+      bool forwards;
+    };
+    tsl::robin_map<Edge, Neighbour, EdgeHash> first_at;
+    for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
+      const auto corners = scene.corners(triangle);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto from = bits_of(corners[i]), to = bits_of(corners[(i + 1) % 3]);
+        const bool forwards = from < to;
+        const auto [entry, is_new] =
+            first_at.insert({forwards ? Edge{{from, to}} : Edge{{to, from}}, {triangle, forwards}});
+        if (is_new) continue;
+        // Neighbours of one winding run along their edge in opposite directions.
+        const Neighbour& other = entry->second;
+        const std::uint32_t turned = other.forwards == forwards ? 1 : 0;
+        for (const std::uint32_t side : {0u, 1u}) {
+          parent_[root(sided(triangle, side))] = root(sided(other.triangle, side ^ turned));
+        }
+      }
+    }
+  }
+
+  std::uint32_t root(std::uint32_t side) {
+    while (parent_[side] != side) side = parent_[side] = parent_[parent_[side]];
+    return side;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> open_sides(const RayScene& rays) {
+  std::vector<std::uint8_t> open = met_sides(rays);
+  Sheets sheets(rays.scene());
+  for (std::uint32_t side = 0; side < open.size(); ++side) {
+    if (open[side]) open[sheets.root(side)] = 1;
+  }
+  for (std::uint32_t side = 0; side < open.size(); ++side) open[side] = open[sheets.root(side)];
+  return open;
+}
+
+}  // namespace photile::bake
