@@ -56,6 +56,10 @@ Channel open_terminal() {
     const rlimit limit{*run.file_size_limit, *run.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (run.address_limit) {
+    const rlimit limit{*run.address_limit, *run.address_limit};
+    setrlimit(RLIMIT_AS, &limit);
+  }
   if (run.thread_limit) {
     // The limit is of a user, and not of root; nobody else runs as this one.
     const rlimit limit{*run.thread_limit, *run.thread_limit};

@@ -44,6 +44,7 @@ struct Run {
   std::string standard_output;                     ///< a file to write it to; "" = keep it
   bool held_to_permissions = false;                ///< root, too, reads no file that denies it
   std::optional<std::uint64_t> file_size_limit;    ///< bytes; writes beyond it fail
+  std::optional<std::uint64_t> address_limit;      ///< bytes of address space
   std::optional<std::uint64_t> thread_limit;       ///< threads that the process may have
   std::string signal_when;  ///< once standard error holds this text, `signal` is sent
   std::chrono::milliseconds signal_delay{0};  ///< after that text, or after the start without one

@@ -355,6 +355,15 @@ TEST_CASE("numbers of threads that PoCL cannot have are bounded before it is ask
   succeed(run);
 }
 
+TEST_CASE("an address space that is too small for a device's compiler is told before it is asked") {
+  const FileFolder folder;
+  Run run = small_render(folder);
+  run.environment["XDG_CACHE_HOME"] = folder / "cache";  // kernels are to be compiled
+  const std::uint64_t megabytes = GENERATE(600, 650, 700, 1'000);
+  run.address_limit = megabytes << 20;
+  CHECK_THAT(last_error(run_photile(run), no_device), Contains("ulimit -v"));
+}
+
 TEST_CASE("while a limit of threads lives, TBB keeps to it") {
   const std::size_t before = allowed();
   for (const int count : {1, 2, 3}) {

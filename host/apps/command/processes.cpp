@@ -16,7 +16,7 @@
 
 #include "command/command_line.hpp"
 #include "common/module.hpp"
-#include "common/threads.hpp"
+#include "common/process_limits.hpp"
 #include "mpi_communicator.hpp"
 #include "photile/errors.hpp"
 

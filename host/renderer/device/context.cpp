@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "common/process_limits.hpp"
 #include "device/cache_folder.hpp"
 #include "device/context_impl.hpp"
 #include "device/device_list.hpp"
@@ -50,10 +51,14 @@ ListedDevice find_one(const std::string& selector) {
   return std::move(found.front());
 }
 
-/// A card draws the display and serves other programs: a tenth of its memory is left to them.
+/// A card draws the display and serves other programs: a tenth of its memory is left to them. The
+/// buffers of a CPU are the process's own, and PoCL ends it where it may have no more.
 std::uint64_t usable_memory(const DeviceInfo& info) {
   const std::uint64_t bytes = info.global_memory_bytes;
-  return info.type == DeviceType::cpu ? bytes : bytes - bytes / 10;
+  if (info.type != DeviceType::cpu) return bytes - bytes / 10;
+  const std::uint64_t left = address_bytes_left();
+  constexpr std::uint64_t others = reserved_address_bytes / 2;  // the compiler is loaded by now
+  return std::min(bytes, left - std::min(left, others));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "common/ascii_text.hpp"
-#include "common/threads.hpp"
+#include "common/process_limits.hpp"
 #include "device/cache_folder.hpp"
 #include "device/context.hpp"
 #include "device/pocl_cache.hpp"
@@ -156,9 +156,20 @@ std::vector<std::string> unloadable_runtimes() {
   return lines;
 }
 
+/// PoCL's compiler hangs where its memory ends: an exception leaves its locks held.
+void require_address_space() {
+  const std::uint64_t left = address_bytes_left();
+  if (left >= reserved_address_bytes) return;
+  throw DeviceMemoryError(
+      fmt::format("{} MiB of address space are left, and the compiler of a device takes up to {}; "
+                  "raise its limit (ulimit -v)",
+                  left >> 20, reserved_address_bytes >> 20));
+}
+
 }  // namespace
 
 DeviceList enumerate_devices() {
+  require_address_space();
   bound_pocl_threads();
   prepare_pocl_work_folder();
   keep_intel_from_vectorizing();

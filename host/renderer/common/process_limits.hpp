@@ -1,7 +1,9 @@
-// Threads that others make for photile: TBB, and PoCL for its devices.
+// What others need of the system for photile and end the process for want of: threads, which TBB
+// and PoCL make, and addresses, which PoCL's compiler takes.
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 namespace photile {
 
@@ -16,5 +18,11 @@ int core_count();
 /// TBB and PoCL abort where a thread cannot be made; this is asked before them.
 /// Errors: Error where the system does not let the process have as many threads more.
 void require_threads(int count);
+
+/// What the compiler of a device takes, and the host beside its buffers, by far.
+inline constexpr std::uint64_t reserved_address_bytes = std::uint64_t{1} << 30;
+
+/// Bytes of addresses that the process may have beyond those it has (ulimit -v).
+std::uint64_t address_bytes_left();
 
 }  // namespace photile

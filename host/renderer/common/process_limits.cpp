@@ -1,9 +1,13 @@
-#include "common/threads.hpp"
+#include "common/process_limits.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <latch>
+#include <limits>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -33,6 +37,17 @@ void require_threads(int count) {
       fmt::format("only {} of {} threads can be made: {}; raise the limit of processes "
                   "(ulimit -u, or pids of the container)",
                   threads.size(), count, problem));
+}
+
+std::uint64_t address_bytes_left() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+    return std::numeric_limits<std::uint64_t>::max();
+  }
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const std::uint64_t used = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
 }
 
 }  // namespace photile
