@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Faults drawn at random from the code, rather than chosen: which share of them the tests notice.
 
-    bench/tools/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--quick N] [--seconds N]
-                           [--part I/N --work FOLDER] [--results FILE] [--list] [--renew] [--page]
+    bench/tools/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--folders NAME ...] [--quick N]
+                           [--seconds N] [--part I/N --work FOLDER] [--results FILE] [--list] [--renew] [--page]
 
 Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
-the folders groups, surface and trace of host/renderer. Mutants of kernels are copies of the folder that
+folders of host/renderer: groups, surface and trace, or those of --folders. Mutants of kernels are copies of the folder that
 PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
 of the build at hand. Tests that noticed most in the least time come first, and the first that fails
 ends a mutant; one that does not compile does not count. With --quick N only steps that together take N
@@ -97,20 +97,26 @@ FURTHER_TESTS = {
               ("render", "direct_rays"), ("cache", "irradiance_gather"),
               ("cache", "gathered_nodes"), ("measuring", "gather"),
               ("cache", "light_map_sensors"), ("cache", "light_map_frames"),
-              ("loading", "textured_lights"), ("daylight", "daylight_matrix"))}
+              ("loading", "textured_lights"), ("daylight", "daylight_matrix")),
+    "scene": (("trace", "emission"), ("trace", "intensity"), ("trace", "bsdf"), ("trace", "primary_hits"),
+              ("loading", "placement"), ("loading", "textures"), ("loading", "light_groups"),
+              ("loading", "material_reflectance"), ("loading", "photometric_files"),
+              ("loading", "textured_lights"), ("loading", "obj")),
+    "image": ()}
 
 
-def host_files():
-    return [file for folder in HOST_FOLDERS
+def host_files(folders):
+    return [file for folder in folders
             for file in sorted((ROOT / "host" / "renderer" / folder).glob("**/*.[ch]pp"))]
 
 
-def all_files():
-    return sorted(ROOT.glob("kernels/**/*.cl*")) + host_files()
+def all_files(options):
+    kernels = [] if options.only == "host" else sorted(ROOT.glob("kernels/**/*.cl*"))
+    return kernels + ([] if options.only == "kernels" else host_files(options.folders))
 
 
-def all_sites():
-    return list(mutant_sites.sites(ROOT, all_files()))
+def all_sites(options):
+    return list(mutant_sites.sites(ROOT, all_files(options)))
 
 
 def wilson(killed, count):
@@ -164,10 +170,11 @@ class Kernels:
 class Host:
     """Runs mutants of host/ in their common build, or in one of their own."""
 
-    def __init__(self, build, work, sites, order):
+    def __init__(self, build, work, sites, order, folders):
         builder = Builder(build, work)
         self.builder, self.work, self.order = builder, work, order
-        self.schemata = Schemata(builder, sites, HOST_FOLDERS)
+        self.schemata = Schemata(builder, sites, folders)
+        self.folders = folders
         self.numbers = {site.name: number for number, site in self.schemata.sites.items()}
         self.own = {}  # programs of a mutant that is built alone
         self.number = 0
@@ -175,7 +182,7 @@ class Host:
         self.folder_steps = {
             folder: steps_of_folder(self.schemata.program(folder), folder, work / f"{folder}.json",
                                     order)
-            for folder in HOST_FOLDERS}
+            for folder in folders}
 
     def steps(self, folder):
         return self.folder_steps[folder] + [Step(other, (f"[#{file}_test]~[slow]",))
@@ -189,7 +196,7 @@ class Host:
         copy, text = self.work / site.file, (ROOT / site.file).read_text(encoding="utf-8")
         instrumented = copy.read_text(encoding="utf-8")
         copy.write_text(site.apply(text), encoding="utf-8")
-        readers = self.builder.objects_that_read(site.file, HOST_FOLDERS)
+        readers = self.builder.objects_that_read(site.file, self.folders)
         try:
             self.own = {name: self.builder.compile(name, ["-Wno-narrowing", "-include", str(HEADER)], "own")
                         for name in readers if name in self.schemata.objects}
@@ -284,13 +291,13 @@ def draw(options):
     """The mutants of the results, or as many as asked for: name -> site, None where its line is gone."""
     results = stored(options.results)
     if not results:
-        everything = all_sites()
+        everything = all_sites(options)
         for site in random.Random(options.seed).sample(everything, min(options.count, len(everything))):
             text = (ROOT / site.file).read_text(encoding="utf-8").split("\n")[site.line]
             results[site.name] = {"line": text}
         options.results.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     places = {}  # text -> (file, number from 0)
-    for file in all_files():
+    for file in all_files(options):
         for number, text in enumerate(file.read_text(encoding="utf-8").split("\n")):
             places.setdefault(text, []).append((str(file.relative_to(ROOT)), number))
     return {name: found_again(name, places.get(result["line"], [])) for name, result in results.items()}
@@ -332,7 +339,7 @@ def run_all(options, drawn):
         in_host = site.file.startswith("host/")
         if in_host and host is None:
             sites = [site for site in drawn.values() if site and site.file.startswith("host/")]
-            host = Host(options.build, work, sites, order)
+            host = Host(options.build, work, sites, order, options.folders)
         runner = host if in_host else kernels
         steps = host.steps(site.file.split("/")[2]) if in_host else kernels.steps
         before = os.times()
@@ -377,6 +384,8 @@ def arguments():
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=29)
     parser.add_argument("--only", choices=("kernels", "host"))
+    parser.add_argument("--folders", nargs="+", default=HOST_FOLDERS, metavar="NAME",
+                        help="of host/renderer; default: groups surface trace")
     parser.add_argument("--quick", type=float, default=math.inf, metavar="SECONDS")
     parser.add_argument("--part", default="1/1", metavar="I/N", help="of those that are left")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/mutants")
