@@ -106,7 +106,9 @@ Workload interior_workload(const std::string& name, Scene scene, int width, int 
 
 void make_diffuse(Scene& scene) {
   for (Material& material : scene.materials) {
-    if (material.interaction == Interaction::opaque) material.specular = glm::vec3(0.0f);
+    if (material.interaction != Interaction::opaque) continue;
+    material.specular = glm::vec3(0.0f);
+    material.normal_texture = none;  // light at its hits is asked for without directions
   }
 }
 
