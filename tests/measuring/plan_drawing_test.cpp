@@ -68,8 +68,8 @@ TEST_CASE("each cell has the colour of its value, and its number") {
 TEST_CASE("the legend has the middles of its steps, the label and the plane's name") {
   const std::string svg = plan(plane("a <desk> & \"more\"", {1, 2, 3, 4, 5}),
                                {.scale = 200, .label = "lux", .steps = 4});
-  CHECK_THAT(
-      svg, Catch::Contains("a &lt;desk&gt; &amp; &quot;more&quot;") && Catch::Contains(">lux</text>"));
+  CHECK_THAT(svg, Catch::Contains("a &lt;desk&gt; &amp; &quot;more&quot;") &&
+                      Catch::Contains(">lux</text>"));
   CHECK(all(svg, "<text x=\"[0-9.]+\" y=\"[0-9.]+\">([0-9.]+)</text>") ==
         std::vector<std::string>{"25", "75", "125", "175"});
 }

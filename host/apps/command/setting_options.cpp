@@ -191,9 +191,9 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
       bound_number(
           "environment_scale", group, PositiveNumbers{}, options.environment.scale,
           "multiplies the picture of --environment, which is in cd/m2, or W/(m2 sr) for OBJ"),
-      bound_number("environment_rotation", group, loading::turns, options.environment.rotation_degrees,
-                   "clockwise as seen from above; at 0 the picture's middle lies towards -z",
-                   "degrees"),
+      bound_number(
+          "environment_rotation", group, loading::turns, options.environment.rotation_degrees,
+          "clockwise as seen from above; at 0 the picture's middle lies towards -z", "degrees"),
       bound_switch("lambertian", group, options.lambertian,
                    "no specular lobe on dielectrics, such as the 4% that glTF has by default"),
       bound_switch("allow_outside", group, options.allow_outside,

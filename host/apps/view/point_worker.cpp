@@ -120,8 +120,7 @@ std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& 
                        const LightPooling& layers, double factor) {
   std::string text = "point,x,y,z,dx,dy,dz,lux,standard_error";
   for (const std::string& layer : layers.layers) {
-    text += fmt::format(",{},{}", csv_field("lux " + layer),
-                        csv_field("standard_error " + layer));
+    text += fmt::format(",{},{}", csv_field("lux " + layer), csv_field("standard_error " + layer));
   }
   text += "\n";
   for (const ClickedPoint& point : points) {

@@ -30,8 +30,7 @@ inline constexpr std::size_t longest_quote = 80;
 std::string shortened(std::string_view text, std::size_t most);
 
 /// Content of XML and HTML, or an attribute's value in double quotes, in UTF-8. Characters that XML
-/// cannot hold become
-/// '?'.
+/// cannot hold become '?'.
 std::string escaped_xml(std::string_view text);
 
 /// A field as RFC 4180 has it: quoted where it must be. What a spreadsheet would take for a formula
