@@ -7,18 +7,20 @@ namespace photile::cache {
 
 namespace {
 
-/// So many tell enough of the light in what is seen.
+/// More nodes than these hardly change the light that is read; a subset is taken evenly.
 constexpr std::size_t most_nodes = 2048;
 /// Lattices have 1, 2, 4 ... cells along each axis.
 constexpr int finest_level = 4;
-/// What a coarser lattice weighs beside the next finer one: little where nodes are near.
+/// Weight of a coarser lattice relative to the next finer one: it only matters where no node is
+/// near.
 constexpr float coarser_weight = 1.0f / 16;
-/// What light on a node tells of all other directions.
+/// Weight of a node for the directions that it does not face, so that no direction is without
+/// light.
 constexpr float other_directions = 0.01f;
 
 int side_of_lattice(int level) { return (1 << level) + 1; }
 
-/// Of a unit normal: what it has of each of the six directions.
+/// Weights of the six directions for a unit normal: squared cosines, whose sum is 1.
 std::array<float, 6> shares_of(const glm::vec3& normal) {
   std::array<float, 6> shares{};
   for (int axis = 0; axis < 3; ++axis) {

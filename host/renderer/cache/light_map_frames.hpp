@@ -107,9 +107,10 @@ class LightMapFrames {
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell
   AmbientLight ambient_;                     ///< where no level is valued
   std::size_t ambient_nodes_ = 0;            ///< that it was gathered from
-  std::vector<std::uint8_t> is_shown_;       ///< per chart: by its own nodes
-  mutable std::vector<std::uint8_t> waits_;  ///< per chart that is not: seen where it has nodes
-  double seconds_per_place_;                 ///< of valuing, learned from what it took
+  std::vector<std::uint8_t> is_shown_;       ///< per chart: 1 = shown by its own nodes
+  mutable std::vector<std::uint8_t>
+      waits_;                 ///< per chart not shown yet: 1 = seen where it has nodes
+  double seconds_per_place_;  ///< of valuing, learned from what it took
 };
 
 }  // namespace photile::cache
