@@ -140,16 +140,6 @@ TEST_CASE("info names solid glass on a single sheet") {
   CHECK_THAT(warnings[0].get<std::string>(), Contains("material pane") && Contains("3 edges"));
 }
 
-TEST_CASE("only a scene of a doubtful size is doubted") {
-  const auto doubt = [](double size) {
-    return app::doubtful_unit({glm::dvec3(0.0), glm::dvec3(size, 1e-3, 1e-3)});
-  };
-  CHECK_THAT(doubt(3000), Contains("3000 m") && Contains("millimetres"));
-  CHECK(doubt(5).empty());
-  CHECK(doubt(100).empty());
-  CHECK_THAT(doubt(0.005), Contains("0.005 m"));
-}
-
 // Options that add lights, through the whole command.
 
 /// A floor of 2 x 2 m and no light.

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/value_range.hpp"
@@ -38,5 +40,18 @@ glm::dmat3 turn_upright(const std::string& up);
 /// both a little less. A guess: an empty room 4 x 3 m wide and 2.8 m high is the same box as one 4
 /// x 2.8 m wide and 3 m high, so nothing is turned.
 void warn_of_other_up(const Scene& scene, files::Warnings& warnings);
+
+// In which unit the lengths of a scene file are: glTF says metres, and many exporters do not care.
+
+struct LengthUnit {
+  std::string_view name;
+  double metres;
+};
+/// Millimetres, centimetres, metres, inches and feet.
+std::span<const LengthUnit> length_units();
+
+/// Warns where the scene is wider than a hall or smaller than a cup, and names the units that would
+/// make a room of it. A guess: nothing is scaled.
+void warn_of_other_unit(const Scene& scene, files::Warnings& warnings);
 
 }  // namespace photile::loading
