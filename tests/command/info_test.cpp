@@ -111,8 +111,7 @@ TEST_CASE("info names rough glass, which it treats as smooth") {
              Contains("warning: material 'frosted': rough glass (Ns 80) is treated as smooth"));
 }
 
-TEST_CASE(
-    "info takes the scene of a glTF file that --scene names, and refuses one that is not there") {
+TEST_CASE("info takes the scene of a glTF file that is named, and refuses one that is not there") {
   const FileFolder folder;
   const std::string scene = folder.write("two.gltf", R"({"asset": {"version": "2.0"},
     "scenes": [{"name": "day", "nodes": [0]}, {"name": "night", "nodes": [0, 1]}],
@@ -124,9 +123,9 @@ TEST_CASE(
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
   CHECK(info(scene)["lights"].size() == 1);
-  CHECK(info(scene, {"--scene", "night"})["lights"].size() == 2);
-  CHECK(info(scene, {"--scene", "1"})["lights"].size() == 2);
-  const Outcome dusk = run_photile({"info", scene, "--scene", "dusk"});
+  CHECK(info(scene, {"--set", "scene=night"})["lights"].size() == 2);
+  CHECK(info(scene, {"--set", "scene=1"})["lights"].size() == 2);
+  const Outcome dusk = run_photile({"info", scene, "--set", "scene=dusk"});
   CHECK_THAT(only_error(dusk, 2), Contains("0 'day', 1 'night'"));
 }
 

@@ -291,14 +291,14 @@ TEST_CASE("a scene of a doubtful size is told with the units that make a room of
   };
   const auto millimetres = warnings(1000, 1);
   REQUIRE(millimetres.size() == 1);
-  CHECK_THAT(millimetres.front(), Contains("6000 m") && Contains("--units mm makes it 6 m"));
+  CHECK_THAT(millimetres.front(), Contains("6000 m") && Contains("--set units=mm makes it 6 m"));
   const auto inches = warnings(1 / 0.0254, 1);
   REQUIRE(inches.size() == 1);
-  CHECK_THAT(inches.front(), Contains("--units in makes it 6 m"));
+  CHECK_THAT(inches.front(), Contains("--set units=in makes it 6 m"));
   CHECK(warnings(1, 1).empty());
   CHECK(warnings(20, 1).empty());
   CHECK(warnings(1000, 1e-3).empty());
-  CHECK_THAT(warnings(0.001, 1).front(), Contains("0.006 m") && Contains("--units"));
+  CHECK_THAT(warnings(0.001, 1).front(), Contains("0.006 m") && Contains("--set units"));
 }
 
 TEST_CASE("a glTF file in centimetres has its triangles and cameras in metres") {

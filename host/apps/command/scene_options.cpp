@@ -5,45 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-#include "command/validators.hpp"
 #include "common/files.hpp"
-#include "common/value_range.hpp"
-#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
 
-namespace {
-
-/// A name of a unit becomes its metres.
-CLI::Validator unit_of_length() {
-  const auto check = [](std::string& text) -> std::string {
-    for (const loading::LengthUnit& unit : loading::length_units()) {
-      if (text == unit.name) text = fmt::format("{}", unit.metres);
-    }
-    const bool known = parse_value(text, PositiveNumbers{}).has_value();
-    return known ? ""
-                 : fmt::format("'{}' is neither mm, cm, m, in, ft nor a positive number", text);
-  };
-  return {check, ""};
-}
-
-}  // namespace
-
 void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
-  command
-      .add_option("--scene", options.scene,
-                  "scene of a glTF file, name or index; default: the file's own, else the first")
-      ->type_name("NAME|INDEX")
-      ->group(group);
-  command
-      .add_option("--units,--scale", options.metres_per_unit,
-                  "what lengths in the file are in, or so many metres a unit; default: m")
-      ->type_name("mm|cm|m|in|ft|METRES")
-      ->transform(unit_of_length())
-      ->group(group);
   command
       .add_option_function<std::vector<std::string>>(
           "--reflectance",
@@ -138,13 +107,6 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
       ->type_name("KIND=LUX|perez=DIRECT,DIFFUSE|patches=N")
       ->group(group);
   add_situation_options(command, options.situation, group);
-  command
-      .add_option("--portals", options.portals,
-                  "windows that photons of suns and skies start through: auto finds them, off, or "
-                  "globs of the materials of their panes; repeatable")
-      ->type_name("auto|off|GLOB")
-      ->allow_extra_args(false)
-      ->group(group);
 }
 
 void add_mood_options(CLI::App& command, MoodOptions& options, const std::string& group) {

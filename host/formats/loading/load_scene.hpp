@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,12 +42,9 @@ void warn_of_other_up(const Scene& scene, files::Warnings& warnings);
 
 // In which unit the lengths of a scene file are: glTF says metres, and many exporters do not care.
 
-struct LengthUnit {
-  std::string_view name;
-  double metres;
-};
-/// Millimetres, centimetres, metres, inches and feet.
-std::span<const LengthUnit> length_units();
+/// "mm", "cm", "m", "in" and "ft".
+std::vector<std::string_view> names_of_units();
+double metres_in(std::string_view unit);
 
 /// Warns where the scene is wider than a hall or smaller than a cup, and names the units that would
 /// make a room of it. A guess: nothing is scaled.
