@@ -162,7 +162,7 @@ class Schemata:
             self._write(file, (mutant_builder.ROOT / file).read_text(encoding="utf-8"))
         return self.alone != before
 
-    def program(self, folder):
-        if folder not in self.programs:
-            self.programs[folder] = self.builder.link(folder, self.objects)
-        return self.programs[folder]
+    def program(self, target):
+        if target not in self.programs:
+            self.programs[target] = self.builder.link(target, self.objects)
+        return self.programs[target]
