@@ -80,7 +80,7 @@ KERNEL_CASES = {
         "lanes estimate the oracle's irradiance of several lights and of many",
         "lanes estimate the oracle's glossy radiance"),
     "maps": ("[#grid_contents_test]~[slow]~[long]",),
-    "surface": ("[#arctangent_test]", "[#logarithm_test]"),
+    "surface": ("[#kernel_functions_test]",),
     "render": ("maps that keep normals give the same bits within an eighth of the memory",),
     "bench": ("a search for all photons computes the distance of each once",)}
 # These cases run with a layer around OpenCL, which shows what GPUs run, and what is read or written
@@ -105,7 +105,7 @@ FURTHER_TESTS = {
               ("loading", "textured_lights"), ("loading", "obj"), ("loading", "color_temperature"),
               ("loading", "bad_input"), ("command", "info")),
     "image": (("command", "relight"), ("command", "pictures"), ("loading", "textures")),
-    "bake": (("command", "pictures"),), "walk": (("command", "walk"),), "command": ()}
+    "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
 
 
 def host_files(folders):

@@ -113,6 +113,10 @@ class Builder:
         output_of([*words, str(changed)], self.build)
         return out
 
+    @staticmethod
+    def _archive(object_):
+        return re.sub(r"CMakeFiles/(\w+)\.dir/.*", r"lib\1.a", object_)
+
     def link(self, target, objects, variant="common"):
         """The program `target` of the build with objects (name -> path) in place of the build's."""
         command = output_of(["ninja", "-t", "commands", "-s", target], self.build)
@@ -122,6 +126,7 @@ class Builder:
         program.parent.mkdir(parents=True, exist_ok=True)
         place = words.index("-o")
         words[place:place + 2] = [*(str(path) for name, path in sorted(objects.items())
-                                    if name.startswith(ARCHIVES)), "-o", str(program)]
+                                    if name.startswith(LIBRARY) or self._archive(name) in words),
+                                  "-o", str(program)]
         output_of(words, self.build)
         return program

@@ -118,7 +118,8 @@ def run_step(program, step, environment=None, limit=None, whole=False):
     options = ["--filenames-as-tags", *([] if whole else ["--abort"])]
     if step.cases[0][0] in "[~":
         return run(program, [*options, *step.cases], environment, limit)
-    names = (re.sub(r"([\\,\[])", r"\\\1", name) for name in step.cases)
+    # A name that begins with a hyphen would be an option.
+    names = (re.sub(r"([\\,\[])", r"\\\1", re.sub("^-", "*-", name)) for name in step.cases)
     return run(program, [*options, ",".join(names)], environment, limit)
 
 
