@@ -53,6 +53,8 @@ TEST_CASE("info lists the groups that it is given, with the sum of their lights'
   const FileFolder folder;
   const std::string scene = write_box(folder);
   CHECK(info(scene)["groups"].empty());
+  // An option that may be repeated takes one word, and not the scene behind it.
+  succeed({"info", "--light-group", "*t=both", scene});
   const auto facts = info(scene, {"--light-group", "*t=both"});
   CHECK(facts["lights"][0]["group"] == "both");
   REQUIRE(facts["groups"].size() == 1);

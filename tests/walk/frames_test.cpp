@@ -28,6 +28,7 @@ TEST_CASE("hashes and printf's numbers become frame numbers, as wide as they say
       {"a%04d.exr", 7, "a0007.exr"},
       {"a%d.exr", 7, "a7.exr"},
       {"a%3d.exr", 7, "a  7.exr"},
+      {"a%09d.exr", 7, "a000000007.exr"},
       {"a%%0d.exr", 7, "a%7.exr"},
       {"c#/b##.exr", 3, "c#/b03.exr"},
       {"out/walk.png", 3, "out/walk.0003.png"},
