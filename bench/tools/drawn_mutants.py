@@ -187,8 +187,7 @@ class Host:
 
     def steps(self, folder):
         return self.folder_steps[folder] + [Step(other, (f"[#{file}_test]~[slow]",))
-                                            for other, file in FURTHER_TESTS[folder]
-                                            if other not in self.folders]
+                                            for other, file in FURTHER_TESTS[folder]]
 
     def prepare(self, site):
         self.own, self.number = {}, self.numbers[site.name]
