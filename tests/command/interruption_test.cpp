@@ -47,7 +47,7 @@ TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
 
 /// Runs a line of shell text in which $photile is the command.
 Outcome run_in_shell(const FileFolder& folder, const std::string& text) {
-  const std::string file = folder.write("line.sh", "photile='" PHOTILE_COMMAND "'\n" + text);
+  const std::string file = folder.write("line.sh", "photile='" + command() + "'\n" + text);
   const std::string output = folder / "output", errors = folder / "errors";
   const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' bash '" + file +
                                   "' > '" + output + "' 2> '" + errors + "'")
@@ -166,7 +166,7 @@ using Clock = std::chrono::steady_clock;
 Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments,
                           const std::string& size = "64k") {
   const std::string script = "mount -t tmpfs -o size=" + size + " none '" + (folder / "disk") +
-                             "' && '" PHOTILE_COMMAND "' " + arguments + "; code=$?; ls -A '" +
+                             "' && '" + command() + "' " + arguments + "; code=$?; ls -A '" +
                              (folder / "disk") + "'; exit $code";
   const std::string file = folder.write("run.sh", script);
   const std::string output = folder / "output", errors = folder / "errors";

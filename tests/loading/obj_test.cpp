@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <random>
-#include <string_view>
+#include <sstream>
 
 #include "damaged_files.hpp"
 #include "loading/load_scene.hpp"
@@ -424,28 +423,11 @@ TEST_CASE("an OBJ or MTL text cut anywhere is read or refused") {
 }
 
 TEST_CASE("OBJ and MTL texts with bytes or words replaced at random are read or refused") {
-  constexpr std::array<std::string_view, 22> words{"f",
-                                                   "v",
-                                                   "usemtl",
-                                                   "newmtl",
-                                                   "map_Kd",
-                                                   "-1",
-                                                   "0",
-                                                   "4294967295",
-                                                   "1e999",
-                                                   "nan",
-                                                   "-inf",
-                                                   "//",
-                                                   "1/2/3/4",
-                                                   "-2147483648",
-                                                   "-o",
-                                                   "-mm",
-                                                   "\\\n",
-                                                   "\r",
-                                                   "#",
-                                                   "refl -type sphere",
-                                                   "mtllib fuzz.obj",
-                                                   "Ke 1e30 -1 nan"};
+  std::vector<std::string> words{"\\\n", "\r", "refl -type sphere", "mtllib fuzz.obj",
+                                 "Ke 1e30 -1 nan"};
+  std::istringstream shorter(
+      "f v usemtl newmtl map_Kd -1 0 4294967295 1e999 nan -inf // 1/2/3/4 -2147483648 -o -mm #");
+  for (std::string word; shorter >> word;) words.push_back(word);
   std::mt19937 random(13);
   DamagedFiles files;
   const auto damaged = [&](std::string text) {
