@@ -79,6 +79,36 @@ TEST_CASE("where no more files can be opened, the limit is told, and not a lack 
   CHECK_THAT(outcome.errors, Contains("ulimit -n") && !Contains("install a runtime"));
 }
 
+TEST_CASE("a signal while polygons that cross themselves are read gives 130 and one line at once") {
+  const FileFolder folder;
+  write_box(folder);
+  // Minutes of work: 40 polygons whose corners are the same random points, in another order each.
+  std::mt19937 random(1);
+  std::string text = "mtllib box.mtl\nusemtl wall\n";
+  constexpr int corners = 60'000;
+  for (int i = 0; i < corners; ++i) {
+    text += "v " + std::to_string(random() % 100'000) + " " + std::to_string(random() % 100'000) +
+            " 0\n";
+  }
+  std::vector<std::string> names;
+  for (int i = 1; i <= corners; ++i) names.push_back(" " + std::to_string(i));
+  for (int polygon = 0; polygon < 40; ++polygon) {
+    std::shuffle(names.begin(), names.end(), random);
+    text += "f";
+    for (const std::string& name : names) text += name;
+    text += "\n";
+  }
+  Run run;
+  run.arguments = typed("render", folder.write("crossing.obj", text), "-q -o", folder / "out.png");
+  run.signal_delay = std::chrono::milliseconds(3'000);
+  run.signal = GENERATE(SIGINT, SIGTERM);
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome outcome = run_photile(run);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  CHECK(only_error(outcome, 130) == "interrupted");
+  CHECK(seconds.count() < 10);
+}
+
 TEST_CASE("a signal while kernels are compiled gives 130 and one line", "[slow]") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

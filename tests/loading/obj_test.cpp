@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "damaged_files.hpp"
+#include "loading/load_scene.hpp"
 #include "reading/triangles.hpp"
 #include "scene_files.hpp"
 
@@ -324,15 +325,20 @@ TEST_CASE("a polygon that crosses itself is told from a simple one") {
                   .simple);
 }
 
+/// Next to every edge crosses thousands of others.
+std::vector<glm::dvec3> random_polygon(std::size_t count) {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> place(0.0, 1.0);
+  std::vector<glm::dvec3> corners(count);
+  for (glm::dvec3& corner : corners) corner = {place(generator), place(generator), 0.0};
+  return corners;
+}
+
 TEST_CASE(
     "a polygon of 60,000 corners is triangulated in seconds, whether it crosses itself or not") {
   check_tiling(star(60'000, 1));
-  // Random points: next to every edge crosses thousands of others. Rounds over all corners for each
-  // triangle took more than eight minutes.
-  std::mt19937 generator(2);
-  std::uniform_real_distribution<double> place(0.0, 1.0);
-  std::vector<glm::dvec3> crossing(60'000);
-  for (glm::dvec3& corner : crossing) corner = {place(generator), place(generator), 0.0};
+  // Rounds over all corners for each triangle took more than eight minutes.
+  const std::vector<glm::dvec3> crossing = random_polygon(60'000);
   const std::clock_t begin = std::clock();  // of the processor, which other programs take none of
   const reading::Triangulation result = reading::triangulate_polygon(crossing);
   CHECK(std::clock() - begin < 20 * CLOCKS_PER_SEC);
@@ -347,6 +353,33 @@ TEST_CASE("polygons without area give triangles for the caller to drop, and end"
   CHECK(reading::triangulate_polygon(
             std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})
             .triangles.size() == 2);
+}
+
+/// Asks to stop when it is asked for the n-th time.
+class StopAtLook : public Progress {
+ public:
+  explicit StopAtLook(int look) : look_(look) {}
+  bool cancelled() const override { return ++looks_ == look_; }
+
+ private:
+  int look_;
+  mutable int looks_ = 0;
+};
+
+TEST_CASE("an import that is asked to stop does so within a polygon, among faces and among lines") {
+  const std::vector<glm::dvec3> polygon = random_polygon(20'000);
+  const int look = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
+  CAPTURE(look);
+  CHECK_THROWS_AS(reading::triangulate_polygon(polygon, StopAtLook(look)), Interrupted);
+  // 3,000 lines are looked through, then read, then made triangles.
+  const SceneFolderOnDisk folder;
+  std::string faces;
+  for (int i = 0; i < 3'000; ++i) faces += "f 1 2 3\n";
+  folder.write("materials.mtl", lamp_and_wall);
+  const std::filesystem::path file =
+      folder.write("scene.obj", "mtllib materials.mtl\n" + unit_square + "usemtl lamp\n" + faces);
+  CHECK_THROWS_AS(loading::load_scene(file, {}, StopAtLook(look)), Interrupted);
+  CHECK_NOTHROW(loading::load_scene(file, {}, StopAtLook(look + 8)));
 }
 
 // OBJ and MTL texts damaged at random, with fixed seeds.

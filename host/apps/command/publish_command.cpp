@@ -19,6 +19,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "publish/published_room.hpp"
@@ -59,7 +60,7 @@ void run_publish(PublishOptions& options) {
   note_inputs_of(render);
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   const std::filesystem::path file = options.output;
   check_outputs(std::vector{file});
