@@ -80,8 +80,9 @@ class BakedLight {
 
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
-  void fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress);
-  void spread(const cache::NodeSight& sight);
+  /// Returns the points of all texels; the side is none where there is none.
+  PrimaryHits fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress);
+  void spread(const PrimaryHits& points, const cache::NodeSight& sight);
   glm::dvec2 place(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
