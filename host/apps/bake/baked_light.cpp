@@ -367,6 +367,24 @@ std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nod
   return texels;
 }
 
+double BakedLight::standard_error(std::span<const double> powers, const Estimates& of_nodes) const {
+  double squares = 0, light = 0, lit = 0;
+  std::vector<double> sum(blend_.size(), 0.0);
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    const std::vector<glm::vec3> texels = layer(i);
+    const std::vector<float> errors_of_layer = errors(i, of_nodes);
+    for (std::size_t texel = 0; texel < texels.size(); ++texel) {
+      const double error = powers[i] * errors_of_layer[texel];
+      squares += error * error;  // lights err apart
+      sum[texel] += powers[i] * luminance(glm::dvec3(texels[texel]));
+    }
+  }
+  for (const double value : sum) {
+    if (value > 0) light += value, ++lit;
+  }
+  return lit > 0 ? std::sqrt(squares * lit) / light : 0.0;
+}
+
 std::optional<Atlas> pack(std::span<TexelRectangle> rectangles, std::uint32_t most_side) {
   std::vector<std::size_t> order(rectangles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

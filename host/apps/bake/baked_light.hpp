@@ -68,6 +68,10 @@ class BakedLight {
   /// Standard error of the luminance of `layer`, in the same form, from that of nodes.
   ///   of_nodes   as GatheredNodes::errors
   std::vector<float> errors(std::size_t layer, const Estimates& of_nodes) const;
+  /// Root mean square of the standard errors of all light together, relative to the mean light:
+  /// texels without light have none.
+  ///   powers   per layer
+  double standard_error(std::span<const double> powers, const Estimates& of_nodes) const;
   /// Texels of the charts, without what lies between them.
   std::uint64_t used_texels() const;
 
