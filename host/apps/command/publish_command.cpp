@@ -26,6 +26,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "publish/published_room.hpp"
@@ -119,7 +120,7 @@ void run_publish(PublishOptions& options) {
   note_inputs_of(render);
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   check_outputs(files_of(options.outputs, scene, mix));
   const std::vector<publish::Preset> presets = presets_of(render, mix);

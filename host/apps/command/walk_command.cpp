@@ -23,6 +23,7 @@
 #include "command/validators.hpp"
 #include "common/files.hpp"
 #include "gltf/cameras.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -355,7 +356,7 @@ void run_walk(WalkOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   const Camera& camera = choose_camera(scene, render.camera);
   set_film_size(render.parameters.film, render.size, camera);
