@@ -1,15 +1,16 @@
 #!/usr/bin/python3
 """Faults drawn at random from the code, rather than chosen: which share of them the tests notice.
 
-    bench/tools/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--folders NAME ...] [--quick N]
-                           [--seconds N] [--part I/N --work FOLDER] [--results FILE] [--list] [--renew] [--page]
+    bench/tools/drawn_mutants.py [--count N] [--seed N] [--only kernels|host] [--folders NAME ...] [--all]
+                           [--seconds N] [--part I/N --work FOLDER] [--results FILE]
+                           [--list] [--renew] [--page] [--alone]
 
 Each changes one operator, bound, constant or truth value of a line (mutant_sites.py) of kernels/ or of
-folders of host/renderer: groups, surface and trace, or those of --folders. Mutants of kernels are copies of the folder that
-PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
+folders of the parts of host/: groups, surface and trace, or those of --folders. Mutants of kernels are copies of the
+folder that PHOTILE_KERNEL_DIR names; those of the host are in one build (mutant_schemata.py), linked with the objects
 of the build at hand. Tests that noticed most in the least time come first, and the first that fails
-ends a mutant; one that does not compile does not count. With --quick N only steps that together take N
-seconds are run for each, and what these do not notice is left for a run without it.
+ends a mutant; with --all every test runs, and --alone says what each noticed alone. A mutant that does not compile
+does not count.
 
 Results are added to docs/testing/drawn_mutants.json (--results), which holds the text of each line, so
 that its mutants are found again where code has moved; --seed and --count are for a file that is not there
@@ -35,7 +36,7 @@ sys.path.insert(0, str(ROOT / "bench"))
 from tools import mutant_sites
 from tools.mutant_builder import Builder, DoesNotCompile
 from tools.mutant_schemata import HEADER, Schemata
-from tools.mutant_tests import CannotRun, Order, Step, run_step, steps_of_folder
+from tools.mutant_tests import CannotRun, Order, Step, run_step, steps_of_folder, tests_of
 from tools.report_section import replace_section
 
 RESULTS = ROOT / "docs/testing/drawn_mutants.json"
@@ -79,7 +80,7 @@ KERNEL_CASES = {
         "lanes estimate the oracle's irradiance of several lights and of many",
         "lanes estimate the oracle's glossy radiance"),
     "maps": ("[#grid_contents_test]~[slow]~[long]",),
-    "surface": ("[#arctangent_test]", "[#logarithm_test]"),
+    "surface": ("[#kernel_functions_test]",),
     "render": ("maps that keep normals give the same bits within an eighth of the memory",),
     "bench": ("a search for all photons computes the distance of each once",)}
 # These cases run with a layer around OpenCL, which shows what GPUs run, and what is read or written
@@ -101,13 +102,19 @@ FURTHER_TESTS = {
     "scene": (("trace", "emission"), ("trace", "intensity"), ("trace", "bsdf"), ("trace", "primary_hits"),
               ("loading", "placement"), ("loading", "textures"), ("loading", "light_groups"),
               ("loading", "material_reflectance"), ("loading", "photometric_files"),
-              ("loading", "textured_lights"), ("loading", "obj")),
-    "image": ()}
+              ("loading", "textured_lights"), ("loading", "obj"), ("loading", "color_temperature"),
+              ("loading", "bad_input")),
+    "image": (("loading", "textures"),),
+    "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
 
 
 def host_files(folders):
-    return [file for folder in folders
-            for file in sorted((ROOT / "host" / "renderer" / folder).glob("**/*.[ch]pp"))]
+    return [file for folder in folders for file in sorted(ROOT.glob(f"host/*/{folder}/**/*.[ch]pp"))]
+
+
+def folder_of(name):
+    """The folder of host/'s parts that a file or a mutant of it is in, or kernels."""
+    return name.split("/")[2] if name.startswith("host/") else "kernels"
 
 
 def all_files(options):
@@ -148,23 +155,17 @@ class Kernels:
         (self.work / site.file).write_text(site.apply((ROOT / site.file).read_text(encoding="utf-8")),
                                            encoding="utf-8")
 
-    def program(self, folder):
-        return self.build / f"tests/{folder}/photile_tests_{folder}"
-
-    def is_built_alone(self, site):
-        return False
-
     def matters(self, step):
         return True
 
-    def run(self, step, mutated, limit):
+    def run(self, step, mutated, limit, whole):
         environment = dict(self.environment)
         if mutated:
             environment["PHOTILE_KERNEL_DIR"] = str(self.work / "kernels")
         if step.layer:
             environment["OPENCL_LAYERS"] = str(
                 self.build / f"tests/device/layers/libphotile_{step.layer}_layer.so")
-        return run_step(self.program(step.folder), step, environment, limit)
+        return run_step(self.build / tests_of(step.folder), step, environment, limit, whole)
 
 
 class Host:
@@ -180,8 +181,8 @@ class Host:
         self.number = 0
         self.reached = {}  # step -> numbers of the mutants that can change what it does
         self.folder_steps = {
-            folder: steps_of_folder(self.schemata.program(folder), folder, work / f"{folder}.json",
-                                    order)
+            folder: steps_of_folder(self.schemata.program(tests_of(folder)), folder,
+                                    work / f"{folder}.json", order)
             for folder in folders}
 
     def steps(self, folder):
@@ -205,9 +206,6 @@ class Host:
         finally:
             copy.write_text(instrumented, encoding="utf-8")
 
-    def is_built_alone(self, site):
-        return self.numbers[site.name] in self.schemata.alone
-
     def matters(self, step):
         """Whether the mutant gives a value of its own anywhere in the step; asked once for all mutants."""
         if self.own:
@@ -218,8 +216,8 @@ class Host:
                 file.parent.mkdir(exist_ok=True)
                 part = file.with_suffix(".part")
                 part.unlink(missing_ok=True)
-                environment = {**os.environ, "PHOTILE_MUTANT_RECORD": str(part)}
-                outcome = run_step(self.schemata.program(step.folder), step, environment)
+                environment = {"PHOTILE_MUTANT_RECORD": str(part)}
+                outcome = self._run(step, self.schemata.program, environment)
                 if outcome.failed or outcome.crashed:
                     raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
                 self.order.note(step, outcome.seconds)
@@ -228,46 +226,45 @@ class Host:
             self.reached[step.key] = {int(line) for line in file.read_text(encoding="utf-8").split()}
         return self.number in self.reached[step.key]
 
-    def run(self, step, mutated, limit):
-        if mutated and self.own:
-            if step.folder not in self.own_programs:
-                self.own_programs[step.folder] = self.builder.link(
-                    step.folder, {**self.schemata.objects, **self.own}, "own")
-            return run_step(self.own_programs[step.folder], step, None, limit)
-        environment = {**os.environ, "PHOTILE_MUTANT": str(self.number if mutated else 0)}
-        return run_step(self.schemata.program(step.folder), step, environment, limit)
+    def _own_program(self, target):
+        if target not in self.own_programs:
+            self.own_programs[target] = self.builder.link(target, {**self.schemata.objects, **self.own}, "own")
+        return self.own_programs[target]
+
+    @staticmethod
+    def _run(step, program, environment, limit=None, whole=False):
+        """`program` gives the one of a target. The tests of the command run that of the mutants, too."""
+        if step.folder == "command":
+            environment = {**environment, "PHOTILE_COMMAND": str(program("photile"))}
+        return run_step(program(tests_of(step.folder)), step, {**os.environ, **environment}, limit, whole)
+
+    def run(self, step, mutated, limit, whole):
+        program = self._own_program if mutated and self.own else self.schemata.program
+        return self._run(step, program, {"PHOTILE_MUTANT": str(self.number if mutated else 0)}, limit, whole)
 
 
-class NoTimeLeft(Exception):
-    """The steps that are left would take longer than allowed."""
-
-
-def try_mutant(site, runner, steps, order, seconds):
-    """The test that noticed, or None; NoTimeLeft after steps of so many seconds together."""
+def try_mutant(site, runner, steps, order, whole):
+    """The tests that notice, or the first of them."""
     area = str(pathlib.PurePath(site.file).parent)
-    if seconds < math.inf and runner.is_built_alone(site):
-        raise NoTimeLeft
     runner.prepare(site)
+    noticed = []
     for step in order.of(steps, area, pathlib.PurePath(site.file).stem if area[0] == "h" else ""):
-        seconds -= order.seconds(step)
-        if seconds < 0 or (seconds < math.inf and not order.passed_before(step)):
-            raise NoTimeLeft
         if not runner.matters(step):
-            seconds += order.seconds(step)
             continue
         if not order.passed_before(step):
-            outcome = runner.run(step, False, None)
+            outcome = runner.run(step, False, None, whole)
             if outcome.failed or outcome.crashed:
                 raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
             order.note(step, outcome.seconds)
-        outcome = runner.run(step, True, order.limit(step))
-        noticed = bool(outcome.failed or outcome.crashed)
-        order.count(step, area, noticed)
-        if noticed:
-            what = f"/{outcome.failed[0]}" if outcome.failed else ": crash"
-            return f"{step.folder}{what}{step.under_layer}"
-        order.note(step, outcome.seconds)
-    return None
+        outcome = runner.run(step, True, order.limit(step), whole)
+        failed = [f"/{name}" for name in outcome.failed] or [f"/{step.file}: crash"] * outcome.crashed
+        noticed += [f"{step.folder}{what}{step.under_layer}" for what in failed]
+        order.count(step, area, bool(failed))
+        if not failed:
+            order.note(step, outcome.seconds)
+        elif not whole:
+            break
+    return noticed
 
 
 def stored(file):
@@ -341,13 +338,11 @@ def run_all(options, drawn):
             sites = [site for site in drawn.values() if site and site.file.startswith("host/")]
             host = Host(options.build, work, sites, order, options.folders)
         runner = host if in_host else kernels
-        steps = host.steps(site.file.split("/")[2]) if in_host else kernels.steps
+        steps = host.steps(folder_of(site.file)) if in_host else kernels.steps
         before = os.times()
         try:
-            noticed = try_mutant(site, runner, steps, order, options.quick)
-            result = {"noticed": noticed} if noticed else {"survives": ""}
-        except NoTimeLeft:
-            continue
+            noticed = try_mutant(site, runner, steps, order, options.all)
+            result = {"noticed": noticed if options.all else noticed[0]} if noticed else {"survives": ""}
         except CannotRun as reason:
             result = {"not_counted": str(reason).splitlines()[0]}
         after = os.times()
@@ -359,24 +354,34 @@ def run_all(options, drawn):
 
 def page(results):
     """The section of docs/testing.md."""
-    rows = ["| | drawn | noticed | equivalent | survive | do not compile | not decided | "
-            "share noticed |", "|---|--:|--:|--:|--:|--:|--:|---|"]
-    areas = {"kernels": "kernels/", "groups": "host/renderer/groups/", "surface": "host/renderer/surface/",
-             "trace": "host/renderer/trace/", "all": ""}
-    for name, start in areas.items():
-        count = sum(mutant.startswith(start) for mutant in results)
-        of_area = [result for mutant, result in results.items()
-                   if mutant.startswith(start) and decided(result)]
+    rows = ["| | drawn | noticed | by one test alone | equivalent | survive | do not compile | not decided | "
+            "share noticed |", "|---|--:|--:|--:|--:|--:|--:|--:|---|"]
+    for name in [*dict.fromkeys(map(folder_of, results)), "all"]:
+        of_area = [result for mutant, result in results.items() if name in ("all", folder_of(mutant))]
+        count = len(of_area)
+        of_area = list(filter(decided, of_area))
         noticed, equivalent, survive, refused = (
             sum(kind in result for result in of_area)
             for kind in ("noticed", "equivalent", "survives", "not_counted"))
+        lists = [result["noticed"] for result in of_area if isinstance(result.get("noticed"), list)]
+        alone = sum(len(tests) == 1 for tests in lists) if lists else "-"
         low, high = wilson(noticed, noticed + survive)
         share = f"{100 * noticed / max(noticed + survive, 1):.1f}% ({100 * low:.0f} to {100 * high:.0f}%)"
         if len(of_area) < count:  # those that the quickest tests notice are decided first
             share = f"at least {100 * noticed / max(count - equivalent - refused, 1):.0f}%"
-        rows.append(f"| {name} | {count} | {noticed} | {equivalent} | {survive} | {refused} | "
+        rows.append(f"| {name} | {count} | {noticed} | {alone} | {equivalent} | {survive} | {refused} | "
                     f"{count - len(of_area)} | {share} |")
     return "\n".join(rows) + "\n"
+
+
+def noticed_alone(options):
+    """Lines: how many mutants each test of the folders noticed with others and alone."""
+    lists = [result["noticed"] for result in stored(options.results).values()
+             if isinstance(result.get("noticed"), list)]
+    tests = [f"{folder}/{case}" for folder in options.folders
+             for _, cases, _ in stored(options.work / f"{folder}.json") for case in cases]
+    return [f"{sum(test in noticed for noticed in lists):4} {lists.count([test]):4}  {test}"
+            for test in dict.fromkeys([*tests, *(test for noticed in lists for test in noticed)])]
 
 
 def arguments():
@@ -385,14 +390,15 @@ def arguments():
     parser.add_argument("--seed", type=int, default=29)
     parser.add_argument("--only", choices=("kernels", "host"))
     parser.add_argument("--folders", nargs="+", default=HOST_FOLDERS, metavar="NAME",
-                        help="of host/renderer; default: groups surface trace")
-    parser.add_argument("--quick", type=float, default=math.inf, metavar="SECONDS")
+                        help="of the parts of host/; default: groups surface trace")
+    parser.add_argument("--all", action="store_true", help="note every test that notices, not the first")
     parser.add_argument("--part", default="1/1", metavar="I/N", help="of those that are left")
     parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build/mutants")
     parser.add_argument("--seconds", type=float, default=math.inf, help="after which none is begun")
     parser.add_argument("--list", action="store_true", help="print those drawn, run none")
     parser.add_argument("--renew", action="store_true", help="name those drawn by where their lines are now, run none")
     parser.add_argument("--page", action="store_true", help="write docs/testing.md, run none")
+    parser.add_argument("--alone", action="store_true", help="print what each test noticed, and alone; run none")
     parser.add_argument("--results", type=pathlib.Path, default=RESULTS)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     return parser.parse_args()
@@ -406,7 +412,11 @@ def main():
     elif options.renew:
         renew(options.results, drawn)
     elif options.page:
-        replace_section(ROOT / "docs/testing.md", "tools/drawn_mutants.py", page(stored(options.results)))
+        drawn = [stored(file) for file in (RESULTS, *sorted(RESULTS.parent.glob("drawn_*_*.json")))]
+        replace_section(ROOT / "docs/testing.md", "tools/drawn_mutants.py",
+                        page({name: result for results in drawn for name, result in results.items()}))
+    elif options.alone:
+        print("\n".join(noticed_alone(options)))
     else:
         run_all(options, drawn)
 

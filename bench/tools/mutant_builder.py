@@ -1,7 +1,7 @@
 """Programs of tests with some of the host's files changed, built from the objects of a finished build.
 
 Only the objects that hold a changed file are compiled again, from a copy of host/, and linked before the
-library, whose own objects of these files are then not taken: seconds in place of a build of the tree.
+archives, whose own objects of these files are then not taken: seconds in place of a build of the tree.
 """
 
 import json
@@ -14,6 +14,10 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROOMS = ("renderer", "formats", "lighting")
 LIBRARY = tuple(f"host/{room}/CMakeFiles/photile_{room}.dir/" for room in ROOMS)
+# What programs are linked from: the library, and what of host/apps stands on it.
+ARCHIVES = (*LIBRARY, *(f"host/{folder}.dir/" for folder in (
+    "lighting/CMakeFiles/photile_report", "apps/CMakeFiles/photile_tools",
+    "apps/command/CMakeFiles/photile_app", "apps/view/CMakeFiles/photile_view")))
 # Compiles in a third of the time of -O3. Warnings are those of the build.
 LIBRARY_OPTIONS = ["-O1", "-w"]
 
@@ -62,21 +66,21 @@ class Builder:
         return header
 
     def objects_with(self, folders):
-        """The library's objects that hold source files of folders of host/renderer."""
-        names = tuple(f"{ROOT}/host/renderer/{folder}/" for folder in folders)
-        return [object_ for object_, words in self.commands.items() if object_.startswith(LIBRARY)
-                and any(name in source for source in self._sources(words[-1]) for name in names)]
+        """The archives' objects that hold source files of folders of the parts of host/."""
+        wanted = re.compile(rf"{ROOT}/host/\w+/({'|'.join(folders)})/")
+        return [object_ for object_, words in self.commands.items() if object_.startswith(ARCHIVES)
+                and any(map(wanted.match, self._sources(words[-1])))]
 
     def test_objects(self, folders):
         return [object_ for object_ in self.commands
                 if object_.startswith(tuple(f"tests/{folder}/" for folder in folders))]
 
     def objects_that_read(self, file, folders):
-        """The library's objects, and those of the tests of folders, that a file is part of."""
+        """The archives' objects, and those of the tests of folders, that a file is part of."""
         text = output_of(["ninja", "-t", "deps"], self.build)
         path = f"    {ROOT / file}\n"
         candidates = {block.split(":", 1)[0] for block in text.split("\n\n") if path in block + "\n"}
-        wanted = {object_ for object_ in self.commands if object_.startswith(LIBRARY)}
+        wanted = {object_ for object_ in self.commands if object_.startswith(ARCHIVES)}
         return sorted(candidates & (wanted | set(self.test_objects(folders))))
 
     @staticmethod
@@ -109,9 +113,12 @@ class Builder:
         output_of([*words, str(changed)], self.build)
         return out
 
-    def link(self, folder, objects, variant="common"):
-        """The program of tests/`folder` with objects (name -> path) in place of the build's."""
-        target = f"tests/{folder}/photile_tests_{folder}"
+    @staticmethod
+    def _archive(object_):
+        return re.sub(r"CMakeFiles/(\w+)\.dir/.*", r"lib\1.a", object_)
+
+    def link(self, target, objects, variant="common"):
+        """The program `target` of the build with objects (name -> path) in place of the build's."""
         command = output_of(["ninja", "-t", "commands", "-s", target], self.build)
         words = shlex.split(command.strip().splitlines()[-1].split("&&")[1])
         words = [str(objects.get(word, word)) for word in words]
@@ -119,6 +126,7 @@ class Builder:
         program.parent.mkdir(parents=True, exist_ok=True)
         place = words.index("-o")
         words[place:place + 2] = [*(str(path) for name, path in sorted(objects.items())
-                                    if name.startswith(LIBRARY)), "-o", str(program)]
+                                    if name.startswith(LIBRARY) or self._archive(name) in words),
+                                  "-o", str(program)]
         output_of(words, self.build)
         return program

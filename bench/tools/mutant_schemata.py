@@ -37,7 +37,7 @@ def operand_end(text, place, step, stops):
             two = text[place:place + 2] if step > 0 else text[max(place - 1, 0):place + 1]
             if two in stops:
                 return place
-            if character in "=:" and text[place - 1] == text[place + 1] == " ":
+            if character in "=:" and text[place - 1].isspace() and text[place + 1].isspace():
                 return place
             if step < 0 and re.match(r"\breturn\b", text[place - 5:place + 1]):
                 return place
@@ -51,10 +51,11 @@ def logical(text, place, token, number):
     right = operand_end(text, place + 2, 1, ("&&", "||") if token == "&&" else ("||",))
     if left is None or right is None or "//" in text[left:right]:
         return None
-    a, b = text[left + 1:place], text[place + 2:right]
+    # Lines stay where they are, as the compiler names them.
+    a, b = (" ".join(part.split()) for part in (text[left + 1:place], text[place + 2:right]))
     if "{" in a + b:
         return None  # a lambda or a list, whose text cannot stand twice
-    return [(left + 1, f" (PHOTILE_CHOSEN({number}) ? (({a.strip()}) {changed(token)} ({b.strip()})) : ("),
+    return [(left + 1, f" (PHOTILE_CHOSEN({number}) ? (({a}) {changed(token)} ({b})) : ("),
             (right, "))")]
 
 
@@ -162,7 +163,7 @@ class Schemata:
             self._write(file, (mutant_builder.ROOT / file).read_text(encoding="utf-8"))
         return self.alone != before
 
-    def program(self, folder):
-        if folder not in self.programs:
-            self.programs[folder] = self.builder.link(folder, self.objects)
-        return self.programs[folder]
+    def program(self, target):
+        if target not in self.programs:
+            self.programs[target] = self.builder.link(target, self.objects)
+        return self.programs[target]

@@ -18,8 +18,13 @@ import xml.etree.ElementTree
 
 REFUSED = 97  # mutant_schemata.hpp
 GUESSED_SECONDS = 4.0  # of a step that never ran
-LEAST_LIMIT, LIMIT_FACTOR = 30.0, 8  # seconds of the processor, and times what a step takes
+LEAST_LIMIT, LIMIT_FACTOR = 10.0, 8  # seconds of the processor, and times what a step takes
 STILL_SECONDS = 60  # without work for the processor: threads that wait for each other for good
+
+
+def tests_of(folder):
+    """The program of a folder of tests/ in the folder of a build."""
+    return f"tests/{folder}/photile_tests_{folder}"
 
 
 class CannotRun(Exception):
@@ -108,11 +113,14 @@ def run(program, arguments, environment=None, limit=None):
     return Outcome(failed, started.returncode != 0 and not failed, cases, seconds)
 
 
-def run_step(program, step, environment=None, limit=None):
+def run_step(program, step, environment=None, limit=None, whole=False):
+    """Runs the cases until the first fails, or all of them."""
+    options = ["--filenames-as-tags", *([] if whole else ["--abort"])]
     if step.cases[0][0] in "[~":
-        return run(program, ["--filenames-as-tags", "--abort", *step.cases], environment, limit)
-    names = (re.sub(r"([\\,\[])", r"\\\1", name) for name in step.cases)
-    return run(program, ["--abort", ",".join(names)], environment, limit)
+        return run(program, [*options, *step.cases], environment, limit)
+    # A name that begins with a hyphen would be an option.
+    names = (re.sub(r"([\\,\[])", r"\\\1", re.sub("^-", "*-", name)) for name in step.cases)
+    return run(program, [*options, ",".join(names)], environment, limit)
 
 
 class Order:

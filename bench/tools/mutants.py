@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "bench"))
 from tools import mutant_tests
 from tools.mutant_builder import Builder, DoesNotCompile
 from tools.mutant_list import MUTANTS
-from tools.mutant_tests import CannotRun
+from tools.mutant_tests import CannotRun, tests_of
 from tools.report_section import replace_section
 
 RESULTS = ROOT / "docs/testing/mutants.json"
@@ -50,7 +50,7 @@ def mutate(folder, mutant):
 
 
 def program_of(build, folder):
-    program = build / "tests" / folder / f"photile_tests_{folder}"
+    program = build / tests_of(folder)
     if not program.is_file():
         raise CannotRun(f"{program} is missing; build the target photile_tests_{folder}")
     return program
@@ -103,7 +103,7 @@ class Runner:
             raise CannotRun("it does not compile: " + str(failure)) from None
         finally:
             (self.work / mutant.file).write_text(text, encoding="utf-8")
-        return self._noticed(mutant, {folder: self.builder.link(folder, objects, "own")
+        return self._noticed(mutant, {folder: self.builder.link(tests_of(folder), objects, "own")
                                       for folder in folders})
 
 

@@ -3,18 +3,28 @@
 // that is gone, and none has to be aborted. It also tells the others, who look out for that while
 // they work, so that none of them finishes a long stage first. Waiting processes sleep between
 // looks, since ranks may be more than cores.
+//
+// A process that is stopped, or whose machine is, can make no agreement. So a thread of each sends
+// a beat to the next rank now and then, whatever the process works on, and where the one before
+// falls silent for long the thread says so and aborts all.
 #include "mpi_communicator.hpp"
 
 #include <mpi.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <climits>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <numeric>
+#include <stop_token>
 #include <thread>
 #include <utility>
 
@@ -30,16 +40,48 @@ constexpr int quick_looks = 200;
 constexpr auto first_sleep = std::chrono::microseconds(20);
 constexpr auto longest_sleep = std::chrono::microseconds(500);
 
-void wait(MPI_Request request) {
+/// How often the thread that beats looks at news; every tenth time it sends a beat.
+constexpr auto watch_period = std::chrono::milliseconds(100);
+constexpr int looks_between_beats = 10;
+constexpr int default_patience = 120;  ///< seconds
+constexpr int aborting = -1;           ///< in place of the code that a process tells
+
+/// Seconds for which a rank may be silent; 0: for ever.
+int patience() {
+  const char* const text = std::getenv("PHOTILE_MPI_PATIENCE");
+  return text == nullptr ? default_patience : std::max(0, std::atoi(text));
+}
+
+/// Two threads make the calls of MPI, one at a time.
+std::mutex& calls() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+template <class Call>
+void call(const Call& made) {
+  const std::lock_guard lock(calls());
+  made();
+}
+
+void wait(MPI_Request& request) {
   auto sleep = first_sleep;
   int done = 0;
   for (int look = 0;; ++look) {
-    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    call([&] { MPI_Test(&request, &done, MPI_STATUS_IGNORE); });
     if (done) return;
     if (look < quick_looks) continue;
     std::this_thread::sleep_for(sleep);
     sleep = std::min(2 * sleep, std::chrono::microseconds(longest_sleep));
   }
+}
+
+/// Starts a call that does not block, and waits until it is done.
+template <class Start>
+void make(const Start& start) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  call([&] { start(&request); });
+  wait(request);
 }
 
 class MpiCommunicator final : public Communicator {
@@ -60,6 +102,11 @@ class MpiCommunicator final : public Communicator {
     near_ = static_cast<std::uint32_t>(near);
   }
 
+  /// Begins to watch the others, where MPI lets a second thread make calls.
+  void watch() {
+    if (size_ > 1) watcher_ = std::jthread([this](const std::stop_token& stop) { beat(stop); });
+  }
+
   std::uint32_t rank() const override { return rank_; }
   std::uint32_t size() const override { return size_; }
   std::uint32_t on_this_machine() const override { return near_; }
@@ -75,9 +122,9 @@ class MpiCommunicator final : public Communicator {
       out[r] = to_each[r].size();
       traffic_.bytes += out[r];
     }
-    MPI_Request request;
-    MPI_Ialltoall(out.data(), 1, MPI_UINT64_T, in.data(), 1, MPI_UINT64_T, all_, &request);
-    wait(request);
+    make([&](MPI_Request* request) {
+      MPI_Ialltoall(out.data(), 1, MPI_UINT64_T, in.data(), 1, MPI_UINT64_T, all_, request);
+    });
     for (std::uint32_t r = 0; r < size_; ++r) {
       if (r != rank_) from[r].resize(in[r]);
     }
@@ -86,8 +133,9 @@ class MpiCommunicator final : public Communicator {
     std::uint64_t most = std::max(*std::max_element(out.begin(), out.end()),
                                   *std::max_element(in.begin(), in.end()));
     // The rounds of whoever has most.
-    MPI_Iallreduce(MPI_IN_PLACE, &most, 1, MPI_UINT64_T, MPI_MAX, all_, &request);
-    wait(request);
+    make([&](MPI_Request* request) {
+      MPI_Iallreduce(MPI_IN_PLACE, &most, 1, MPI_UINT64_T, MPI_MAX, all_, request);
+    });
     for (std::uint64_t begin = 0; begin < most; begin += in_round) {
       exchange_round(to_each, from, begin, in_round);
     }
@@ -98,9 +146,9 @@ class MpiCommunicator final : public Communicator {
     const Call call(*this);
     const std::uint64_t bytes = own.size();
     std::vector<std::uint64_t> sizes(size_);
-    MPI_Request request;
-    MPI_Iallgather(&bytes, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, all_, &request);
-    wait(request);
+    make([&](MPI_Request* request) {
+      MPI_Iallgather(&bytes, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, all_, request);
+    });
     traffic_.bytes += bytes * (size_ - 1);
     std::vector<Bytes> all;
     for (const std::uint64_t size : sizes) all.emplace_back(size);
@@ -118,9 +166,10 @@ class MpiCommunicator final : public Communicator {
       }
       round.resize(static_cast<std::size_t>(total));
       const std::byte* const from = counts[rank_] > 0 ? own.data() + begin : nullptr;
-      MPI_Iallgatherv(from, counts[rank_], MPI_BYTE, round.data(), counts.data(), places.data(),
-                      MPI_BYTE, all_, &request);
-      wait(request);
+      make([&](MPI_Request* request) {
+        MPI_Iallgatherv(from, counts[rank_], MPI_BYTE, round.data(), counts.data(), places.data(),
+                        MPI_BYTE, all_, request);
+      });
       for (std::uint32_t r = 0; r < size_; ++r) copy(all[r], begin, round, places[r], counts[r]);
     }
     return all;
@@ -130,10 +179,10 @@ class MpiCommunicator final : public Communicator {
     const Call call(*this);
     traffic_.bytes += values.size_bytes();
     for_each_run(values.size(), [&](std::size_t first, int count) {
-      MPI_Request request;
-      MPI_Iallreduce(MPI_IN_PLACE, values.data() + first, count, MPI_UINT64_T, MPI_SUM, all_,
-                     &request);
-      wait(request);
+      make([&](MPI_Request* request) {
+        MPI_Iallreduce(MPI_IN_PLACE, values.data() + first, count, MPI_UINT64_T, MPI_SUM, all_,
+                       request);
+      });
     });
   }
 
@@ -142,18 +191,23 @@ class MpiCommunicator final : public Communicator {
     traffic_.bytes += values.size_bytes();
     std::vector<std::uint64_t> sums(values.size(), 0);
     for_each_run(values.size(), [&](std::size_t first, int count) {
-      MPI_Request request;
-      MPI_Iexscan(values.data() + first, sums.data() + first, count, MPI_UINT64_T, MPI_SUM, all_,
-                  &request);
-      wait(request);
+      make([&](MPI_Request* request) {
+        MPI_Iexscan(values.data() + first, sums.data() + first, count, MPI_UINT64_T, MPI_SUM, all_,
+                    request);
+      });
     });
     if (rank_ == 0) std::fill(sums.begin(), sums.end(), 0);  // MPI leaves them undefined
     return sums;
   }
 
   Conclusion conclude(int code, const std::function<void()>& tell_error) override {
+    if (heard_ && heard_code_ == aborting) {  // whoever watches ends all, and tells why
+      std::this_thread::sleep_for(std::chrono::minutes(1));
+      std::_Exit(code);
+    }
     // Others wait within a call that this process has left: mpirun ends them when it exits.
     if (broken_) {
+      watcher_ = {};
       if (code != 0) tell_error();
       return {rank_, code};
     }
@@ -161,22 +215,21 @@ class MpiCommunicator final : public Communicator {
     // Who stopped because of another has not failed.
     const Conclusion end = agree(heard_ ? 0 : code);
     if (end.code != 0 && end.rank == rank_) tell_error();
-    MPI_Request told;
-    MPI_Ibarrier(all_, &told);
-    wait(told);
-    MPI_Cancel(&news_request_);
-    MPI_Request_free(&news_request_);
+    make([&](MPI_Request* request) { MPI_Ibarrier(all_, request); });
+    watcher_ = {};  // stops and joins
+    for (MPI_Request* request : {&news_request_, &beat_heard_}) {
+      if (*request == MPI_REQUEST_NULL) continue;
+      MPI_Cancel(request);
+      MPI_Request_free(request);
+    }
+    if (beat_sent_ != MPI_REQUEST_NULL) MPI_Request_free(&beat_sent_);
     MPI_Comm_free(&all_);
     MPI_Finalize();
     return end;
   }
 
   bool other_failed() {
-    if (std::this_thread::get_id() == thread_ && !heard_ && !broken_) {
-      int there = 0;
-      MPI_Request_get_status(news_request_, &there, MPI_STATUS_IGNORE);
-      heard_ = there != 0;
-    }
+    if (std::this_thread::get_id() == thread_ && !heard_ && !broken_) look_for_news();
     return heard_;
   }
 
@@ -205,10 +258,61 @@ class MpiCommunicator final : public Communicator {
     told_code_ = code;
     for (std::uint32_t r = 0; r < size_; ++r) {
       if (r == rank_) continue;
-      MPI_Request request;
-      MPI_Isend(&told_code_, 1, MPI_INT, static_cast<int>(r), 0, news_, &request);
-      MPI_Request_free(&request);  // the agreement that follows says that it has arrived
+      call([&] {
+        MPI_Request request;
+        MPI_Isend(&told_code_, 1, MPI_INT, static_cast<int>(r), 0, news_, &request);
+        MPI_Request_free(&request);  // the agreement that follows says that it has arrived
+      });
     }
+  }
+
+  void look_for_news() {
+    int there = 0;
+    call([&] { MPI_Request_get_status(news_request_, &there, MPI_STATUS_IGNORE); });
+    if (there != 0) heard_ = true;
+  }
+
+  /// What the watching thread does. It counts its own beats and no time: where all processes of a
+  /// job are stopped and go on later, none of them was silent.
+  void beat(const std::stop_token& stop) {
+    constexpr int tag = 1;
+    sigset_t signals;  // are for others
+    sigfillset(&signals);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    const auto before = static_cast<int>((rank_ + size_ - 1) % size_);
+    const auto after = static_cast<int>((rank_ + 1) % size_);
+    const int most_looks = patience() * static_cast<int>(std::chrono::seconds(1) / watch_period);
+    int silent = 0;
+    for (int look = 0; !stop.stop_requested(); ++look) {
+      look_for_news();
+      call([&] {
+        int heard = 1, sent = 1;
+        if (beat_heard_ != MPI_REQUEST_NULL) MPI_Test(&beat_heard_, &heard, MPI_STATUS_IGNORE);
+        if (heard != 0) {
+          MPI_Irecv(nullptr, 0, MPI_BYTE, before, tag, news_, &beat_heard_);
+          silent = 0;
+        }
+        if (look % looks_between_beats != 0) return;
+        // One on its way is enough: whoever does not take it is not to be sent more.
+        if (beat_sent_ != MPI_REQUEST_NULL) MPI_Test(&beat_sent_, &sent, MPI_STATUS_IGNORE);
+        if (sent != 0) MPI_Isend(nullptr, 0, MPI_BYTE, after, tag, news_, &beat_sent_);
+      });
+      if (++silent > most_looks && most_looks > 0) give_up(before);
+      std::this_thread::sleep_for(watch_period);
+    }
+  }
+
+  [[noreturn]] void give_up(int silent_rank) {
+    tell(aborting);
+    std::fprintf(
+        stderr,
+        "photile: error: rank %d of %u has been silent for %d s: its process or its machine "
+        "is stopped; all are ended (PHOTILE_MPI_PATIENCE sets the seconds)\n",
+        silent_rank, size_, patience());
+    std::this_thread::sleep_for(3 * watch_period);  // until they know
+    const std::lock_guard lock(calls());
+    MPI_Abort(MPI_COMM_WORLD, 1);
+    std::_Exit(1);
   }
 
   /// The least rank that has a code, and the code.
@@ -217,9 +321,9 @@ class MpiCommunicator final : public Communicator {
     constexpr int codes = 1 << 10;  // more than there are
     const auto fine = static_cast<int>(size_);
     int first = code == 0 ? fine * codes : static_cast<int>(rank_) * codes + code;
-    MPI_Request request;
-    MPI_Iallreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, all_, &request);
-    wait(request);
+    make([&](MPI_Request* request) {
+      MPI_Iallreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, all_, request);
+    });
     Conclusion end{static_cast<std::uint32_t>(first / codes), first % codes};
     if (first == fine * codes) return {};
     failed_ = std::make_unique<Conclusion>(end);
@@ -253,10 +357,10 @@ class MpiCommunicator final : public Communicator {
                     static_cast<std::size_t>(sent[r]));
       }
     }
-    MPI_Request request;
-    MPI_Ialltoallv(to.data(), sent.data(), sent_at.data(), MPI_BYTE, from.data(), got.data(),
-                   got_at.data(), MPI_BYTE, all_, &request);
-    wait(request);
+    make([&](MPI_Request* request) {
+      MPI_Ialltoallv(to.data(), sent.data(), sent_at.data(), MPI_BYTE, from.data(), got.data(),
+                     got_at.data(), MPI_BYTE, all_, request);
+    });
     for (std::uint32_t r = 0; r < size_; ++r) copy(in[r], begin, from, got_at[r], got[r]);
   }
 
@@ -271,6 +375,7 @@ class MpiCommunicator final : public Communicator {
 
   MPI_Comm all_ = MPI_COMM_NULL, news_ = MPI_COMM_NULL;
   MPI_Request news_request_ = MPI_REQUEST_NULL;
+  MPI_Request beat_heard_ = MPI_REQUEST_NULL, beat_sent_ = MPI_REQUEST_NULL;
   int heard_code_ = 0, told_code_ = 0;
   std::atomic<bool> heard_{false};
   const std::thread::id thread_ = std::this_thread::get_id();
@@ -278,6 +383,7 @@ class MpiCommunicator final : public Communicator {
   Traffic traffic_;
   std::unique_ptr<Conclusion> failed_;  ///< what all know of
   bool broken_ = false;                 ///< a call was left by an exception
+  std::jthread watcher_;                ///< the last member: it uses the others
 };
 
 }  // namespace
@@ -294,10 +400,10 @@ bool photile_mpi_other_failed() { return communicator && communicator->other_fai
 photile::Communicator* photile_mpi_communicator() {
   if (!communicator) {
     int given = 0;
-    // The thread that makes the calls is the only one.
-    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &given) != MPI_SUCCESS)
+    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &given) != MPI_SUCCESS)
       return nullptr;
     communicator = std::make_unique<photile::MpiCommunicator>();
+    if (given >= MPI_THREAD_SERIALIZED) communicator->watch();
   }
   return communicator.get();
 }

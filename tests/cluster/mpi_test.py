@@ -288,6 +288,45 @@ def signals():
             check(os.listdir(folder) == ["old.exr"], f"{what}: left {os.listdir(folder)}")
 
 
+def stopped():
+    """A rank that is stopped ends all with a line that names it; where all are, for a while, none was silent."""
+    patience = {"PHOTILE_MPI_PATIENCE": "3"}
+    for all_of_them in (False, True):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            picture = folder / "old.exr"
+            picture.write_text("old")
+            paths = "3M" if all_of_them else "100M"
+            job = subprocess.Popen(command(3, ["render", BOX, "-o", picture, "--photons", paths, "--set", "passes=1",
+                                               "--quality", "draft", "-q"]),
+                                   env=os.environ | SETTINGS | patience, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+            while len(children_of(job.pid)) < 3:
+                time.sleep(0.05)
+            time.sleep(1)
+            ranks_of_job = children_of(job.pid)
+            to_stop = ranks_of_job if all_of_them else ranks_of_job[1:2]
+            for rank in to_stop:
+                os.kill(rank, signal.SIGSTOP)
+            if all_of_them:
+                time.sleep(8)
+                for rank in to_stop:
+                    os.kill(rank, signal.SIGCONT)
+            _, told = job.communicate(timeout=60)
+            lines = [line for line in told.splitlines() if line.startswith("photile: error: ")]
+            if all_of_them:
+                check(job.returncode == 0 and lines == [], f"all were stopped: {job.returncode}, {told}")
+                check(picture.stat().st_size > 100, "no picture was written")
+                continue
+            number = [rank for rank in range(3) if f"rank {rank} of 3 has been silent" in told]
+            check(job.returncode != 0 and len(lines) == 1 and len(number) == 1, f"{job.returncode}, {told}")
+            check(picture.read_text() == "old", "the picture is not what it was")
+            left = time.time() + 10
+            while any(pathlib.Path(f"/proc/{rank}").exists() for rank in ranks_of_job):
+                check(time.time() < left, "ranks are left")
+                time.sleep(0.1)
+
+
 def network():
     """Ranks in network namespaces of their own, with delay and loss between them (needs root)."""
     arguments = [*SMALL, "--quality", "draft"]

@@ -71,7 +71,7 @@ Channel open_terminal() {
     arguments.push_back(const_cast<char*>(argument.c_str()));
   }
   arguments.push_back(nullptr);
-  execv(PHOTILE_COMMAND, arguments.data());
+  execv(command().c_str(), arguments.data());
   _exit(127);
 }
 
@@ -121,6 +121,11 @@ void read_until_closed(const Run& run, pid_t child, int output, int errors, Outc
 }
 
 }  // namespace
+
+std::string command() {
+  const char* other = std::getenv("PHOTILE_COMMAND");
+  return other == nullptr ? PHOTILE_COMMAND : other;
+}
 
 std::vector<std::string> Outcome::error_lines() const {
   std::vector<std::string> lines;

@@ -37,6 +37,9 @@ std::vector<std::string> typed(const Parts&... parts) {
   return all;
 }
 
+/// The command under test: that of the build, or the one that PHOTILE_COMMAND names.
+std::string command();
+
 struct Run {
   std::vector<std::string> arguments;
   std::map<std::string, std::string> environment;  ///< on top of the test's own

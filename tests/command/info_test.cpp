@@ -53,6 +53,8 @@ TEST_CASE("info lists the groups that it is given, with the sum of their lights'
   const FileFolder folder;
   const std::string scene = write_box(folder);
   CHECK(info(scene)["groups"].empty());
+  // An option that may be repeated takes one word each time.
+  only_error(run_photile({"info", scene, "--light-group", "l*=left", "r*=right"}), usage);
   const auto facts = info(scene, {"--light-group", "*t=both"});
   CHECK(facts["lights"][0]["group"] == "both");
   REQUIRE(facts["groups"].size() == 1);
@@ -78,11 +80,16 @@ TEST_CASE("info applies the emissive scale and the lumens per watt that it is gi
   CHECK(scaled["lights"][0]["lumens"].get<double>() == Approx(1790 * plain).epsilon(1e-6));
 }
 
-TEST_CASE("info as text names every light and material") {
+TEST_CASE("info as text names every light and material, and what a coat adds to its colour") {
   const FileFolder folder;
-  const Outcome outcome = succeed({"info", write_box(folder)});
-  CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&
-                                 Contains("material: wall: diffuse, 12 triangles"));
+  folder.write("box.mtl",
+               box_mtl() + "newmtl coated\nKd 0.5 0.5 0.5\nKs 0.3 0.3 0.3\nNs 50\nillum 2\n");
+  const std::string scene = folder.write("box.obj", box_obj() + "usemtl coated\nf 1 2 7\n");
+  CHECK_THAT(succeed({"info", scene}).output,
+             Contains("light: left: area") && Contains("light: right: area") &&
+                 Contains("material: wall: diffuse, 12 triangles") &&
+                 Contains("material: coated: glossy, 1 triangle, reflectance 0.65 (0.5 entered, "
+                          "and 0.3 specular"));
 }
 
 TEST_CASE("info counts what the import dropped, and says so") {

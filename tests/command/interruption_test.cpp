@@ -28,26 +28,32 @@ using Catch::Contains;
 
 // SIGINT and SIGTERM stop a render: exit code 130, earlier files kept, nothing half written.
 
-TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
+TEST_CASE("a signal during a render, or the making of a page, gives 130 and keeps earlier files") {
   const FileFolder folder;
   Run run;
-  run.arguments = {"render",  write_box(folder),   "-o",        folder / "out.exr",
-                   "--stats", folder / "out.json", "--photons", "2G"};
+  const auto [command, name, more] = GENERATE(table<std::string, std::string, std::string>(
+      {{"render", "out.exr", "--photons 2G"},
+       {"publish", "out.html", "--photons 4M"},
+       {"publish", "out.html", "--photons 16M --for 60min"}}));
+  run.arguments = typed(command, write_box(folder), "-o", folder / name, more.c_str());
+  if (command == "render") {
+    run.arguments.insert(run.arguments.end(), {"--stats", folder / "out.json"});
+  }
   run.terminal = true;
   run.signal_when = "%  ";  // only a bar under way prints one
   run.signal = GENERATE(SIGINT, SIGTERM);
-  folder.write("out.exr", "earlier");
+  folder.write(name, "earlier");
   const Outcome outcome = run_photile(run);
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 130);
   CHECK_THAT(outcome.errors, Contains("interrupted"));
-  CHECK(folder.read("out.exr") == "earlier");
-  CHECK(folder.file_count() == 3);  // the scene's two files and the earlier picture
+  CHECK(folder.read(name) == "earlier");
+  CHECK(folder.file_count() == 3);  // the scene's two files and the earlier output
 }
 
 /// Runs a line of shell text in which $photile is the command.
 Outcome run_in_shell(const FileFolder& folder, const std::string& text) {
-  const std::string file = folder.write("line.sh", "photile='" PHOTILE_COMMAND "'\n" + text);
+  const std::string file = folder.write("line.sh", "photile='" + command() + "'\n" + text);
   const std::string output = folder / "output", errors = folder / "errors";
   const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' bash '" + file +
                                   "' > '" + output + "' 2> '" + errors + "'")
@@ -77,6 +83,36 @@ TEST_CASE("where no more files can be opened, the limit is told, and not a lack 
       folder, "for n in $(seq 3 14); do ulimit -Sn $n; $photile render '" + scene + "' -o '" +
                   (folder / "a.exr") + "' --photons 1000 --size 4x4 -q; done");
   CHECK_THAT(outcome.errors, Contains("ulimit -n") && !Contains("install a runtime"));
+}
+
+TEST_CASE("a signal while polygons that cross themselves are read gives 130 and one line at once") {
+  const FileFolder folder;
+  write_box(folder);
+  // Minutes of work: 40 polygons whose corners are the same random points, in another order each.
+  std::mt19937 random(1);
+  std::string text = "mtllib box.mtl\nusemtl wall\n";
+  constexpr int corners = 60'000;
+  for (int i = 0; i < corners; ++i) {
+    text += "v " + std::to_string(random() % 100'000) + " " + std::to_string(random() % 100'000) +
+            " 0\n";
+  }
+  std::vector<std::string> names;
+  for (int i = 1; i <= corners; ++i) names.push_back(" " + std::to_string(i));
+  for (int polygon = 0; polygon < 40; ++polygon) {
+    std::shuffle(names.begin(), names.end(), random);
+    text += "f";
+    for (const std::string& name : names) text += name;
+    text += "\n";
+  }
+  Run run;
+  run.arguments = typed("render", folder.write("crossing.obj", text), "-q -o", folder / "out.png");
+  run.signal_delay = std::chrono::milliseconds(3'000);
+  run.signal = GENERATE(SIGINT, SIGTERM);
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome outcome = run_photile(run);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  CHECK(only_error(outcome, 130) == "interrupted");
+  CHECK(seconds.count() < 10);
 }
 
 TEST_CASE("a signal while kernels are compiled gives 130 and one line", "[slow]") {
@@ -136,7 +172,7 @@ using Clock = std::chrono::steady_clock;
 Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments,
                           const std::string& size = "64k") {
   const std::string script = "mount -t tmpfs -o size=" + size + " none '" + (folder / "disk") +
-                             "' && '" PHOTILE_COMMAND "' " + arguments + "; code=$?; ls -A '" +
+                             "' && '" + command() + "' " + arguments + "; code=$?; ls -A '" +
                              (folder / "disk") + "'; exit $code";
   const std::string file = folder.write("run.sh", script);
   const std::string output = folder / "output", errors = folder / "errors";
@@ -237,6 +273,8 @@ TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name a
       {"64k", "walk SCENE DRAFT --camera-path PATH --size 200x150 -o DISK/frame.#.exr",
        "frame.1.exr"},
       {"64k", "bake SCENE -q --photons 5k --texel 0.02 -o DISK/room.gltf", "room.light00.exr"},
+      {"64k", "publish SCENE DRAFT --texel 0.2 -o DISK/room.html", "room.html"},
+      {"16k", "publish SCENE DRAFT --texel 0.02 -o DISK/room.glb", "room.light00.exr"},
       {"4k", "compare LARGE LARGE -o DISK/c.png", "c.png"},
   }));
   CAPTURE(command);

@@ -19,43 +19,11 @@ void collect(json& value, std::vector<json*>& values) {
 }
 
 /// Borders of types, of limits, and of what floats hold.
-const std::vector<json>& wild_values() {
-  static const std::vector<json> values{0,
-                                        -1,
-                                        1,
-                                        2,
-                                        3,
-                                        255,
-                                        65'536,
-                                        2'147'483'647,
-                                        -2'147'483'648LL,
-                                        4'294'967'295ULL,
-                                        18'446'744'073'709'551'615ULL,
-                                        0.5,
-                                        -0.0,
-                                        1e-320,
-                                        1e38,
-                                        1e39,
-                                        1e300,
-                                        5120,
-                                        5121,
-                                        5123,
-                                        5125,
-                                        5126,
-                                        33071,
-                                        33648,
-                                        10497,
-                                        "SCALAR",
-                                        "VEC2",
-                                        "VEC3",
-                                        "VEC4",
-                                        "spot",
-                                        "",
-                                        "../x",
-                                        true,
-                                        nullptr,
-                                        json::array(),
-                                        json::object()};
+const json& wild_values() {
+  static const json values =
+      json::parse(R"([0, -1, 1, 2, 3, 255, 65536, 2147483647, -2147483648, 4294967295,
+      18446744073709551615, 0.5, -0.0, 1e-320, 1e38, 1e39, 1e300, 5120, 5121, 5123, 5125, 5126, 33071, 33648,
+      10497, "SCALAR", "VEC2", "VEC3", "VEC4", "spot", "", "../x", true, null, [], {}])");
   return values;
 }
 

@@ -100,8 +100,26 @@ TEST_CASE("turning up a light that is off in the picture is refused by name") {
   const Image picture = mix_layers(random_layers(3, 3, names), mix_of(10.0, 0.0, 1.0));
   const std::string message = message_of<UsageError>([&] { relight(picture, parse({"lamp=5"})); });
   CHECK(message.find("'lamp'") != std::string::npos);
+  const Image dark = mix_layers(random_layers(3, 3, names), mix_of(0.0, 1.0, 1.0));
+  CHECK_THROWS_AS(relit_mix(dark, parse({"window=5"})), UsageError);
   CHECK_NOTHROW(relight(picture, parse({"lamp=x3"})));  // still off
   CHECK_NOTHROW(relight(picture, parse({"lamp=off"})));
+}
+
+TEST_CASE("the layers of a picture are those that it was mixed from, by the unit of power") {
+  const LightLayers layers = random_layers(3, 2, names);
+  LightMix mix = mix_of(10.0, 0.0, 0.5);
+  mix.lights[2].tint = {0.5f, 1.25f, 0.25f};
+  const LightLayers read = light_layers(mix_layers(layers, mix));
+  for (std::size_t l = 0; l < names.size(); ++l) {
+    const float lit = l == 1 ? 0.0f : 1.0f;  // nothing is known of what is off
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        CHECK(read.layers[l].radiance[i][c] == Approx(lit * layers.layers[l].radiance[i][c]));
+      }
+      CHECK(read.layers[l].illuminance[i] == Approx(lit * layers.layers[l].illuminance[i]));
+    }
+  }
 }
 
 TEST_CASE("a colour that an earlier tint took out of the picture cannot come back") {

@@ -105,41 +105,12 @@ std::string binary_of(json document) {
 }
 
 json wild_value(std::mt19937& random) {
-  static const std::vector<json> values = {-1,
-                                           0,
-                                           1,
-                                           2,
-                                           3,
-                                           7,
-                                           255,
-                                           65'535,
-                                           65'536,
-                                           2'147'483'647,
-                                           5120,
-                                           5126,
-                                           0.5,
-                                           -0.0,
-                                           1e300,
-                                           -1e9,
-                                           1e-300,
-                                           true,
-                                           false,
-                                           nullptr,
-                                           "",
-                                           "VEC3",
-                                           "x",
-                                           "day",
-                                           "\n",
-                                           json::array(),
-                                           json::object(),
-                                           json{0, 0, 0},
-                                           -2'147'483'648LL,
-                                           4'294'967'295ULL,
-                                           18'446'744'073'709'551'615ULL,
-                                           json::array({json::array()}),
-                                           json{{"index", 0}},
-                                           std::string(5000, 'a')};
-  return values[random() % values.size()];
+  static const json values =
+      json::parse(R"([-1, 0, 1, 2, 3, 7, 255, 65535, 65536, 2147483647, 5120, 5126,
+      -2147483648, 4294967295, 18446744073709551615, 0.5, -0.0, 1e300, -1e9, 1e-300, true, false, null, "",
+      "VEC3", "x", "day", "\n", [], {}, [[]], [0, 0, 0], {"index": 0}])");
+  const std::size_t chosen = random() % (values.size() + 1);
+  return chosen < values.size() ? values[chosen] : json(std::string(5000, 'a'));
 }
 
 /// Every value of the document, by its place.

@@ -2,16 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <random>
-#include <string_view>
+#include <sstream>
 
 #include "damaged_files.hpp"
+#include "loading/load_scene.hpp"
 #include "reading/triangles.hpp"
 #include "scene_files.hpp"
 
@@ -325,19 +325,23 @@ TEST_CASE("a polygon that crosses itself is told from a simple one") {
                   .simple);
 }
 
+/// Next to every edge crosses thousands of others.
+std::vector<glm::dvec3> random_polygon(std::size_t count) {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> place(0.0, 1.0);
+  std::vector<glm::dvec3> corners(count);
+  for (glm::dvec3& corner : corners) corner = {place(generator), place(generator), 0.0};
+  return corners;
+}
+
 TEST_CASE(
     "a polygon of 60,000 corners is triangulated in seconds, whether it crosses itself or not") {
   check_tiling(star(60'000, 1));
-  // Random points: next to every edge crosses thousands of others. Rounds over all corners for each
-  // triangle took more than eight minutes.
-  std::mt19937 generator(2);
-  std::uniform_real_distribution<double> place(0.0, 1.0);
-  std::vector<glm::dvec3> crossing(60'000);
-  for (glm::dvec3& corner : crossing) corner = {place(generator), place(generator), 0.0};
-  const auto begin = std::chrono::steady_clock::now();
+  // Rounds over all corners for each triangle took more than eight minutes.
+  const std::vector<glm::dvec3> crossing = random_polygon(60'000);
+  const std::clock_t begin = std::clock();  // of the processor, which other programs take none of
   const reading::Triangulation result = reading::triangulate_polygon(crossing);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-  CHECK(seconds.count() < 20);
+  CHECK(std::clock() - begin < 20 * CLOCKS_PER_SEC);
   CHECK_FALSE(result.simple);
   CHECK(result.triangles.size() == crossing.size() - 2);
 }
@@ -349,6 +353,33 @@ TEST_CASE("polygons without area give triangles for the caller to drop, and end"
   CHECK(reading::triangulate_polygon(
             std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}})
             .triangles.size() == 2);
+}
+
+/// Asks to stop when it is asked for the n-th time.
+class StopAtLook : public Progress {
+ public:
+  explicit StopAtLook(int look) : look_(look) {}
+  bool cancelled() const override { return ++looks_ == look_; }
+
+ private:
+  int look_;
+  mutable int looks_ = 0;
+};
+
+TEST_CASE("an import that is asked to stop does so within a polygon, among faces and among lines") {
+  const std::vector<glm::dvec3> polygon = random_polygon(20'000);
+  const int look = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
+  CAPTURE(look);
+  CHECK_THROWS_AS(reading::triangulate_polygon(polygon, StopAtLook(look)), Interrupted);
+  // 3,000 lines are looked through, then read, then made triangles.
+  const SceneFolderOnDisk folder;
+  std::string faces;
+  for (int i = 0; i < 3'000; ++i) faces += "f 1 2 3\n";
+  folder.write("materials.mtl", lamp_and_wall);
+  const std::filesystem::path file =
+      folder.write("scene.obj", "mtllib materials.mtl\n" + unit_square + "usemtl lamp\n" + faces);
+  CHECK_THROWS_AS(loading::load_scene(file, {}, StopAtLook(look)), Interrupted);
+  CHECK_NOTHROW(loading::load_scene(file, {}, StopAtLook(look + 8)));
 }
 
 // OBJ and MTL texts damaged at random, with fixed seeds.
@@ -391,28 +422,11 @@ TEST_CASE("an OBJ or MTL text cut anywhere is read or refused") {
 }
 
 TEST_CASE("OBJ and MTL texts with bytes or words replaced at random are read or refused") {
-  constexpr std::array<std::string_view, 22> words{"f",
-                                                   "v",
-                                                   "usemtl",
-                                                   "newmtl",
-                                                   "map_Kd",
-                                                   "-1",
-                                                   "0",
-                                                   "4294967295",
-                                                   "1e999",
-                                                   "nan",
-                                                   "-inf",
-                                                   "//",
-                                                   "1/2/3/4",
-                                                   "-2147483648",
-                                                   "-o",
-                                                   "-mm",
-                                                   "\\\n",
-                                                   "\r",
-                                                   "#",
-                                                   "refl -type sphere",
-                                                   "mtllib fuzz.obj",
-                                                   "Ke 1e30 -1 nan"};
+  std::vector<std::string> words{"\\\n", "\r", "refl -type sphere", "mtllib fuzz.obj",
+                                 "Ke 1e30 -1 nan"};
+  std::istringstream shorter(
+      "f v usemtl newmtl map_Kd -1 0 4294967295 1e999 nan -inf // 1/2/3/4 -2147483648 -o -mm #");
+  for (std::string word; shorter >> word;) words.push_back(word);
   std::mt19937 random(13);
   DamagedFiles files;
   const auto damaged = [&](std::string text) {

@@ -116,6 +116,16 @@ TEST_CASE("cells of a textured light are chosen with the density that they state
     }
   }
   CHECK(all == Approx(1).epsilon(2e-3));
+  // Points of the slanted edge, with its corners, belong to the cell below them.
+  for (const std::uint32_t triangle : scene.lights[0].triangles) {
+    for (int i = 0; i <= 20; ++i) {
+      constexpr double e = 1e-4;
+      const double u = i / 20.0, v = (20 - i) / 20.0;
+      CAPTURE(triangle, u);
+      CHECK(cells.density({triangle, u, v}) ==
+            cells.density({triangle, std::max(u - e, e / 4), std::min(v + e / 4, 1 - e)}));
+    }
+  }
   for (int i = 0; i < trials; ++i) {
     const trace::RandomBlock numbers =
         trace::RandomStream(3, static_cast<std::uint64_t>(i), 0).block(trace::Purpose::emission, 0);

@@ -239,25 +239,9 @@ TEST_CASE("planes cut anywhere or with bytes replaced are read or refused") {
 }
 
 TEST_CASE("planes with values replaced are read or refused") {
-  const std::vector<json> wild = {-1,
-                                  0,
-                                  1,
-                                  7,
-                                  1e-12,
-                                  1e-300,
-                                  1e11,
-                                  1e300,
-                                  -1e9,
-                                  true,
-                                  nullptr,
-                                  "",
-                                  "x",
-                                  json::array(),
-                                  0.1,
-                                  1e-5,
-                                  json::object(),
-                                  json{0, 0, 0},
-                                  18'446'744'073'709'551'615ull};
+  const json wild =
+      json::parse(R"([-1, 0, 1, 7, 1e-12, 1e-300, 1e11, 1e300, -1e9, 0.1, 1e-5, true, null, "", "x",
+      [], {}, [0, 0, 0], 18446744073709551615])");
   std::mt19937 random(23);
   DamagedFiles files;
   const json whole = planes();

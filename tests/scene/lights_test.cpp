@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <set>
+#include <span>
 
 #include "common/content_hash.hpp"
 #include "photile/limits.hpp"
@@ -100,6 +101,28 @@ TEST_CASE("a numbered light name does not collide with a name of the file") {
   CHECK(lights[0].name == "lamp");
   CHECK(lights[1].name == "lamp_2");
   CHECK(lights[2].name == "lamp_3");
+}
+
+TEST_CASE("names are listed by the letters that differ, and twenty of them") {
+  CHECK(scene::names_like("lamp", {"window", "lamps on the wall", "Amp", "LAMP"}) ==
+        "are 'LAMP', 'Amp', 'window', 'lamps on the wall'");
+  const std::vector<std::string> many(21, "lamp");
+  CHECK(scene::listed_names(std::span(many).first(20)).ends_with("'lamp'"));
+  CHECK(scene::listed_names(many).ends_with("'lamp' and 1 more"));
+}
+
+TEST_CASE("a direction towards a texel of an environment is its own, however the map is turned") {
+  const double degrees = GENERATE(0.0, 50.0);
+  constexpr int columns = 6, rows = 4;
+  const EnvironmentMap map("sky", columns, rows, std::vector(columns * rows, glm::vec3(1)),
+                           degrees);
+  for (int texel = 0; texel < columns * rows; ++texel) {
+    for (const double inside : {0.01, 0.99}) {
+      const int row = texel / columns;
+      CHECK(map.texel_towards(map.direction_at(texel % columns + inside, row, inside)) ==
+            static_cast<std::size_t>(texel));
+    }
+  }
 }
 
 TEST_CASE("spot flux is the integral of its falloff over the sphere") {

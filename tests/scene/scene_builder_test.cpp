@@ -102,20 +102,47 @@ TEST_CASE("coordinates and normals follow the corners, and only those that mater
   }
   CHECK(scene.corner_normal.size() == 5);  // they bend a matt surface
   CHECK(scene.corner_tangent.empty());
+  CHECK(scene.corner_emission_uv.empty());
 }
 
-TEST_CASE("normals of the triangles stay for materials that ask for a frame alone") {
+TEST_CASE("a triangle is the same whichever corner comes first, and its winding is its front") {
+  std::vector<std::size_t> order{0, 1, 2};
+  const std::array<glm::vec3, 3> corners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+  do {
+    SceneBuilder builder;
+    const std::array given{corners[order[0]], corners[order[1]], corners[order[2]]};
+    builder.triangle(given[0], given[1], given[2], builder.add(diffuse(glm::vec3(0.5f))));
+    const Scene scene = builder.build();
+    CHECK(scene.corners(0) == std::array<glm::vec3, 3>{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}});
+    CHECK(sided_normal(scene, sided(0, scene.front_side[0])).z ==
+          glm::cross(given[1] - given[0], given[2] - given[0]).z);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST_CASE("normals of the triangles stay for materials that ask for a frame, bent ones for all") {
   SceneBuilder builder;
   const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<glm::vec3> up(3, glm::vec3(0, 0, 2));
+  std::vector<glm::vec3> normals(3, glm::vec3(0, 0, 2));
   const std::vector<glm::uvec3> triangle{{0, 1, 2}};
-  builder.add({.vertices = corners,
-               .triangles = triangle,
-               .normals = up,
-               .material = builder.add(diffuse(glm::vec3(0.5f)))});
+  const auto add_triangle = [&](SceneBuilder& to) {
+    to.add({.vertices = corners,
+            .triangles = triangle,
+            .normals = normals,
+            .material = to.add(diffuse(glm::vec3(0.5f)))});
+  };
+  add_triangle(builder);
   CHECK(builder.build().corner_normal.empty());
   builder.add(mirror(glm::vec3(0.9f)));
   CHECK(builder.build().corner_normal.size() == 1);
+  normals[0] = {1, 0, 1};
+  SceneBuilder bent;
+  add_triangle(bent);
+  CHECK(needs_of(bent.build()).smooth_shading);
+}
+
+TEST_CASE("a texture is opaque where no texel lets light through") {
+  CHECK(Texture("paper", 2, 1, {{1, 2, 3, 255}, {0, 0, 0, 255}}).opaque());
+  CHECK_FALSE(Texture("lace", 2, 1, {{1, 2, 3, 255}, {0, 0, 0, 254}}).opaque());
 }
 
 TEST_CASE("lights get the flux that the closed forms say") {
@@ -271,7 +298,9 @@ TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, a
   stages_refuse([](Scene& s) { s.triangle_light[5] = 0; }, "light 0, which is no area light");
   stages_refuse([](Scene& s) { s.materials[0].diffuse_texture = 0; }, "has texture 0 of 0");
   stages_refuse([](Scene& s) { s.materials[0].diffuse.g = nan; }, "reflectances lie in [0, 1]");
-  stages_refuse([](Scene& s) { s.lights[0].power = nan; }, "has the power nan");
+  for (const double power : {double{nan}, -1.0, 1e300}) {
+    stages_refuse([power](Scene& s) { s.lights[0].power = power; }, "has the power");
+  }
   stages_refuse([](Scene& s) { s.lights[0].distribution = 2; }, "has distribution 2 of 0");
   stages_refuse([](Scene& s) { s.lights[0].kind = LightKind::environment; }, "surroundings");
   stages_refuse([](Scene& s) { s.instances.emplace_back(); }, "instance of mesh 0");

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <map>
 #include <random>
 #include <set>
 #include <utility>
@@ -207,6 +209,20 @@ TEST_CASE("edges that run along each other are found as by looking at all pairs"
   }
 }
 
+TEST_CASE("of thousands of edges in one place each meets no more than it may") {
+  constexpr int count = 3'000;
+  const BoundaryEdges search(edges_on_lines(1, count, 0), 1e-3);
+  const BoundaryEdges bundle(std::vector<BoundaryEdge>(count, {{0, 0, 0}, {1, 2, 3}, 0}), 1e-3);
+  for (const BoundaryEdges* edges : {&search, &bundle}) {
+    int visits = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      edges->visit_along(i, [&](const BoundaryEdge&, const BoundaryEdge&) { ++visits; });
+    }
+    CHECK(visits > count);  // all pairs: 4,498,500
+    CHECK(visits <= 2 * count * BoundaryEdges::most_along);
+  }
+}
+
 // What belongs to one sheet of surface, and what light reaches with it.
 
 constexpr double sheet_radius = 0.1;
@@ -252,6 +268,59 @@ TEST_CASE("sheets of a curved surface follow it round, however its triangles are
     std::swap(scene.triangles[t].y, scene.triangles[t].z);
   }
   CHECK(sheets_of(scene).count == 2);
+}
+
+/// Triangles round one edge, at random or at even angles, half of them wound the other way.
+Scene fan(int count, bool random) {
+  std::mt19937 engine(3);
+  Scene scene = test::empty_scene();
+  for (int i = 0; i < count; ++i) {
+    const double share =
+        random ? std::uniform_real_distribution<double>(0, 1)(engine) : double(i) / count;
+    const double turn = 2 * glm::pi<double>() * share;
+    const glm::vec3 tip(std::cos(turn), std::sin(turn), 0.1);
+    const glm::vec3 low(0, 0, -1), high(0, 0, 1);
+    if (engine() % 2 == 0) {
+      test::add_triangle(scene, low, high, tip);
+    } else {
+      test::add_triangle(scene, high, low, tip);
+    }
+  }
+  return scene;
+}
+
+TEST_CASE("the blades of a fan are joined as by all pairs, of which few are looked at") {
+  for (const int count : {65, 80, 300}) {
+    for (const bool random : {false, true}) {
+      const Scene scene = fan(count, random);
+      const surface::SurfaceMesh mesh(scene);
+      for (const double angle : {0.5, 2.0, 5.0, 20.0, 60.0, 120.0}) {
+        CAPTURE(count, random, angle);
+        surface::DisjointSets pairs(2 * scene.triangle_count());
+        for (const surface::MeshEdge& a : mesh.edges) {
+          for (const surface::MeshEdge& b : mesh.edges) {
+            if (a.triangle == b.triangle || a.low != b.low || a.high != b.high) continue;
+            if (!(surface::fold_cosine(mesh, a, b) >= std::cos(glm::radians(angle)) - 1e-6)) {
+              continue;
+            }
+            for (const std::uint32_t side : {0u, 1u}) {
+              pairs.join(sided(a.triangle, side),
+                         sided(b.triangle, side ^ surface::flip_between(a, b)));
+            }
+          }
+        }
+        std::map<std::uint32_t, std::uint32_t> sheet_of;
+        const surface::Sheets sheets = sheets_of(scene, angle);
+        bool same = true;
+        for (std::uint32_t s = 0; s < sheets.of.size(); ++s) {
+          same &= sheet_of.try_emplace(pairs.find(s), sheets.of[s]).first->second == sheets.of[s];
+        }
+        CHECK(same);
+        CHECK(sheet_of.size() == sheets.count);
+      }
+      CHECK(surface::find_connections(mesh, sheet_radius, 60).size() <= 8 * scene.triangle_count());
+    }
+  }
 }
 
 TEST_CASE("coplanar pieces that touch make one sheet without a common corner") {

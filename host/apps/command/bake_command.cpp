@@ -15,6 +15,7 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "render/render_session.hpp"
@@ -36,7 +37,7 @@ void run_bake(BakeOptions& options) {
   note_inputs_of(render);
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   check_outputs(bake::files_of(options.output, scene, mix));
   std::vector<Device> devices = devices_for(render, progress);
@@ -66,7 +67,7 @@ void add_bake_command(CLI::App& photile) {
   command->add_option("-o,--output", options->output, "scene to write, with files beside it")
       ->required()
       ->type_name("FILE.gltf")
-      ->check(file_ending_in({".gltf"}))
+      ->check(file_ending_in({".gltf", ".glb"}))
       ->group("Output");
   command
       ->add_option("--texel", options->baking.texel,

@@ -19,6 +19,7 @@
 #include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "loading/load_scene.hpp"
 #include "measuring/measurement.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
@@ -108,12 +109,12 @@ void check_lights(const DaylightOptions& options) {
 }
 
 /// The sky's lights are needed to find the windows, and for no more.
-Scene scene_under_sky(const std::string& file, SceneLoadOptions load) {
+Scene scene_under_sky(const std::string& file, SceneLoadOptions load, const Progress& progress) {
   load.sky = Sky{SkyKind::patches, 0, 0, 0, weather::patch_counts[0]};
   load.situation.weather.clear();
   load.situation.site.reset();
   load.portals = {"off"};  // those of the grids are looked for
-  return load_scene(file, load);
+  return loading::load_scene(file, load, progress);
 }
 
 void take_windows(const DaylightOptions& options, std::span<const measuring::SensorGrid> grids,
@@ -131,7 +132,7 @@ void warn_of_darkness(const std::vector<SkyState>& states, Progress& progress) {
 std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year, Scene& scene,
                                 std::span<const measuring::SensorGrid> grids, Progress& progress) {
   if (options.blinds_are_scene()) {
-    Scene closed = scene_under_sky(options.blinds.front(), options.render.load);
+    Scene closed = scene_under_sky(options.blinds.front(), options.render.load, progress);
     take_windows(options, grids, closed);
     std::vector<SkyState> states{sky_state(year, scene, "open", 0, progress)};
     states.push_back(sky_state(year, closed, "closed", 1, progress));
@@ -168,7 +169,7 @@ void run_daylight(DaylightOptions& options) {
   year.hours = sky_hours(weather, year.patches, options.ground);
   options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
 
-  Scene scene = scene_under_sky(render.scene, render.load);
+  Scene scene = scene_under_sky(render.scene, render.load, progress);
   const auto grids = grids_of(options, scene, weather.hours.size(), progress);
   if (!options.honeybee.empty()) {
     const std::filesystem::path folder = options.honeybee;

@@ -18,6 +18,7 @@
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "glare/measure_glare.hpp"
+#include "loading/load_scene.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
@@ -170,7 +171,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   tell_scene(scene, mix, progress);
   const std::vector<glare::Observer> observers = observers_of(options, scene, progress);

@@ -19,6 +19,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "loading/load_scene.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
@@ -144,7 +145,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
-  Scene scene = load_scene(render.scene, render.load);
+  Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   tell_scene(scene, mix, progress);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);

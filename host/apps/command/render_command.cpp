@@ -24,6 +24,7 @@
 #include "device/context.hpp"
 #include "image/display.hpp"
 #include "image/glare.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
@@ -228,8 +229,9 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   record.stages.push_back(stage("open devices", {device_watch.taken()}));
 
   Scene scene;
-  record.stages.push_back(timed_stage("load scene", progress,
-                                      [&] { scene = load_scene(options.scene, options.load); }));
+  record.stages.push_back(timed_stage("load scene", progress, [&] {
+    scene = loading::load_scene(options.scene, options.load, progress);
+  }));
   record.mix = mix_of(scene, options);
   tell_scene(scene, record.mix, progress);
   const Camera camera = projected(camera_of(scene, options), options);

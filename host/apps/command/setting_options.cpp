@@ -357,17 +357,25 @@ nlohmann::json settings_json(const RenderParameters& parameters, bool all) {
   return result;
 }
 
-std::string options_text(const RenderParameters& parameters) {
+std::string options_text(const RenderParameters& parameters,
+                         std::initializer_list<std::string_view> without) {
   constexpr std::array always{"photons_emitted", "neighbours", "samples_per_pixel"};
+  const auto is_out = [&](std::string_view name) {
+    return std::find(without.begin(), without.end(), name) != without.end();
+  };
   std::string text;
   for (const char* name : always) {
+    if (is_out(name)) continue;
     const Setting& setting = setting_named(name);
     text += fmt::format("{}{} {}", text.empty() ? "" : " ", option_names(setting).front(),
                         text_of(setting.value(parameters)));
   }
   const RenderParameters usual;
   for (const Setting& setting : settings()) {
-    if (has_option(setting) || setting.value(parameters) == setting.value(usual)) continue;
+    if (has_option(setting) || is_out(setting.name) ||
+        setting.value(parameters) == setting.value(usual)) {
+      continue;
+    }
     text += fmt::format(" --set {}={}", setting.name, text_of(setting.value(parameters)));
   }
   return text;

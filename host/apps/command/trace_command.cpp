@@ -19,6 +19,7 @@
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/limits.hpp"
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
@@ -43,7 +44,7 @@ void run_trace(TraceOptions& options) {
   check_outputs(std::vector<std::filesystem::path>{options.output});
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   tell_scene(scene, LightMix::of(scene, render.load.lumen_per_watt), progress);
 
   const RayScene rays(scene);

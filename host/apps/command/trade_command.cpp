@@ -19,6 +19,7 @@
 #include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -167,7 +168,7 @@ void run_trade(TradeOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   std::vector<Device> devices = open_devices(render.device);
-  const Scene scene = load_scene(render.scene, render.load);
+  const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   const Camera camera = camera_of(scene, render);
   Film& film = render.parameters.film;

@@ -61,7 +61,8 @@ void run_view(ViewOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const SkySituation situation = view::take_moving_sky(render.load);
-  const loading::SourcedScene sourced = loading::load_sourced_scene(render.scene, render.load);
+  const loading::SourcedScene sourced =
+      loading::load_sourced_scene(render.scene, render.load, progress);
   const Scene& scene = sourced.scene;
   render.mood.edited = true;
   const LightMix mix = mix_of(scene, render);

@@ -315,6 +315,7 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const std::uint32_t light = context_.area_lights.find_or_add(
       visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission, traits);
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
+    context_.look_up();
     const std::array<scene::Corner, 3> triangle{vertices[mirrored ? c : a], vertices[b],
                                                 vertices[mirrored ? a : c]};
     kept_.push_back(builder_.add(triangle, surface.material, light));

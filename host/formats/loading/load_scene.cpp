@@ -133,8 +133,8 @@ reading::LightSource source_of(const reading::AreaLights::Origin& origin,
 
 namespace loading {
 
-SourcedScene load_sourced_scene(const std::filesystem::path& file,
-                                const SceneLoadOptions& options) {
+SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options,
+                                const Progress& progress) {
   check_options(options);
   Scene scene;
   scene.source = file;
@@ -143,7 +143,8 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   files::Warnings warnings;
   reading::AreaLights area_lights(scene);
   std::vector<loading::PlacedLuminaires> placed;
-  reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
+  reading::ImportContext context{scene, folder, options, warnings, area_lights,
+                                 {},    {},     {},      progress};
   try {
     import_by_extension(context);
     report_dropped_triangles(scene.report, warnings);
@@ -188,10 +189,15 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file,
   return {std::move(scene), std::move(context.light_sources), std::move(placed)};
 }
 
+Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options,
+                 const Progress& progress) {
+  return load_sourced_scene(file, options, progress).scene;
+}
+
 }  // namespace loading
 
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options) {
-  return loading::load_sourced_scene(file, options).scene;
+  return loading::load_scene(file, options, Progress::none());
 }
 
 }  // namespace photile

@@ -10,6 +10,7 @@
 #include "common/value_range.hpp"
 #include "files/scene_files.hpp"
 #include "loading/luminaires.hpp"
+#include "photile/progress.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
 
@@ -24,8 +25,15 @@ struct SourcedScene {
   std::vector<PlacedLuminaires> luminaires;  ///< of each entry of the list of luminaires
 };
 
-/// load_scene, which keeps no sources. Errors: the same.
-SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options);
+/// photile::load_scene, which keeps no sources and goes on whatever the user asks.
+///   progress   is asked whether to go on
+/// Errors: the same; Interrupted.
+SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options,
+                                const Progress& progress = Progress::none());
+
+/// The scene alone.
+Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options,
+                 const Progress& progress);
 
 // Which way is up in a scene file: OBJ files do not say it, and some glTF files have it wrong.
 

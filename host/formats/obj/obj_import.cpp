@@ -314,7 +314,8 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
     context.scene.report.non_finite_triangles += corners.size() - 2;
     return;
   }
-  const reading::Triangulation triangulation = reading::triangulate_polygon(positions);
+  const reading::Triangulation triangulation =
+      reading::triangulate_polygon(positions, context.progress);
   if (!triangulation.simple) {
     context.warnings.add("object", file.objects[face.object],
                          "a polygon crosses itself; its triangulation may overlap or leave gaps");
@@ -363,7 +364,7 @@ void import_obj(reading::ImportContext& context) {
   std::string text(bytes.begin(), bytes.end());
   ObjTextFindings findings;
   try {
-    findings = examine_obj_text(text);
+    findings = examine_obj_text(text, context);
   } catch (const files::ResourceError& error) {
     throw context.error(error.what());
   }
@@ -384,6 +385,7 @@ void import_obj(reading::ImportContext& context) {
                              {needs.textures, reading::has_emission_texture(context), true});
   reading::PlainMaterials plain_materials(context.scene);
   for (const ObjFace& face : file.faces) {
+    context.look_up();
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
     add_face(file, face, material_index[name], builder, plain_materials, context);
   }

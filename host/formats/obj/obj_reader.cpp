@@ -34,7 +34,13 @@ class Collector {
     file_.objects.emplace_back();
   }
 
+  void add_position(const glm::dvec3& position) {
+    context_.look_up();
+    file_.positions.push_back(position);
+  }
+
   void add_face(const tinyobj::index_t* indices, int count) {
+    context_.look_up();
     if (count < 3) {
       context_.warnings.add("object", object_name(), "faces with fewer than 3 corners are ignored");
       return;
@@ -94,7 +100,7 @@ tinyobj::callback_t callbacks() {
   tinyobj::callback_t result;
   using tinyobj::real_t;
   result.vertex_cb = [](void* p, real_t x, real_t y, real_t z, real_t) {
-    static_cast<CallbackData*>(p)->file.positions.emplace_back(x, y, z);
+    static_cast<CallbackData*>(p)->collector.add_position({x, y, z});
   };
   result.normal_cb = [](void* p, real_t x, real_t y, real_t z) {
     static_cast<CallbackData*>(p)->file.normals.emplace_back(x, y, z);
@@ -202,7 +208,7 @@ void examine_vertex(std::string_view rest, std::uint64_t vertex, ObjTextFindings
 
 }  // namespace
 
-ObjTextFindings examine_obj_text(std::string& text) {
+ObjTextFindings examine_obj_text(std::string& text, reading::ImportContext& context) {
   if (text.find('\0') != std::string::npos) {
     throw files::ResourceError("NUL bytes: this is no plain text (UTF-16?); save it as UTF-8");
   }
@@ -213,6 +219,7 @@ ObjTextFindings examine_obj_text(std::string& text) {
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) std::fill(text.begin(), text.begin() + 3, ' ');
   while (!rest.empty()) {
+    context.look_up();
     std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     const std::string_view keyword = take_word(line);

@@ -48,8 +48,8 @@ struct ObjTextFindings {
 
 /// Looks through OBJ text. Lines that end in a backslash are joined with the next in place, which
 /// the OBJ format asks for and tinyobjloader does not do. Errors: ResourceError when the bytes are
-/// no text.
-ObjTextFindings examine_obj_text(std::string& text);
+/// no text; Interrupted.
+ObjTextFindings examine_obj_text(std::string& text, reading::ImportContext& context);
 
 /// The materials of the libraries that mtllib statements name, from the scene's folder, in their
 /// order. A statement may name several files. Names with blanks are written with backslashes before

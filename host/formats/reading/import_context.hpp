@@ -9,6 +9,7 @@
 
 #include "files/scene_files.hpp"
 #include "photile/errors.hpp"
+#include "photile/progress.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
 
@@ -23,11 +24,20 @@ struct ImportContext {
   std::vector<Emission> emission;                 ///< per material of `scene`
   std::vector<std::uint32_t> visited_nodes = {};  ///< of a glTF file, in the order of visits
   std::vector<LightSource> light_sources = {};    ///< of the lights of `scene` so far
+  const Progress& progress = Progress::none();    ///< that may ask to stop
 
   /// An error about the scene file; `message` says what was found and the remedy.
   InputError error(const std::string& message) const {
     return InputError(folder.scene_file().string() + ": " + message);
   }
+
+  /// To be called for each line, triangle and the like: looks now and then whether the user asked
+  /// to stop. Errors: Interrupted.
+  void look_up() {
+    constexpr std::uint32_t calls_between_looks = 1024;
+    if (++calls_ % calls_between_looks == 0) progress.throw_if_cancelled();
+  }
+  std::uint32_t calls_ = 0;  ///< of look_up
 };
 
 /// Whether some material's emission has a texture.

@@ -191,7 +191,7 @@ class Ring {
 
 }  // namespace
 
-Triangulation triangulate_polygon(std::span<const glm::dvec3> corners) {
+Triangulation triangulate_polygon(std::span<const glm::dvec3> corners, const Progress& progress) {
   Triangulation result;
   bool reversed = false;
   const std::vector<std::uint32_t> order = canonical_order(corners, reversed);
@@ -223,7 +223,10 @@ Triangulation triangulate_polygon(std::span<const glm::dvec3> corners) {
     --left;
   };
   ask_all(current);
-  while (left > 3) {
+  // Where a polygon crosses itself, to ask for one ear may mean to look at all corners.
+  constexpr std::size_t rounds_between_looks = 256;
+  for (std::size_t round = 1; left > 3; ++round) {
+    if (round % rounds_between_looks == 0) progress.throw_if_cancelled();
     if (!unknown.empty()) {
       const auto found = unknown.lower_bound(current);
       current = found == unknown.end() ? *unknown.begin() : *found;

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "photile/progress.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::reading {
@@ -24,8 +25,10 @@ struct Triangulation {
 
 /// Triangulates a polygon of at least 3 corners that may be concave and slightly bent. Works in
 /// the plane of the polygon's mean normal (Newell's), in double precision. The triangles and their
-/// order do not depend on the polygon's winding nor on the corner it starts from.
-Triangulation triangulate_polygon(std::span<const glm::dvec3> corners);
+/// order do not depend on the polygon's winding nor on the corner it starts from. Errors:
+/// Interrupted.
+Triangulation triangulate_polygon(std::span<const glm::dvec3> corners,
+                                  const Progress& progress = Progress::none());
 
 /// Finds the origin of a scene (Scene::origin) from its triangles, before they are rounded to
 /// float.

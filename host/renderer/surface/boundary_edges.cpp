@@ -19,9 +19,12 @@ bool run_along(const BoundaryEdge& a, const BoundaryEdge& b, double tolerance) {
 }
 
 BoundaryEdges::BoundaryEdges(std::vector<BoundaryEdge> edges, double tolerance)
-    : edges_(std::move(edges)), tolerance_(tolerance) {
+    : edges_(std::move(edges)),
+      tolerance_(tolerance),
+      bundle_of_(cell_at(3, 0, 0), std::uint32_t{none}) {
   set_headings();
-  tree_ = geometry::BoxTree(cut());
+  cut();
+  for (Bundle& bundle : bundles_) bundle.tree = geometry::BoxTree(bundle.boxes);
 }
 
 void BoundaryEdges::set_headings() {
@@ -37,9 +40,28 @@ void BoundaryEdges::set_headings() {
   }
 }
 
+BoundaryEdges::Bundle& BoundaryEdges::bundle_with(const Heading& heading) {
+  const glm::vec3 size = glm::abs(heading.direction);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const float along = heading.direction[axis];
+  std::uint32_t& bundle =
+      bundle_of_[cell_at(axis, cell_along(heading.direction[(axis + 1) % 3] / along),
+                         cell_along(heading.direction[(axis + 2) % 3] / along))];
+  if (bundle == none) {
+    bundle = static_cast<std::uint32_t>(bundles_.size());
+    bundles_.emplace_back();
+  }
+  return bundles_[bundle];
+}
+
 /// A long edge across all axes has a box that is nearly empty, and its pieces have not: at most
 /// about eight of each edge.
-std::vector<geometry::Box> BoundaryEdges::cut() {
+void BoundaryEdges::cut() {
+  bundles_.emplace_back();
+  bool any_short = false;
+  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    any_short = any_short || (!is_too_short(i) && !is_long(headings_[i]));
+  }
   geometry::Box bounds;
   for (const BoundaryEdge& edge : edges_) {
     bounds.extend(glm::vec3(edge.from));
@@ -49,24 +71,27 @@ std::vector<geometry::Box> BoundaryEdges::cut() {
   const double across = glm::length(glm::dvec3(bounds.size()));
   const double per_length = std::min(8.0, 0.25 * std::cbrt(static_cast<double>(edges_.size())));
   const double longest = std::max(across / per_length, 16 * tolerance_);
-  std::vector<geometry::Box> boxes;
   float largest = 0.0f;  // coordinate: pieces end at rounded positions
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    if (is_too_short(i)) continue;
     const BoundaryEdge& edge = edges_[i];
     const double length = glm::distance(edge.from, edge.to);
     const int count = longest > 0 ? 1 + static_cast<int>(length / longest) : 1;
+    Bundle& bundle = bundle_with(headings_[i]);
     for (int piece = 0; piece < count; ++piece) {
-      geometry::Box& box = boxes.emplace_back();
+      geometry::Box& box = bundle.boxes.emplace_back();
       for (const int end : {piece, piece + 1})
         box.extend(glm::vec3(glm::mix(edge.from, edge.to, static_cast<double>(end) / count)));
       for (int axis = 0; axis < 3; ++axis)
         largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-      edge_of_.push_back(i);
+      bundle.edge_of.push_back(i);
+      if (!any_short) continue;
+      bundles_.front().boxes.push_back(box);
+      bundles_.front().edge_of.push_back(i);
     }
   }
   // Once for the distance from the line, twice for a longer edge that is shorter along the line.
   reach_ = static_cast<float>(3 * tolerance_) + 0x1p-22f * largest;
-  return boxes;
 }
 
 bool BoundaryEdges::is_beside(const glm::dvec3& point, std::uint32_t edge) const {

@@ -22,6 +22,9 @@ constexpr double largest_height = 1e-3;  ///< over the radius
 /// other or where it is not clear which.
 using Beyond = std::array<std::uint32_t, 3>;
 
+/// With more triangles at an edge it is not clear which of them continues another.
+constexpr std::size_t most_triangles_of_edge = 64;
+
 /// The one edge that continues the plane of `edge`, if there is just one, seen from either side.
 const MeshEdge* continuation(const SurfaceMesh& mesh, std::span<const MeshEdge> edges,
                              const MeshEdge& edge) {
@@ -45,6 +48,7 @@ std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const st
   std::vector<Beyond> beyond(mesh.corner.size(), Beyond{none, none, none});
   tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
     mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
+      if (edges.size() > most_triangles_of_edge) return;
       for (const MeshEdge& edge : edges) {
         const MeshEdge* next = continuation(mesh, edges, edge);
         if (next == nullptr || continuation(mesh, edges, *next) != &edge) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "photile/neighbour_groups.hpp"
 #include "surface/boundary_edges.hpp"
@@ -37,6 +38,53 @@ void join_along_edges(const SurfaceMesh& mesh, const BoundaryEdges& edges, doubl
   append_all(found, connections);
 }
 
+/// Edges that more triangles share are those of fans: not all pairs are looked at.
+constexpr std::size_t most_triangles_in_pairs = 64;
+
+/// Of the triangles round an edge, those that may continue each other with the least folds, each
+/// with some on either side: where all that do are joined, so are all that these join.
+template <class Visit>
+void for_each_likely_pair(const SurfaceMesh& mesh, std::span<const MeshEdge> edges,
+                          const Visit& visit) {
+  constexpr std::size_t on_either_side = 4;
+  const MeshEdge& first = edges.front();
+  const auto corners = mesh.scene.corners(first.triangle);
+  const glm::dvec3 axis =
+      glm::normalize(glm::dvec3(corners[(first.index + 1) % 3]) - glm::dvec3(corners[first.index]));
+  const glm::dvec3 across =
+      glm::cross(axis, std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
+  const glm::dvec3 along = glm::cross(axis, across);
+  struct Turned {
+    double turn;  ///< radians round the edge, of the normal that looks to one side of it
+    const MeshEdge* edge;
+  };
+  for (const bool stores : {false, true}) {  // others do not continue each other
+    std::vector<Turned> all;
+    for (const MeshEdge& edge : edges) {
+      if (mesh.stores(edge.triangle) != stores) continue;
+      const glm::dvec3& normal = mesh.normal[edge.triangle];
+      const double turn = std::atan2(glm::dot(normal, along), glm::dot(normal, across));
+      const double towards = edge.forward ? turn : turn + glm::pi<double>();
+      all.push_back(
+          {std::isfinite(turn) ? std::remainder(towards, glm::two_pi<double>()) : 0.0, &edge});
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Turned& a, const Turned& b) { return a.turn < b.turn; });
+    for (const Turned& own : all) {
+      const double opposite = std::remainder(own.turn + glm::pi<double>(), glm::two_pi<double>());
+      const auto above =
+          std::lower_bound(all.begin(), all.end(), opposite,
+                           [](const Turned& a, double turn) { return a.turn < turn; });
+      const std::size_t place =
+          static_cast<std::size_t>(above - all.begin()) + on_either_side * all.size();
+      for (std::size_t i = place - on_either_side; i < place + on_either_side; ++i) {
+        const MeshEdge* const other = all[i % all.size()].edge;
+        if (other != own.edge) visit(*own.edge, *other);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
@@ -51,12 +99,16 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
         const auto corners = mesh.scene.corners(edge.triangle);
         alone[share].push_back({corners[edge.index], corners[(edge.index + 1) % 3], edge.triangle});
       }
+      const auto connect = [&](const MeshEdge& a, const MeshEdge& b) {
+        if (!(fold_cosine(mesh, a, b) >= cos_angle - cosine_slack)) return;
+        connected[share].push_back({a.triangle, b.triangle, flip_between(a, b)});
+      };
+      if (edges.size() > most_triangles_in_pairs) {
+        for_each_likely_pair(mesh, edges, connect);
+        return;
+      }
       for (std::size_t i = 0; i < edges.size(); ++i) {
-        for (std::size_t j = i + 1; j < edges.size(); ++j) {
-          if (!(fold_cosine(mesh, edges[i], edges[j]) >= cos_angle - cosine_slack)) continue;
-          connected[share].push_back(
-              {edges[i].triangle, edges[j].triangle, flip_between(edges[i], edges[j])});
-        }
+        for (std::size_t j = i + 1; j < edges.size(); ++j) connect(edges[i], edges[j]);
       }
     });
   });

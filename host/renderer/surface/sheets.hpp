@@ -52,7 +52,8 @@ void for_each_pair_of_sides(std::span<const Connection> connections, const Visit
 }
 
 /// Triangles connect where they share both corners of an edge, or where their edges run along each
-/// other, however unlike their ends (as tiles do); each pair once or more.
+/// other, however unlike their ends (as tiles do); each pair once or more. Of the many that share
+/// an edge in a fan not all pairs are listed, but so many that the same triangles are joined.
 ///   radius   metres: edges at most a thousandth of it apart run along each other
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees);
