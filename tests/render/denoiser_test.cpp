@@ -74,6 +74,16 @@ TEST_CASE("guides keep surfaces apart") {
   CHECK(denoised.layers[0].radiance[0].x == 0);
 }
 
+TEST_CASE("guides are denoised before they lead") {
+  DenoisingGuides guides = same_surface();
+  for (std::size_t i = 0; i < guides.albedo.size(); ++i) {
+    guides.albedo[i] += 0.01f * static_cast<float>(i);
+    guides.normal[i].x += 0.01f * static_cast<float>(i);
+  }
+  const LightLayers denoised = means().denoised(spot(9), guides, nullptr);
+  CHECK(denoised.layers[0].radiance[4].x == Approx(1));
+}
+
 TEST_CASE("values move by no more than their known errors allow") {
   LightLayers errors(side, side, std::vector<std::string>{"lamp"});
   errors.layers[0].radiance[0] = glm::vec3(0.1f);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/module.hpp"
@@ -163,26 +165,44 @@ LightLayers Denoiser::denoised(const LightLayers& layers, const DenoisingGuides&
   const LightLayers known = errors ? errors->dense() : LightLayers();
   const auto width = static_cast<std::size_t>(layers.width);
   const auto height = static_cast<std::size_t>(layers.height);
-  std::vector<glm::vec3> output(width * height);
-  const std::unique_ptr<OidnFilter, void (*)(OidnFilter*)> filter(
-      library_->new_filter(library_->device.get(), "RT"), library_->release_filter);
-  const auto image = [&](const char* name, const std::vector<glm::vec3>& pixels) {
-    // The library only reads what is no output; its interface does not say so.
-    library_->set_image(filter.get(), name, const_cast<glm::vec3*>(pixels.data()), format_float3,
-                        width, height, 0, 0, 0);
+  using Pixels = std::vector<glm::vec3>;
+  Pixels output(width * height);
+  /// The filter of these pictures, whose names are the library's.
+  const auto filter_of = [&](std::initializer_list<std::pair<const char*, const Pixels*>> images) {
+    std::unique_ptr<OidnFilter, void (*)(OidnFilter*)> filter(
+        library_->new_filter(library_->device.get(), "RT"), library_->release_filter);
+    for (const auto& [name, pixels] : images) {
+      // The library only reads what is no output; its interface does not say so.
+      library_->set_image(filter.get(), name, const_cast<glm::vec3*>(pixels->data()), format_float3,
+                          width, height, 0, 0, 0);
+    }
+    return filter;
   };
-  image("albedo", guides.albedo);
-  image("normal", guides.normal);
-  image("output", output);
-  library_->set_bool(filter.get(), "hdr", true);
-  for (std::size_t light = 0; light < result.layers.size(); ++light) {
-    std::vector<glm::vec3>& radiance = result.layers[light].radiance;
-    image("color", radiance);
-    library_->commit_filter(filter.get());
-    library_->execute_filter(filter.get());
-    library_->check("the picture was not denoised");
-    if (errors) stay_within(radiance, known.layers[light].radiance, output);
-    std::copy(output.begin(), output.end(), radiance.begin());
+  const auto execute = [&](OidnFilter* filter, const char* failure) {
+    library_->commit_filter(filter);
+    library_->execute_filter(filter);
+    library_->check(failure);
+  };
+  // Guides of few samples are noisy where a pixel sees several surfaces. The library's authors
+  // advise to denoise them first, and to say so: details that they tell are then kept.
+  Pixels albedo(width * height), normal(width * height);
+  execute(filter_of({{"albedo", &guides.albedo}, {"output", &albedo}}).get(),
+          "the albedo was not denoised");
+  execute(filter_of({{"normal", &guides.normal}, {"output", &normal}}).get(),
+          "the normals were not denoised");
+  for (LightLayers::Layer& layer : result.layers) {
+    const auto filter = filter_of({{"color", &layer.radiance},
+                                   {"albedo", &albedo},
+                                   {"normal", &normal},
+                                   {"output", &output}});
+    library_->set_bool(filter.get(), "hdr", true);
+    library_->set_bool(filter.get(), "cleanAux", true);
+    execute(filter.get(), "the picture was not denoised");
+    if (errors) {
+      const auto light = static_cast<std::size_t>(&layer - result.layers.data());
+      stay_within(layer.radiance, known.layers[light].radiance, output);
+    }
+    layer.radiance = output;
   }
   return result;
 }
