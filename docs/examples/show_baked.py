@@ -94,11 +94,19 @@ def part_sides(mesh):
     mesh.update()
 
 
+def document_of(baked):
+    """The JSON of a .gltf or a .glb."""
+    content = baked.read_bytes()
+    if content[:4] == b"glTF":  # the first chunk, by its length
+        content = content[20:20 + int.from_bytes(content[12:16], "little")]
+    return json.loads(content)
+
+
 def show(baked):
     """Replaces what is open by the baked room."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=str(baked))
-    document = json.loads(baked.read_text(encoding="utf-8"))
+    document = document_of(baked)
     images = []
     for layer in document["scenes"][0]["extras"]["photile"]["light_maps"]:
         image = bpy.data.images.load(str(baked.parent / layer["uri"]))

@@ -119,6 +119,56 @@ TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it"
   CHECK(beside > 20);
 }
 
+TEST_CASE("Lookups beside a plate a little above the floor take nothing of the slit below it") {
+  const auto below = [](const glm::vec3& p) {
+    return p.x > 0.313f && p.x < 0.687f && p.y > 0.313f && p.y < 0.687f && p.z == 0;
+  };
+  // As gathered light: a little comes into the slit, and nodes know how near the plate is.
+  class PlateSource : public NodeSource {
+   public:
+    explicit PlateSource(decltype(below) below) : below_(below) {}
+    NodeValues value(const NodeBatch& batch, const Progress&) override {
+      NodeValues values;
+      for (const glm::vec3& p : batch.points.position) {
+        values.irradiance.irradiance.emplace_back(below_(p) ? 0.5f : 10.0f);
+        values.error.push_back(0.0f);
+        values.distance.push_back(below_(p) ? 0.003f : 1.0f);
+      }
+      return values;
+    }
+
+   private:
+    decltype(below) below_;
+  };
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
+  builder.box({0.313f, 0.313f, 0.002f}, {0.687f, 0.687f, 0.03f}, white, true);
+  const Scene scene = with_one_lamp(std::move(builder).build());
+  PlateSource source(below);
+  LightMaps maps(scene, quiet_parameters());
+  const BakedRoom room(scene, maps, source, baking(0.03));
+  const PrimaryHits points = points_on(scene, 60);
+  std::size_t beside = 0, deep = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t side = points.sided_triangle[i];
+    const glm::vec3& p = points.position[i];
+    if (triangle_of(side) > 1 || sided_normal(scene, side).z < 0) continue;
+    const float away =
+        std::max(std::max(0.313f - p.x, p.x - 0.687f), std::max(0.313f - p.y, p.y - 0.687f));
+    CAPTURE(p.x, p.y);
+    if (away < -0.07f) {  // below the plate it stays dark
+      CHECK(room.read(scene, p, side) == Approx(0.5).epsilon(1e-5));
+      ++deep;
+    }
+    if (away < 1e-4f) continue;
+    if (away < 0.03f) ++beside;
+    CHECK(room.read(scene, p, side) == Approx(10).epsilon(1e-5));
+  }
+  CHECK(beside > 20);
+  CHECK(deep > 20);
+}
+
 TEST_CASE("The brighter side of a triangle is baked, and the other where any light falls") {
   const Scene scene = with_one_lamp(furnished_room(2));
   const auto sides_under = [&](const FormulaSource::Formula& light) {
@@ -157,6 +207,25 @@ TEST_CASE("Sides that neither light nor an eye comes to are not open") {
   // The faces of a box have edges in common: where one is seen all are, also the one below.
   CHECK(open_of_box({0.5f, 0.5f, 2.0f}) == std::array{12, 0});
   CHECK(open_of_box({0.5f, 0.5f, 0.2f}) == std::array{0, 12});
+}
+
+TEST_CASE("A side that nothing comes to is open where it goes on from one that something does") {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, white);
+  // A prism with a lid hides all of the second triangle and a strip of the first.
+  const glm::vec3 a(-0.1f, -0.2f, 0), b(1.2f, 1.1f, 0), c(-0.1f, 1.1f, 0), up(0, 0, 0.3f);
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    builder.grid(from, to - from, up, 1, white);
+  }
+  builder.triangle(a + up, b + up, c + up, white);
+  builder.add(point_light("lamp", {0.9f, 0.1f, 0.5f}));
+  Scene scene = std::move(builder).build();
+  scene.cameras.clear();
+  const std::vector<std::uint8_t> open = bake::open_sides(RayScene(scene));
+  for (std::uint32_t side = 0; side < 4; ++side) {
+    CHECK(open[side] == (sided_normal(scene, side).z > 0 ? 1 : 0));
+  }
 }
 
 TEST_CASE(

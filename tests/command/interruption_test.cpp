@@ -28,21 +28,27 @@ using Catch::Contains;
 
 // SIGINT and SIGTERM stop a render: exit code 130, earlier files kept, nothing half written.
 
-TEST_CASE("a signal during a render gives 130 and keeps the earlier files") {
+TEST_CASE("a signal during a render, or the making of a page, gives 130 and keeps earlier files") {
   const FileFolder folder;
   Run run;
-  run.arguments = {"render",  write_box(folder),   "-o",        folder / "out.exr",
-                   "--stats", folder / "out.json", "--photons", "2G"};
+  const auto [command, name, more] = GENERATE(table<std::string, std::string, std::string>(
+      {{"render", "out.exr", "--photons 2G"},
+       {"publish", "out.html", "--photons 4M"},
+       {"publish", "out.html", "--photons 16M --for 60min"}}));
+  run.arguments = typed(command, write_box(folder), "-o", folder / name, more.c_str());
+  if (command == "render") {
+    run.arguments.insert(run.arguments.end(), {"--stats", folder / "out.json"});
+  }
   run.terminal = true;
   run.signal_when = "%  ";  // only a bar under way prints one
   run.signal = GENERATE(SIGINT, SIGTERM);
-  folder.write("out.exr", "earlier");
+  folder.write(name, "earlier");
   const Outcome outcome = run_photile(run);
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 130);
   CHECK_THAT(outcome.errors, Contains("interrupted"));
-  CHECK(folder.read("out.exr") == "earlier");
-  CHECK(folder.file_count() == 3);  // the scene's two files and the earlier picture
+  CHECK(folder.read(name) == "earlier");
+  CHECK(folder.file_count() == 3);  // the scene's two files and the earlier output
 }
 
 /// Runs a line of shell text in which $photile is the command.
@@ -267,6 +273,8 @@ TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name a
       {"64k", "walk SCENE DRAFT --camera-path PATH --size 200x150 -o DISK/frame.#.exr",
        "frame.1.exr"},
       {"64k", "bake SCENE -q --photons 5k --texel 0.02 -o DISK/room.gltf", "room.light00.exr"},
+      {"64k", "publish SCENE DRAFT --texel 0.2 -o DISK/room.html", "room.html"},
+      {"16k", "publish SCENE DRAFT --texel 0.02 -o DISK/room.glb", "room.light00.exr"},
       {"4k", "compare LARGE LARGE -o DISK/c.png", "c.png"},
   }));
   CAPTURE(command);

@@ -194,10 +194,110 @@ TEST_CASE("a baked scene has a second set of coordinates and a picture for each 
         document["buffers"][0]["byteLength"].get<std::size_t>());
 }
 
+/// A little-endian number of four bytes.
+std::size_t word_at(const std::string& bytes, std::size_t place) {
+  std::size_t number = 0;
+  for (std::size_t i = 4; i-- > 0;) {
+    number = number << 8 | static_cast<unsigned char>(bytes[place + i]);
+  }
+  return number;
+}
+
+TEST_CASE("a baked scene in one file holds what the files of the other form hold") {
+  const FileFolder folder;
+  Image picture;
+  picture.width = 5;
+  picture.height = 3;
+  for (const char* channel : {"R", "G", "B"}) {
+    std::vector<float>& plane = picture.add(channel);
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = static_cast<float>(i % 4) / 4;
+  }
+  write_png(folder / "tiles.png", picture);
+  folder.write("box.mtl", box_mtl() + "newmtl tiles\nKd 0.5 0.5 0.5\nmap_Kd tiles.png\n");
+  const std::string scene =
+      folder.write("box.obj", box_obj() +
+                                  "vt 0 0\nvt 1 0\nvt 0 1\nv -0.5 0 0\nv 0.5 0 0\nv 0 0 "
+                                  "0.5\nusemtl tiles\nf 17/1 18/2 19/3\n");
+  const auto bake_to = [&](const std::string& name) {
+    succeed(typed("bake", scene, "-o", folder / name, "--photons 50k -q"));
+  };
+  bake_to("files.gltf");
+  bake_to("one.glb");
+  nlohmann::json files = nlohmann::json::parse(folder.read("files.gltf"));
+  const std::string glb = folder.read("one.glb"), bin = folder.read("files.bin");
+  REQUIRE(glb.substr(0, 4) == "glTF");
+  CHECK(word_at(glb, 4) == 2);
+  CHECK(word_at(glb, 8) == glb.size());
+  const std::size_t text_bytes = word_at(glb, 12), buffer = 20 + text_bytes + 8;
+  CHECK(text_bytes % 4 == 0);
+  REQUIRE(glb.substr(16, 4) == "JSON");
+  REQUIRE(glb.substr(buffer - 4, 4) == std::string("BIN\0", 4));
+  CHECK(word_at(glb, buffer - 8) == glb.size() - buffer);
+  nlohmann::json one = nlohmann::json::parse(glb.substr(20, text_bytes));
+  CHECK_FALSE(one["buffers"][0].contains("uri"));
+  const auto bytes_of_view = [](const nlohmann::json& document, std::size_t number,
+                                const std::string& bytes, std::size_t from) {
+    const auto& view = document["bufferViews"][number];
+    CHECK(view["byteOffset"].get<std::size_t>() % 4 == 0);
+    return bytes.substr(from + view["byteOffset"].get<std::size_t>(),
+                        view["byteLength"].get<std::size_t>());
+  };
+  REQUIRE(one["images"].size() == 1);
+  CHECK(one["images"][0]["mimeType"] == "image/png");
+  CHECK(bytes_of_view(one, one["images"][0]["bufferView"], glb, buffer) ==
+        folder.read(files["images"][0]["uri"].get<std::string>()));
+  REQUIRE(one["accessors"].size() == files["accessors"].size());
+  for (std::size_t i = 0; i < one["accessors"].size(); ++i) {
+    CHECK(bytes_of_view(one, one["accessors"][i]["bufferView"], glb, buffer) ==
+          bytes_of_view(files, files["accessors"][i]["bufferView"], bin, 0));
+  }
+  CHECK(one["meshes"] == files["meshes"]);
+  CHECK(one["materials"] == files["materials"]);
+  for (const char* light : {"light00.exr", "light01.exr"}) {
+    CHECK(folder.read("one." + std::string(light)) == folder.read("files." + std::string(light)));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "one.bin"));
+}
+
+// `photile publish`: what the browser shows is in tests/publish.
+
+TEST_CASE("a page and a scene for other programs are written with the same light") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto publish = [&](const std::vector<std::string>& more) {
+    return typed("publish", scene, "--photons 20k --quality draft --texel 0.2", more);
+  };
+  succeed(publish({"-o", folder / "room.html", "-o", folder / "room.glb"}));
+  CHECK_THAT(folder.read("room.html"), Contains("<!DOCTYPE html>"));
+  CHECK(folder.read("room.glb").substr(0, 4) == "glTF");
+  CHECK(read_image(folder / "room.light01.exr").find("G"));
+  CHECK_THAT(only_error(run_photile(publish({"-o", folder / "a.glb", "-o", folder / "a.gltf"})), 2),
+             Contains("a.light00.exr") && Contains("twice"));
+  CHECK_THAT(only_error(run_photile(publish({"-o", folder / "a.png"})), 2), Contains(".html"));
+}
+
+TEST_CASE("pages are made for a time, the first from a quarter of the work") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto publish = [&](const std::vector<std::string>& more) {
+    return typed("publish", scene, "-o", folder / "room.html", "--texel 0.2", more);
+  };
+  const Outcome outcome = succeed(publish({"--for", "1ms"}));
+  CHECK_THAT(outcome.errors, Contains("standard error ") &&
+                                 Contains("; --photons 125000 -k 100 --set light_map_rays=16\n") &&
+                                 !Contains("250000"));
+  const std::string page = folder.read("room.html");
+  succeed(typed("publish", scene, "-o", folder / "same.html",
+                "--texel 0.2 --title box --photons 125000 -k 100 --set light_map_rays=16"));
+  CHECK(page == folder.read("same.html"));
+  CHECK_THAT(only_error(run_photile(publish({"--for", "1s", "--quality", "draft"})), 2),
+             Contains("--for") && Contains("--quality good"));
+}
+
 TEST_CASE("bake refuses what it cannot do in one line") {
   const FileFolder folder;
-  CHECK_THAT(only_error(run_photile({"bake", write_box(folder), "-o", folder / "a.glb"}), 2),
-             Contains(".gltf"));
+  CHECK_THAT(only_error(run_photile({"bake", write_box(folder), "-o", folder / "a.obj"}), 2),
+             Contains(".gltf or .glb"));
   CHECK_THAT(last_error(run_photile(bake(folder, {"--texel", "0.00001"})), 2),
              Contains("do not fit"));
   CHECK_THAT(only_error(run_photile(bake(folder, {"--texel", "0"})), 2), Contains("--texel"));

@@ -110,8 +110,7 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
     }
     texel_ *= coarser;
   }
-  fill(source, sight, progress);
-  spread(sight);
+  spread(fill(source, sight, progress), sight);
 }
 
 void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
@@ -195,10 +194,14 @@ glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t
 
 /// A texel that no triangle covers has the light of the surface nearest to it, so that a lookup at
 /// an edge blends light of the surface alone.
-void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress) {
+PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeSight& sight,
+                             Progress& progress) {
   NodeBlend nothing{};
   nothing.node.fill(none);
   blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
+  PrimaryHits points;
+  points.position.resize(blend_.size());
+  points.sided_triangle.resize(blend_.size(), none);
   progress.begin("bake light maps", used_texels(), "texels");
   PrimaryHits hits;
   std::vector<std::size_t> texels;
@@ -210,6 +213,10 @@ void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, Progres
       maps_.find(hits.sided_triangle[i], hits.position[i], blend);
       sight.look(hits.sided_triangle[i], hits.position[i], blend);
     });
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      points.position[texels[i]] = hits.position[i];
+      points.sided_triangle[texels[i]] = hits.sided_triangle[i];
+    }
     if (!maps_.values().by_normal.empty()) {
       normal_.resize(blend_.size());
       for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -245,6 +252,7 @@ void BakedLight::fill(NodeSource& source, const cache::NodeSight& sight, Progres
   }
   value();
   progress.end();
+  return points;
 }
 
 std::uint64_t BakedLight::used_texels() const {
@@ -257,8 +265,10 @@ std::uint64_t BakedLight::used_texels() const {
 
 /// A lookup beside a box that stands on a floor takes a part of the texels under the box. Those
 /// that hold no light, and from which the box hides a lit texel next to them, get what that one
-/// has.
-void BakedLight::spread(const cache::NodeSight& sight) {
+/// has; and so do those in the slit below a thing that stands a little above the surface, such as a
+/// skirting board, where next to no light comes. A slit as high as texels are apart is lit where a
+/// lookup beside the thing reaches.
+void BakedLight::spread(const PrimaryHits& points, const cache::NodeSight& sight) {
   const std::vector<NodeBlend> found = blend_;
   const Estimates& values = maps_.values();
   const std::size_t nodes = maps_.statistics().nodes;
@@ -273,6 +283,15 @@ void BakedLight::spread(const cache::NodeSight& sight) {
     }
     return false;
   };
+  const auto slit = static_cast<float>(texel_ / 4);
+  const auto may_be_covered = [&](const NodeBlend& blend) {
+    return std::any_of(blend.node.begin(), blend.node.end(), [&](std::uint32_t node) {
+      return node != none && maps_.distance(node) < slit;
+    });
+  };
+  const auto on_surface = [&](std::size_t texel) {
+    return trace::place_on(scene_, points.sided_triangle[texel], points.position[texel]);
+  };
   constexpr int around[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                 {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
   tbb::parallel_for(std::size_t{0}, placed_.size(), [&](std::size_t i) {
@@ -284,15 +303,21 @@ void BakedLight::spread(const cache::NodeSight& sight) {
     };
     for (std::uint32_t y = 0; y < rectangle.height; ++y) {
       for (std::uint32_t x = 0; x < rectangle.width; ++x) {
-        if (lit(found[texel(x, y)])) continue;
+        const std::size_t here = texel(x, y);
+        const bool dark = !lit(found[here]), covered = may_be_covered(found[here]);
+        if (!dark && !covered) continue;
         for (const auto& [dx, dy] : around) {
           const std::uint32_t nx = x + dx, ny = y + dy;  // beyond 0 they are large
           if (nx >= rectangle.width || ny >= rectangle.height) continue;
-          if (!lit(found[texel(nx, ny)]) ||
-              sight.sees(member_[placed.chart], point(placed, x, y), point(placed, nx, ny))) {
+          const std::size_t beside = texel(nx, ny);
+          if (!lit(found[beside])) continue;
+          const bool hidden = dark && !sight.sees(member_[placed.chart], point(placed, x, y),
+                                                  point(placed, nx, ny));
+          if (!hidden &&
+              !(covered && sight.is_in_slit(on_surface(beside), on_surface(here), slit))) {
             continue;
           }
-          blend_[texel(x, y)] = found[texel(nx, ny)];
+          blend_[here] = found[beside];
           break;
         }
       }
@@ -340,6 +365,24 @@ std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nod
     texels[i] = static_cast<float>(luminance(glm::dvec3(error)));
   });
   return texels;
+}
+
+double BakedLight::standard_error(std::span<const double> powers, const Estimates& of_nodes) const {
+  double squares = 0, light = 0, lit = 0;
+  std::vector<double> sum(blend_.size(), 0.0);
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    const std::vector<glm::vec3> texels = layer(i);
+    const std::vector<float> errors_of_layer = errors(i, of_nodes);
+    for (std::size_t texel = 0; texel < texels.size(); ++texel) {
+      const double error = powers[i] * errors_of_layer[texel];
+      squares += error * error;  // lights err apart
+      sum[texel] += powers[i] * luminance(glm::dvec3(texels[texel]));
+    }
+  }
+  for (const double value : sum) {
+    if (value > 0) light += value, ++lit;
+  }
+  return lit > 0 ? std::sqrt(squares * lit) / light : 0.0;
 }
 
 std::optional<Atlas> pack(std::span<TexelRectangle> rectangles, std::uint32_t most_side) {

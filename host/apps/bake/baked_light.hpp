@@ -68,6 +68,10 @@ class BakedLight {
   /// Standard error of the luminance of `layer`, in the same form, from that of nodes.
   ///   of_nodes   as GatheredNodes::errors
   std::vector<float> errors(std::size_t layer, const Estimates& of_nodes) const;
+  /// Root mean square of the standard errors of all light together, relative to the mean light:
+  /// texels without light have none.
+  ///   powers   per layer
+  double standard_error(std::span<const double> powers, const Estimates& of_nodes) const;
   /// Texels of the charts, without what lies between them.
   std::uint64_t used_texels() const;
 
@@ -80,8 +84,9 @@ class BakedLight {
 
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
-  void fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress);
-  void spread(const cache::NodeSight& sight);
+  /// Returns the points of all texels; the side is none where there is none.
+  PrimaryHits fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress);
+  void spread(const PrimaryHits& points, const cache::NodeSight& sight);
   glm::dvec2 place(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -45,9 +47,8 @@ std::vector<std::uint32_t> textures_of(const Scene& scene) {
   return textures;
 }
 
-/// Bytes as they are.
-void write_texture(const std::filesystem::path& file, const Texture& texture) {
-  OutputFile output(file);
+/// Texels as they are.
+std::vector<std::uint8_t> texels_of(const Texture& texture) {
   std::vector<std::uint8_t> bytes;
   for (int y = 0; y < texture.height(); ++y) {
     for (int x = 0; x < texture.width(); ++x) {
@@ -59,8 +60,7 @@ void write_texture(const std::filesystem::path& file, const Texture& texture) {
       }
     }
   }
-  image::encode_png(output, texture.width(), texture.height(), bytes);
-  output.commit();
+  return bytes;
 }
 
 void write_layer(const std::filesystem::path& file, const BakedLight& baked, std::size_t layer,
@@ -89,19 +89,21 @@ void write_layer(const std::filesystem::path& file, const BakedLight& baked, std
   write_exr(file, image);
 }
 
-/// A glTF document that grows.
+bool is_binary(const std::filesystem::path& file) { return file.extension() == ".glb"; }
+
+/// A glTF document that grows, with its buffer: two files, or one.
 class Document {
  public:
+  explicit Document(const std::filesystem::path& file) : file_(file), output_(file) {}
+
   /// Accessor of an array, which goes to the buffer.
   template <class Vector>
   std::size_t add(const std::vector<Vector>& values) {
     json& accessors = json_["accessors"];
-    json_["bufferViews"].push_back({{"buffer", 0},
-                                    {"byteOffset", buffer_.size()},
-                                    {"byteLength", values.size() * sizeof(Vector)}});
+    const std::size_t view = add_bytes(values.data(), values.size() * sizeof(Vector));
     Vector low = values.front(), high = low;
     for (const Vector& value : values) low = glm::min(low, value), high = glm::max(high, value);
-    json accessor{{"bufferView", json_["bufferViews"].size() - 1},
+    json accessor{{"bufferView", view},
                   {"componentType", gltf_float},
                   {"count", values.size()},
                   {"type", fmt::format("VEC{}", Vector::length())}};
@@ -110,21 +112,79 @@ class Document {
       accessor["max"].push_back(high[i]);
     }
     accessors.push_back(std::move(accessor));
-    buffer_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Vector));
     return accessors.size() - 1;
+  }
+
+  /// Adds a picture of base colours: a file of its own, or a part of the buffer.
+  ///   own   that file
+  void add_picture(const std::filesystem::path& own, const Texture& texture) {
+    const std::vector<std::uint8_t> texels = texels_of(texture);
+    if (is_binary(file_)) {
+      const auto png = image::png_bytes(output_, texture.width(), texture.height(), texels);
+      json_["images"].push_back(
+          {{"bufferView", add_bytes(png.data(), png.size())}, {"mimeType", "image/png"}});
+    } else {
+      OutputFile picture(own);
+      image::encode_png(picture, texture.width(), texture.height(), texels);
+      picture.commit();
+      json_["images"].push_back({{"uri", own.filename().string()}});
+    }
+    json_["textures"].push_back({{"source", json_["images"].size() - 1}});
   }
 
   json& operator[](const char* key) { return json_[key]; }
 
-  void write(const std::filesystem::path& file) {
-    const std::filesystem::path buffer = beside(file, "bin");
+  void write() {
     json_["asset"] = {{"version", "2.0"}, {"generator", "photile"}};
-    json_["buffers"] = {{{"uri", buffer.filename().string()}, {"byteLength", buffer_.size()}}};
-    write_file(buffer, buffer_);
-    write_file(file, json_text(json_));
+    json_["buffers"] = {{{"byteLength", buffer_.size()}}};
+    if (is_binary(file_)) {
+      write_binary();
+    } else {
+      const std::filesystem::path buffer = beside(file_, "bin");
+      json_["buffers"][0]["uri"] = buffer.filename().string();
+      write_file(buffer, buffer_);
+      const std::string text = json_text(json_);
+      output_.write(text.data(), text.size());
+    }
+    output_.commit();
   }
 
  private:
+  /// The number of the view of these bytes.
+  std::size_t add_bytes(const void* bytes, std::size_t count) {
+    buffer_.resize((buffer_.size() + 3) / 4 * 4);  // numbers lie at multiples of their size
+    json_["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", count}});
+    buffer_.append(static_cast<const char*>(bytes), count);
+    return json_["bufferViews"].size() - 1;
+  }
+
+  /// The header of glTF 2.0's binary form and its two chunks, filled up to multiples of four bytes.
+  void write_binary() {
+    std::string text = json_text(json_), bytes = buffer_;
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    constexpr std::size_t header_bytes = 12, chunk_bytes = 8;
+    constexpr std::uint32_t magic = 0x46546C67, version = 2, json_chunk = 0x4E4F534A,
+                            binary_chunk = 0x004E4942;
+    const std::size_t whole = header_bytes + 2 * chunk_bytes + text.size() + bytes.size();
+    if (whole > std::numeric_limits<std::uint32_t>::max()) {
+      output_.fail("a .glb has at most 4 GiB; write a .gltf");
+    }
+    const auto put = [&](std::initializer_list<std::size_t> numbers) {
+      for (const std::size_t number : numbers) {
+        const auto word = static_cast<std::uint32_t>(number);
+        output_.write(&word, sizeof word);
+      }
+    };
+    put({magic, version, whole, text.size(), json_chunk});
+    output_.write(text.data(), text.size());
+    put({bytes.size(), binary_chunk});
+    output_.write(bytes.data(), bytes.size());
+  }
+
+  const std::filesystem::path file_;
+  OutputFile output_;
   json json_;
   std::string buffer_;
 };
@@ -175,8 +235,10 @@ json primitive_of(const Scene& scene, const BakedLight& baked,
 
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const Scene& scene,
                                             const LightMix& mix) {
-  std::vector<std::filesystem::path> files{file, beside(file, "bin")};
+  std::vector<std::filesystem::path> files{file};
   for (std::size_t i = 0; i < mix.lights.size(); ++i) files.push_back(layer_file(file, i));
+  if (is_binary(file)) return files;
+  files.push_back(beside(file, "bin"));
   for (const std::uint32_t texture : textures_of(scene)) {
     files.push_back(texture_file(file, texture));
   }
@@ -185,14 +247,11 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, c
 
 void write_baked(const std::filesystem::path& file, const Scene& scene, const BakedLight& baked,
                  const LightMix& mix) {
-  Document document;
+  Document document(file);
   std::map<std::uint32_t, std::size_t> texture_number;
   for (const std::uint32_t texture : textures_of(scene)) {
-    const std::filesystem::path picture = texture_file(file, texture);
-    write_texture(picture, scene.textures[texture]);
-    texture_number[texture] = texture_number.size();
-    document["images"].push_back({{"uri", picture.filename().string()}});
-    document["textures"].push_back({{"source", document["images"].size() - 1}});
+    document.add_picture(texture_file(file, texture), scene.textures[texture]);
+    texture_number.emplace(texture, texture_number.size());
   }
   std::vector<std::vector<std::uint32_t>> sides(scene.materials.size());
   for (const std::uint32_t side : baked.sides()) {
@@ -224,7 +283,7 @@ void write_baked(const std::filesystem::path& file, const Scene& scene, const Ba
           {{"light_maps", layers},
            {"irradiance", scene.unit == PowerUnit::lumen ? "lm/m2" : "W/m2"}}}}}}};
   document["scene"] = 0;
-  document.write(file);
+  document.write();
 }
 
 }  // namespace photile::bake

@@ -11,8 +11,8 @@
 
 namespace photile::bake {
 
-/// The files that are written for `file`, a .gltf: itself, its .bin, an EXR for each layer and a
-/// PNG for each texture of base colours.
+/// The files that are written for `file`: itself and an EXR for each layer; for a .gltf also its
+/// .bin and a PNG for each texture of base colours, which a .glb holds.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const Scene& scene,
                                             const LightMix& mix);
 

@@ -67,7 +67,7 @@ void add_bake_command(CLI::App& photile) {
   command->add_option("-o,--output", options->output, "scene to write, with files beside it")
       ->required()
       ->type_name("FILE.gltf")
-      ->check(file_ending_in({".gltf"}))
+      ->check(file_ending_in({".gltf", ".glb"}))
       ->group("Output");
   command
       ->add_option("--texel", options->baking.texel,

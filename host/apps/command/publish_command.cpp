@@ -4,17 +4,24 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake/open_sides.hpp"
+#include "bake/write_baked.hpp"
 #include "cache/charts.hpp"
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/quality_options.hpp"
 #include "command/render_options.hpp"
+#include "command/run_record.hpp"
+#include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
@@ -23,18 +30,26 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "publish/published_room.hpp"
+#include "render/refinement.hpp"
+#include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
 namespace {
 
+/// Settings that a page has no use for.
+const std::initializer_list<std::string_view> without{"samples_per_pixel", "passes", "direct_rays",
+                                                      "light_maps"};
+
 struct PublishOptions {
   RenderOptions render;
-  std::string output;
-  std::string title;  ///< "" = by the scene's file
+  std::vector<std::string> outputs;  ///< .html, and .gltf or .glb
+  std::string title;                 ///< "" = by the scene's file
   bake::BakeParameters baking;
 };
+
+bool is_page(const std::filesystem::path& file) { return file.extension() == ".html"; }
 
 /// The lights as the page opens with them, then those of the scene's moods.
 std::vector<publish::Preset> presets_of(const RenderOptions& options, const LightMix& mix) {
@@ -52,55 +67,124 @@ std::vector<publish::Preset> presets_of(const RenderOptions& options, const Ligh
   return presets;
 }
 
+std::vector<std::filesystem::path> files_of(const std::vector<std::string>& outputs,
+                                            const Scene& scene, const LightMix& mix) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path file : outputs) {
+    const auto own = is_page(file) ? std::vector{file} : bake::files_of(file, scene, mix);
+    files.insert(files.end(), own.begin(), own.end());
+  }
+  return files;
+}
+
+/// The light maps of a room.
+class LitRoom {
+ public:
+  LitRoom(const std::shared_ptr<const PreparedScene>& scene, std::span<Device> devices,
+          const RenderParameters& parameters, const bake::BakeParameters& baking,
+          Progress& progress)
+      : session_(scene, devices, parameters, nullptr, {}, progress),
+        baked_(scene->rays.scene(), cache().maps(), session_.light().nodes(), cache().sight(),
+               with_texels(baking), progress) {}
+
+  const bake::BakedLight& baked() const { return baked_; }
+  /// As GatheredNodes::errors; none where photons value nodes.
+  std::optional<Estimates> errors() {
+    const cache::GatheredNodes* nodes = session_.light().gathered();
+    return nodes ? std::optional(nodes->errors()) : std::nullopt;
+  }
+
+ private:
+  cache::SurfaceCache& cache() { return *session_.light().cache(); }
+
+  bake::BakeParameters with_texels(bake::BakeParameters baking) {
+    if (!baking.exact) {  // in a small room finer, as nodes are
+      baking.texel = std::min(defaults::published_texel, cache().maps().charts().spacing() / 2);
+    }
+    return baking;
+  }
+
+  RenderSession session_;
+  bake::BakedLight baked_;
+};
+
 void run_publish(PublishOptions& options) {
   handle_signals();
+  const TimeTaken loading = time_of_loading();
+  const Stopwatch since_loaded;
+  const auto elapsed = [&] { return loading.seconds + since_loaded.seconds(); };
   RenderOptions& render = options.render;
   render.parameters.light_maps = LightMapMode::on;
   check(render.parameters);
+  check_goal(render.goal, render.parameters);
   note_inputs_of(render);
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
-  const std::filesystem::path file = options.output;
-  check_outputs(std::vector{file});
-  std::vector<publish::Preset> presets = presets_of(render, mix);
-  publish::SkyHours hours = publish::sky_hours(mix, render.load.situation);
+  check_outputs(files_of(options.outputs, scene, mix));
+  const std::vector<publish::Preset> presets = presets_of(render, mix);
+  const publish::SkyHours hours = publish::sky_hours(mix, render.load.situation);
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
 
   const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
   options.baking.open = bake::open_sides(prepared_scene->rays);
-  RenderSession session(prepared_scene, devices, render.parameters, nullptr, {}, progress);
-  cache::SurfaceCache& cache = *session.light().cache();
-  if (!options.baking.exact) {  // in a small room finer, as nodes are
-    options.baking.texel = std::min(defaults::published_texel, cache.maps().charts().spacing() / 2);
-  }
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
   options.baking.most_texels =
       limits::max_published_texels / std::max<std::size_t>(1, mix.lights.size());
-  const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),
-                               options.baking, progress);
 
-  progress.begin("write the page", 0, "");
-  const cache::GatheredNodes* gathered = session.light().gathered();
-  const Estimates errors = gathered ? gathered->errors() : Estimates{};
-  publish::write_page(
-      file, {.scene = scene,
-             .baked = baked,
-             .mix = mix,
-             .node_errors = gathered ? &errors : nullptr,
-             .relative_error = 1 / std::sqrt(static_cast<double>(render.parameters.neighbours)),
-             .presets = std::move(presets),
-             .hours = std::move(hours),
-             .title = options.title.empty() ? std::filesystem::path(render.scene).stem().string()
-                                            : options.title,
-             .version = std::string(version_number())});
-  progress.end();
-  progress.note(fmt::format("{}: {:.3g} MB, {} lights, {} x {} texels, {:.3g} cm apart",
-                            options.output,
-                            static_cast<double>(std::filesystem::file_size(file)) / 1e6,
-                            mix.lights.size(), baked.width(), baked.height(), 100 * baked.texel()));
+  const auto write = [&](LitRoom& lit, const RenderParameters& parameters) {
+    progress.begin("write files", 0, "");
+    const std::optional<Estimates> errors = lit.errors();
+    for (const std::filesystem::path file : options.outputs) {
+      if (!is_page(file)) {
+        bake::write_baked(file, scene, lit.baked(), mix);
+        continue;
+      }
+      publish::write_page(
+          file,
+          {.scene = scene,
+           .baked = lit.baked(),
+           .mix = mix,
+           .node_errors = errors ? &*errors : nullptr,
+           .relative_error = 1 / std::sqrt(static_cast<double>(parameters.neighbours)),
+           .presets = presets,
+           .hours = hours,
+           .title = options.title.empty() ? std::filesystem::path(render.scene).stem().string()
+                                          : options.title,
+           .version = version_number()});
+    }
+    progress.end();
+    for (const std::string& file : options.outputs) {
+      progress.note(fmt::format("{}: {:.3g} MB, {} lights, {} x {} texels, {:.3g} cm apart", file,
+                                static_cast<double>(std::filesystem::file_size(file)) / 1e6,
+                                mix.lights.size(), lit.baked().width(), lit.baked().height(),
+                                100 * lit.baked().texel()));
+    }
+  };
+  if (!render.goal.is_given()) {
+    LitRoom lit(prepared_scene, devices, render.parameters, options.baking, progress);
+    write(lit, render.parameters);
+    return;
+  }
+  std::unique_ptr<LitRoom> lit;
+  const auto make = [&](const RenderParameters& parameters, Progress& deadline) {
+    lit.reset();  // the one before
+    auto made =
+        std::make_unique<LitRoom>(prepared_scene, devices, parameters, options.baking, deadline);
+    const double error = made->baked().standard_error(options.baking.powers, *made->errors());
+    RenderResult result;
+    result.statistics = {stage("light maps", {}, {{"standard error percent", 100 * error}})};
+    lit = std::move(made);
+    return result;
+  };
+  const auto finished = [&](const RenderParameters& parameters, const RenderResult& result) {
+    write(*lit, parameters);
+    progress.note(fmt::format("standard error {:.2g}%, {}; {}", 100 * standard_error_of(result),
+                              format_seconds(elapsed()), options_text(parameters, without)));
+  };
+  refine(render.goal, render.parameters, {make, finished, elapsed}, progress);
 }
 
 }  // namespace
@@ -110,10 +194,13 @@ void add_publish_command(CLI::App& photile) {
   options->baking.exact = false;
   CLI::App* command = photile.add_subcommand(
       "publish", "Write a page in which anybody walks through the room and turns its lights");
-  command->add_option("-o,--output", options->output, "page to write, one file")
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "page to write, one file; FILE.glb or FILE.gltf: for other programs; repeatable")
       ->required()
       ->type_name("FILE.html")
-      ->check(file_ending_in({".html"}))
+      ->allow_extra_args(false)
+      ->check(file_ending_in({".html", ".glb", ".gltf"}))
       ->group("Output");
   command
       ->add_option("--title", options->title, "of the page; default: the name of the scene's file")
@@ -133,8 +220,14 @@ void add_publish_command(CLI::App& photile) {
       ->group("Output");
   set_quality(options->render.quality_options(), Quality::good);
   add_quality_preset(*command, options->render.quality_options());
-  add_setting_options(*command, options->render,
-                      {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
+  command
+      ->add_option("--for", options->render.goal.seconds,
+                   "light the room again and again for so long, each time with twice the work, "
+                   "from a quarter of it on; the page depends on the machine")
+      ->type_name("TIME")
+      ->transform(duration())
+      ->group("Quality");
+  add_setting_options(*command, options->render, without);
   command->callback([options] { run_publish(*options); });
 }
 

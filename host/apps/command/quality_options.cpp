@@ -73,7 +73,7 @@ void check_goal(const RefinementGoal& goal, const RenderParameters& parameters) 
   for (const GoalOption& option : goal_options()) {
     if (!(goal.*option.value > 0)) continue;
     throw UsageError(fmt::format(
-        "--{}: pictures state their error where nodes of light maps gather, as with --quality good",
+        "--{}: errors are stated where nodes of light maps gather, as with --quality good",
         option.option));
   }
 }

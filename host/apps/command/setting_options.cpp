@@ -34,6 +34,7 @@ std::string type_name(const ValueRange& range) {
   if (const auto* words = std::get_if<Words>(&range)) {
     return fmt::format("{}", fmt::join(words->words, "|"));
   }
+  if (const auto* text = std::get_if<Text>(&range)) return std::string(text->form);
   return std::holds_alternative<WholeNumbers>(range) ? "N" : "X";
 }
 
@@ -182,6 +183,35 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
        .initial = "y, and a warning where it seems to be z",
        .set = [&options](
                   const SettingValue& value) { options.up = std::get<std::string_view>(value); }},
+      {.name = "units",
+       .group = group,
+       .range = Words{loading::names_of_units()},
+       .help = "what lengths in the file are in",
+       .initial = "m, and a warning where the scene is as wide as no room",
+       .set =
+           [&options](const SettingValue& value) {
+             options.metres_per_unit = loading::metres_in(std::get<std::string_view>(value));
+           }},
+      {.name = "scene",
+       .group = group,
+       .range = Text{"NAME or INDEX"},
+       .help = "scene of a glTF file",
+       .initial = "the file's own, else the first",
+       .set =
+           [&options](const SettingValue& value) {
+             options.scene = std::get<std::string_view>(value);
+           }},
+      {.name = "portals",
+       .group = group,
+       .range = Text{"auto, off or GLOB"},
+       .help =
+           "windows that photons of suns and skies start through: auto finds them, off, or globs "
+           "of the materials of their panes; repeatable",
+       .initial = "auto",
+       .set =
+           [&options](const SettingValue& value) {
+             options.portals.emplace_back(std::get<std::string_view>(value));
+           }},
       bound_number("north", group, loading::turns, options.situation.north_degrees,
                    "where north lies, clockwise from -z as seen from above", "degrees"),
       bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,
@@ -327,17 +357,25 @@ nlohmann::json settings_json(const RenderParameters& parameters, bool all) {
   return result;
 }
 
-std::string options_text(const RenderParameters& parameters) {
+std::string options_text(const RenderParameters& parameters,
+                         std::initializer_list<std::string_view> without) {
   constexpr std::array always{"photons_emitted", "neighbours", "samples_per_pixel"};
+  const auto is_out = [&](std::string_view name) {
+    return std::find(without.begin(), without.end(), name) != without.end();
+  };
   std::string text;
   for (const char* name : always) {
+    if (is_out(name)) continue;
     const Setting& setting = setting_named(name);
     text += fmt::format("{}{} {}", text.empty() ? "" : " ", option_names(setting).front(),
                         text_of(setting.value(parameters)));
   }
   const RenderParameters usual;
   for (const Setting& setting : settings()) {
-    if (has_option(setting) || setting.value(parameters) == setting.value(usual)) continue;
+    if (has_option(setting) || is_out(setting.name) ||
+        setting.value(parameters) == setting.value(usual)) {
+      continue;
+    }
     text += fmt::format(" --set {}={}", setting.name, text_of(setting.value(parameters)));
   }
   return text;

@@ -78,7 +78,9 @@ nlohmann::json settings_json(const RenderParameters& parameters, bool all);
 
 /// What to type for these parameters: "--photons 1000000 -k 50 --samples 4", and all settings whose
 /// values are not the defaults.
-std::string options_text(const RenderParameters& parameters);
+///   without   names of settings that the command does without
+std::string options_text(const RenderParameters& parameters,
+                         std::initializer_list<std::string_view> without = {});
 
 /// What `photile settings` prints: all that --set reaches.
 std::string settings_text();

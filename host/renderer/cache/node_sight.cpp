@@ -27,16 +27,17 @@ bool is_covered(const RayScene& rays, const SurfacePlace& place, const glm::vec3
 
 }  // namespace
 
-/// In a slit behind something that lies on the surface, such as the gap behind a door, a node sees
-/// the place beside the door, but no light.
-bool NodeSight::is_in_slit(const glm::vec3& position, const glm::vec3& normal,
-                           std::uint32_t node) const {
+bool NodeSight::is_in_slit(const SurfacePlace& here, const SurfacePlace& there, float reach) const {
+  return is_covered(rays_, there, here.position, reach) &&
+         !is_covered(rays_, here, there.position, reach);
+}
+
+/// Such as the gap behind a door.
+bool NodeSight::is_in_slit(const SurfacePlace& here, std::uint32_t node) const {
   const LightMaps::NodePoint& point = maps_.point(node);
-  const float apart = glm::distance(position, point.position);
-  if (maps_.distance(node) >= apart) return false;
-  const SurfacePlace there = place_on(rays_.scene(), point.sided_triangle, point.position);
-  return is_covered(rays_, there, position, apart) &&
-         !is_covered(rays_, {position, normal}, there.position, apart);
+  const float apart = glm::distance(here.position, point.position);
+  return maps_.distance(node) < apart &&
+         is_in_slit(here, place_on(rays_.scene(), point.sided_triangle, point.position), apart);
 }
 
 bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
@@ -50,7 +51,7 @@ bool NodeSight::look(std::uint32_t sided_triangle, const glm::vec3& position,
     if (seen.weight[i] == 0.0f) continue;
     const LightMaps::NodePoint& node = maps_.point(seen.node[i]);
     if (see_each_other(rays_, here, place_on(scene, node.sided_triangle, node.position)) &&
-        !is_in_slit(position, here.normal, seen.node[i])) {
+        !is_in_slit(here, seen.node[i])) {
       sum += seen.weight[i];
     } else {
       seen.weight[i] = 0.0f;

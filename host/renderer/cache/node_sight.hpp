@@ -8,6 +8,10 @@
 #include "photile/light_maps.hpp"
 #include "photile/ray_scene.hpp"
 
+namespace photile::trace {
+struct SurfacePlace;
+}
+
 namespace photile::cache {
 
 /// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
@@ -35,8 +39,13 @@ class NodeSight {
   /// Whether nothing stands between two places, metres, on the plane of a triangle's side.
   bool sees(std::uint32_t sided_triangle, const glm::vec3& from, const glm::vec3& to) const;
 
+  /// Whether something that lies on the surface covers `there`, closer than `reach`, but not
+  /// `here`: the slit behind it sees the place beside it, but no light.
+  bool is_in_slit(const trace::SurfacePlace& here, const trace::SurfacePlace& there,
+                  float reach) const;
+
  private:
-  bool is_in_slit(const glm::vec3& position, const glm::vec3& normal, std::uint32_t node) const;
+  bool is_in_slit(const trace::SurfacePlace& here, std::uint32_t node) const;
 
   const RayScene& rays_;
   const LightMaps& maps_;

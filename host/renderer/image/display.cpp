@@ -211,7 +211,8 @@ Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
 
 namespace photile::image {
 
-void encode_png(OutputFile& output, int width, int height, std::span<const std::uint8_t> texels) {
+std::vector<std::uint8_t> png_bytes(const OutputFile& output, int width, int height,
+                                    std::span<const std::uint8_t> texels) {
   png_image picture{};
   picture.version = PNG_IMAGE_VERSION;
   picture.width = static_cast<png_uint_32>(width);
@@ -224,7 +225,13 @@ void encode_png(OutputFile& output, int width, int height, std::span<const std::
       0) {
     output.fail(picture.message);
   }
-  output.write(encoded.data(), size);
+  encoded.resize(size);
+  return encoded;
+}
+
+void encode_png(OutputFile& output, int width, int height, std::span<const std::uint8_t> texels) {
+  const std::vector<std::uint8_t> encoded = png_bytes(output, width, height, texels);
+  output.write(encoded.data(), encoded.size());
 }
 
 }  // namespace photile::image

@@ -29,9 +29,13 @@ std::vector<std::uint8_t> tone_mapped_texels(std::span<const glm::vec3> rgb, dou
 /// the top. Shared among all cores.
 std::vector<std::uint8_t> srgb8_texels(const Image& display_referred);
 
-/// Encodes rows x width x channels texels (3: RGB, 4: RGB and an alpha that colours are not
-/// multiplied with) and writes them to a file that the caller commits.
-/// Errors: those of OutputFile::fail.
+/// The bytes of a PNG of rows x width x channels texels (3: RGB, 4: RGB and an alpha that colours
+/// are not multiplied with). Errors: those of OutputFile::fail.
+///   output   the file that they are for
+std::vector<std::uint8_t> png_bytes(const OutputFile& output, int width, int height,
+                                    std::span<const std::uint8_t> texels);
+
+/// Writes them to a file that the caller commits.
 void encode_png(OutputFile& output, int width, int height, std::span<const std::uint8_t> texels);
 
 }  // namespace photile::image

@@ -108,7 +108,7 @@ RenderResult refine(const RefinementGoal& goal, const RenderParameters& paramete
     } catch (const Interrupted&) {
       if (!best || progress.cancelled()) throw;
       progress.end();
-      progress.note("the time is over; the picture that was being made is given up");
+      progress.note("the time is over; what was being made is given up");
       return std::move(*best);
     }
     const double now = steps.elapsed();
