@@ -212,6 +212,56 @@ TEST_CASE("an axis that is none is refused") {
                     Contains("'w'") && Contains("-z"));
 }
 
+// Files in another unit of length: scaled as asked, and told where they look so.
+
+std::function<glm::dvec3(const glm::dvec3&)> times(double factor) {
+  return [factor](const glm::dvec3& p) { return factor * p; };
+}
+
+TEST_CASE("a room in millimetres becomes the room in metres") {
+  SceneLoadOptions millimetres;
+  millimetres.metres_per_unit = 1e-3;
+  const Scene metres = load_obj(room({6, 2.8, 5}, worlds[0].file), white, {});
+  const Scene scaled = load_obj(room({6, 2.8, 5}, times(1000)), white, millimetres);
+  REQUIRE(scaled.vertices.size() == metres.vertices.size());
+  for (std::size_t i = 0; i < metres.vertices.size(); ++i) {
+    const glm::dvec3 there = glm::dvec3(scaled.vertices[i]) + scaled.origin;
+    CHECK(glm::distance(there, glm::dvec3(metres.vertices[i]) + metres.origin) < 1e-5);
+  }
+}
+
+TEST_CASE("a scene of a doubtful size is told with the units that make a room of it") {
+  const auto warnings = [](double factor, double metres_per_unit) {
+    SceneLoadOptions options;
+    options.metres_per_unit = metres_per_unit;
+    return load_obj(room({6, 2.8, 5}, times(factor)), white, options).report.warnings;
+  };
+  const auto millimetres = warnings(1000, 1);
+  REQUIRE(millimetres.size() == 1);
+  CHECK_THAT(millimetres.front(), Contains("6000 m") && Contains("--set units=mm makes it 6 m"));
+  const auto inches = warnings(1 / 0.0254, 1);
+  REQUIRE(inches.size() == 1);
+  CHECK_THAT(inches.front(), Contains("--set units=in makes it 6 m"));
+  CHECK(warnings(1, 1).empty());
+  CHECK(warnings(20, 1).empty());
+  CHECK(warnings(1000, 1e-3).empty());
+  CHECK_THAT(warnings(0.001, 1).front(), Contains("0.006 m") && Contains("--set units"));
+}
+
+TEST_CASE("a glTF file in centimetres has its triangles and cameras in metres") {
+  nlohmann::json document = square_document();
+  document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  document["nodes"].push_back({{"name", "eye"}, {"camera", 0}, {"translation", {50, 60, 300}}});
+  document["scenes"][0]["nodes"] = {0, 1};
+  SceneLoadOptions centimetres = up("z");
+  centimetres.metres_per_unit = 0.01;
+  const Scene scene = load_gltf(document, centimetres);
+  // A square metre in the file.
+  CHECK(triangle_area(scene, 0) == Approx(0.5e-4));
+  const glm::dvec3 eye = in_world(scene, scene.cameras.front()).position;
+  CHECK(glm::distance(eye, glm::dvec3(0.5, 0.6, 3)) < 1e-6);
+}
+
 // Coordinates are read in double precision and counted from an origin near the triangles.
 
 /// `v` lines of points moved by `offset`, with every digit of a double.

@@ -350,7 +350,7 @@ void run_walk(WalkOptions& options) {
   TerminalProgress progress(render.quiet || !leads());
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
-  const Camera& camera = choose_camera(scene, render.camera);
+  const Camera camera = camera_of(scene, render);
   set_film_size(render.parameters.film, render.size, camera);
   const Camera base = in_world(scene, camera);
   std::vector<Device> devices = devices_for(render, progress);
