@@ -43,13 +43,12 @@ constexpr auto longest_sleep = std::chrono::microseconds(500);
 /// How often the thread that beats looks at news; every tenth time it sends a beat.
 constexpr auto watch_period = std::chrono::milliseconds(100);
 constexpr int looks_between_beats = 10;
-constexpr int default_patience = 120;  ///< seconds
-constexpr int aborting = -1;           ///< in place of the code that a process tells
+constexpr int aborting = -1;  ///< in place of the code that a process tells
 
 /// Seconds for which a rank may be silent; 0: for ever.
 int patience() {
   const char* const text = std::getenv("PHOTILE_MPI_PATIENCE");
-  return text == nullptr ? default_patience : std::max(0, std::atoi(text));
+  return text == nullptr ? defaults::rank_patience : std::max(0, std::atoi(text));
 }
 
 /// Two threads make the calls of MPI, one at a time.

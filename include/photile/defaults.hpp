@@ -58,9 +58,11 @@ inline constexpr float strong_lobe = 0.2f;
 /// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lamps would
 /// be mottled.
 inline constexpr int least_rays = 16;
-/// Light samples for each ray of a node; in the open, where light is bright beside dark and the
-/// sky may be seen through a window, more.
-inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;
+/// Light samples for each ray of a node.
+inline constexpr int looks_per_ray = 2;
+/// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window, varies
+/// more.
+inline constexpr int rays_in_the_open = 2;
 /// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
 /// so many times as often, but at most `most_looks_again` times: 2% shows as ragged borders.
 inline constexpr double tolerated_look_error = 0.02;
@@ -140,6 +142,7 @@ inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that n
 /// Bytes that a process sends in one round of an exchange, at most: buffers for more would lie
 /// beside the photons.
 inline constexpr std::uint64_t exchange_round_bytes = std::uint64_t{1} << 24;
+inline constexpr int rank_patience = 120;  ///< seconds without a sign of a rank, after which all end
 
 // Validation: readings whose noise leaves room for the tolerance of 1%
 inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds

@@ -47,7 +47,7 @@ inline constexpr double max_coordinate = 1e12;
 inline constexpr std::uint64_t max_materials = 1'000'000;
 inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners =
-    65'536;  ///< triangulated at once, deaf to signals
+    65'536;  ///< triangulated in a second or two
 inline constexpr int max_node_depth = 512;
 /// Each takes 600 bytes and 2 us before a triangle of it is seen.
 inline constexpr std::uint64_t max_nodes = 250'000;

@@ -84,18 +84,17 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
   // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
-  // Nine of these are averaged. Beside the sun a shadow has a hundredth of the light, and few
-  // looks find the sky through a window: there what single looks bring would show.
+  // Nine of these are averaged. In the open a shadow has a hundredth of the light of the sun beside
+  // it, and few looks find the sky through a window: there what single looks bring would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
-  const int fine = std::max((coarse + 3) / 4, std::min(coarse, defaults::least_rays));
-  if (open) {
-    const int looks =
-        std::min(defaults::looks_per_ray_in_the_open * coarse, limits::max_direct_rays);
-    return {{coarse, looks}, {fine, looks}, inset};
-  }
-  return {
-      {coarse, defaults::looks_per_ray * coarse}, {fine, defaults::looks_per_ray * fine}, inset};
+  const int rays =
+      std::min(open ? defaults::rays_in_the_open * coarse : coarse, limits::max_gathering_rays);
+  const int fine = std::max((rays + 3) / 4, std::min(rays, defaults::least_rays));
+  const auto looks_of = [](int of_rays) {
+    return std::min(defaults::looks_per_ray * of_rays, limits::max_direct_rays);
+  };
+  return {{rays, looks_of(rays)}, {fine, looks_of(open ? rays : fine)}, inset};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
