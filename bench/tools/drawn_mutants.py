@@ -103,8 +103,8 @@ FURTHER_TESTS = {
               ("loading", "placement"), ("loading", "textures"), ("loading", "light_groups"),
               ("loading", "material_reflectance"), ("loading", "photometric_files"),
               ("loading", "textured_lights"), ("loading", "obj"), ("loading", "color_temperature"),
-              ("loading", "bad_input"), ("command", "info")),
-    "image": (("command", "relight"), ("command", "pictures"), ("loading", "textures")),
+              ("loading", "bad_input")),
+    "image": (("loading", "textures"),),
     "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
 
 
@@ -187,8 +187,7 @@ class Host:
 
     def steps(self, folder):
         return self.folder_steps[folder] + [Step(other, (f"[#{file}_test]~[slow]",))
-                                            for other, file in FURTHER_TESTS[folder]
-                                            if other not in self.folders]
+                                            for other, file in FURTHER_TESTS[folder]]
 
     def prepare(self, site):
         self.own, self.number = {}, self.numbers[site.name]

@@ -55,6 +55,9 @@ inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on 
 inline constexpr float survival_of_reflectance = 1.5f;
 /// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
 inline constexpr float strong_lobe = 0.2f;
+/// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lamps would
+/// be mottled.
+inline constexpr int least_rays = 16;
 /// Light samples for each ray of a node; in the open, where light is bright beside dark and the
 /// sky may be seen through a window, more.
 inline constexpr int looks_per_ray = 2, looks_per_ray_in_the_open = 8;

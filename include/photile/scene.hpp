@@ -414,6 +414,8 @@ struct SceneLoadOptions {
   /// Which axis of the file points up: "x", "y", "z", "-x", "-y" or "-z"; the scene is turned so
   /// that it becomes y. "" = y, and a warning where the geometry looks as if it were z.
   std::string up = {};
+  /// Metres in a unit of the file's lengths: 0.001 where they are millimetres.
+  double metres_per_unit = 1;
   std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match counts
   std::vector<LightProfile> profiles = {};
   std::vector<LightTemperature> temperatures = {};

@@ -439,6 +439,7 @@ def load(
     *,
     scene: str = "",
     up: str = "",
+    metres_per_unit: float = 1.0,
     emissive_scale: float = 1.0,
     allow_outside: bool = False,
     light_groups: Optional[Mapping[str, str]] = None,
@@ -463,6 +464,8 @@ def load(
         Name or number of one of the scenes in a glTF file; the file's default where it is "".
     up : str
         The axis of the file that points up, "x" to "-z"; y where it is "".
+    metres_per_unit : float
+        Of lengths in the file: 0.001 where they are millimetres.
     emissive_scale : float
         Factor of emissive radiance; 683 mends files of Blender.
     allow_outside : bool
@@ -502,6 +505,7 @@ def load(
     options = {
         "scene": scene,
         "up": up,
+        "metres_per_unit": metres_per_unit,
         "emissive_scale": emissive_scale,
         "allow_outside": allow_outside,
         "light_groups": [f"{glob}={group}" for glob, group in (light_groups or {}).items()],

@@ -135,6 +135,7 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
   load.allow_outside = field<bool>(options, "allow_outside");
   load.scene = field<std::string>(options, "scene");
   load.up = field<std::string>(options, "up");
+  load.metres_per_unit = field<double>(options, "metres_per_unit");
   load.lumen_per_watt = field<double>(options, "lumen_per_watt");
   const auto texts = [&](const char* name) {
     return options[name].cast<std::vector<std::string>>();

@@ -209,6 +209,25 @@ TEST_CASE("Sides that neither light nor an eye comes to are not open") {
   CHECK(open_of_box({0.5f, 0.5f, 0.2f}) == std::array{0, 12});
 }
 
+TEST_CASE("A side that nothing comes to is open where it goes on from one that something does") {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, white);
+  // A prism with a lid hides all of the second triangle and a strip of the first.
+  const glm::vec3 a(-0.1f, -0.2f, 0), b(1.2f, 1.1f, 0), c(-0.1f, 1.1f, 0), up(0, 0, 0.3f);
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    builder.grid(from, to - from, up, 1, white);
+  }
+  builder.triangle(a + up, b + up, c + up, white);
+  builder.add(point_light("lamp", {0.9f, 0.1f, 0.5f}));
+  Scene scene = std::move(builder).build();
+  scene.cameras.clear();
+  const std::vector<std::uint8_t> open = bake::open_sides(RayScene(scene));
+  for (std::uint32_t side = 0; side < 4; ++side) {
+    CHECK(open[side] == (sided_normal(scene, side).z > 0 ? 1 : 0));
+  }
+}
+
 TEST_CASE(
     "Texels become coarser until they fit, and those asked for are refused where they do not") {
   const Scene scene = with_one_lamp(furnished_room(2));

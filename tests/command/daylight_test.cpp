@@ -108,6 +108,17 @@ TEST_CASE("a room that no sky shines into is warned of") {
   std::erase(arguments, "--quiet");
   const Outcome year = succeed(arguments);
   CHECK_THAT(year.errors, Contains("no light of the sky") && Contains("glass"));
+  // Without daylight lamps stay on in every hour, here at a share of their power over one point.
+  arguments = quick("daylight", closed,
+                    {"--inside", "0,0,0", "--weather", write_weather(folder), "--lamps-to", "1e-3",
+                     "--spacing", "9", "-o", folder / "lamps.json"});
+  succeed(arguments);
+  const auto grid = nlohmann::json::parse(folder.read("lamps.json")).at(0);
+  REQUIRE(grid["points"] == 1);
+  for (const auto& lamp : grid["lamps"]) {
+    CHECK(lamp["kilowatt_hours"] > 0);
+    CHECK(lamp["kilowatt_hours"] < 0.5 * lamp["undimmed_kilowatt_hours"].get<double>());
+  }
   arguments = quick("measure", closed, {"--inside", "0,0,0", "--daylight-factor"});
   std::erase(arguments, "--quiet");
   const Outcome factors = succeed(arguments);
@@ -131,6 +142,13 @@ TEST_CASE("daylight without weather, or with a sky of its own, is refused in a l
   CHECK_THAT(
       refused({"--weather", write_weather(folder), "--blinds", "*=0.1", "--suns", "patches"}),
       Contains("--suns"));
+  const auto groups = [&](int count) {
+    std::vector<std::string> more{"--weather", folder.write("none.epw", "")};
+    for (int i = 0; i < count; ++i) more.insert(more.end(), {"--blinds", "*=0.1"});
+    return run_photile(quick("daylight", scene, more)).errors;
+  };
+  CHECK_THAT(groups(4), Contains("none.epw"));
+  CHECK_THAT(groups(5), Contains("--blinds: 5 groups") && Contains("more than 4"));
 }
 
 TEST_CASE("daylight factors are per cent of the sky's lux") {

@@ -53,6 +53,8 @@ TEST_CASE("info lists the groups that it is given, with the sum of their lights'
   const FileFolder folder;
   const std::string scene = write_box(folder);
   CHECK(info(scene)["groups"].empty());
+  // An option that may be repeated takes one word each time.
+  only_error(run_photile({"info", scene, "--light-group", "l*=left", "r*=right"}), usage);
   const auto facts = info(scene, {"--light-group", "*t=both"});
   CHECK(facts["lights"][0]["group"] == "both");
   REQUIRE(facts["groups"].size() == 1);
@@ -78,11 +80,16 @@ TEST_CASE("info applies the emissive scale and the lumens per watt that it is gi
   CHECK(scaled["lights"][0]["lumens"].get<double>() == Approx(1790 * plain).epsilon(1e-6));
 }
 
-TEST_CASE("info as text names every light and material") {
+TEST_CASE("info as text names every light and material, and what a coat adds to its colour") {
   const FileFolder folder;
-  const Outcome outcome = succeed({"info", write_box(folder)});
-  CHECK_THAT(outcome.output, Contains("light: left: area") && Contains("light: right: area") &&
-                                 Contains("material: wall: diffuse, 12 triangles"));
+  folder.write("box.mtl",
+               box_mtl() + "newmtl coated\nKd 0.5 0.5 0.5\nKs 0.3 0.3 0.3\nNs 50\nillum 2\n");
+  const std::string scene = folder.write("box.obj", box_obj() + "usemtl coated\nf 1 2 7\n");
+  CHECK_THAT(succeed({"info", scene}).output,
+             Contains("light: left: area") && Contains("light: right: area") &&
+                 Contains("material: wall: diffuse, 12 triangles") &&
+                 Contains("material: coated: glossy, 1 triangle, reflectance 0.65 (0.5 entered, "
+                          "and 0.3 specular"));
 }
 
 TEST_CASE("info counts what the import dropped, and says so") {
@@ -111,8 +118,7 @@ TEST_CASE("info names rough glass, which it treats as smooth") {
              Contains("warning: material 'frosted': rough glass (Ns 80) is treated as smooth"));
 }
 
-TEST_CASE(
-    "info takes the scene of a glTF file that --scene names, and refuses one that is not there") {
+TEST_CASE("info takes the scene of a glTF file that is named, and refuses one that is not there") {
   const FileFolder folder;
   const std::string scene = folder.write("two.gltf", R"({"asset": {"version": "2.0"},
     "scenes": [{"name": "day", "nodes": [0]}, {"name": "night", "nodes": [0, 1]}],
@@ -124,9 +130,9 @@ TEST_CASE(
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
   CHECK(info(scene)["lights"].size() == 1);
-  CHECK(info(scene, {"--scene", "night"})["lights"].size() == 2);
-  CHECK(info(scene, {"--scene", "1"})["lights"].size() == 2);
-  const Outcome dusk = run_photile({"info", scene, "--scene", "dusk"});
+  CHECK(info(scene, {"--set", "scene=night"})["lights"].size() == 2);
+  CHECK(info(scene, {"--set", "scene=1"})["lights"].size() == 2);
+  const Outcome dusk = run_photile({"info", scene, "--set", "scene=dusk"});
   CHECK_THAT(only_error(dusk, 2), Contains("0 'day', 1 'night'"));
 }
 
@@ -138,16 +144,6 @@ TEST_CASE("info names solid glass on a single sheet") {
   const auto warnings = info(scene)["warnings"];
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0].get<std::string>(), Contains("material pane") && Contains("3 edges"));
-}
-
-TEST_CASE("only a scene of a doubtful size is doubted") {
-  const auto doubt = [](double size) {
-    return app::doubtful_unit({glm::dvec3(0.0), glm::dvec3(size, 1e-3, 1e-3)});
-  };
-  CHECK_THAT(doubt(3000), Contains("3000 m") && Contains("millimetres"));
-  CHECK(doubt(5).empty());
-  CHECK(doubt(100).empty());
-  CHECK_THAT(doubt(0.005), Contains("0.005 m"));
 }
 
 // Options that add lights, through the whole command.

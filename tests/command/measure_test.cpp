@@ -247,10 +247,13 @@ TEST_CASE("a point beyond the walls is blank in every file, and the others keep 
   const FileFolder folder;
   const std::string points =
       folder.write("p.pts", "0 0 0 0 1 0\n9 0 0.1 0 1 0\n0.3 0 0.2 0 1 0\n-0.3 0.1 0.2 0 1 0\n");
+  const std::string scene = write_box(folder);
   const Outcome outcome =
-      succeed(measure(write_box(folder), {"--points", points, "-o", folder / "a.csv", "-o",
-                                          folder / "a.json", "--honeybee", folder / "bee"}));
+      succeed(measure(scene, {"--points", points, "-o", folder / "a.csv", "-o", folder / "a.json",
+                              "--honeybee", folder / "bee"}));
   CHECK_THAT(outcome.output, Contains("p: 3 points, and 1 blank"));
+  const Outcome told = succeed(typed("measure", scene, "--photons 5k --rays 16 --points", points));
+  CHECK_THAT(told.errors, Contains("p: 1 of 4 points are blank: they lie inside a solid or"));
   CHECK_THAT(folder.read("a.csv"), Contains("p,1,9,0,0.1,0,1,0,,,,,,,inside a solid or beyond"));
   const std::string res = folder.read("bee/p.res");
   CHECK(std::count(res.begin(), res.end(), '\n') == 4);

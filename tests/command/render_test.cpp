@@ -103,6 +103,21 @@ TEST_CASE("an EXR tells how it was made") {
   CHECK(picture.matrices.size() == 2);  // worldToCamera and worldToNDC
 }
 
+TEST_CASE("a camera stands where --eye says and looks where --look-at says, whatever points up") {
+  const FileFolder folder;
+  render(folder,
+         {"-o", folder / "out.exr", "--eye", "0.25,-0.5,0.5", "--look-at", "0.25,-0.5,-0.5"});
+  CHECK_THAT(read_image(folder / "out.exr").attributes.at("photile.view"),
+             Contains("-vp 0.25 -0.5 0.5 -vd 0 0 -1 -vu 0 1 0"));
+  render(folder, {"-o", folder / "out.exr", "--eye", "0.25,-0.5,0.5", "--look-at", "0.25,0.5,0.5",
+                  "--set", "up=z"});
+  CHECK_THAT(read_image(folder / "out.exr").attributes.at("photile.view"),
+             Contains("-vp 0.25 -0.5 0.5 -vd 0 1 0 -vu 0 0 1"));
+  const Outcome outcome = run_photile(typed("render", write_box(folder), "-o", folder / "out.exr",
+                                            "--eye 1,2,3 --look-at 1,2,3 --size 8x8"));
+  CHECK_THAT(last_error(outcome, usage), Contains("--look-at 1,2,3") && Contains("--eye"));
+}
+
 TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
   const FileFolder folder;
   render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "-o",

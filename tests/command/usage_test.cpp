@@ -247,6 +247,12 @@ TEST_CASE("what --set does not know is refused in a line that says what to type"
   CHECK_THAT(only_error(run_photile(all), usage), Contains(remedy));
 }
 
+TEST_CASE("the memory of a device is set in GiB") {
+  DeviceOptions options;
+  assign_named(device_settings(options), "device_memory=1.5");
+  CHECK(options.memory_bytes == std::uint64_t{3} << 29);
+}
+
 TEST_CASE("settings of scenes and devices are set by name, too") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

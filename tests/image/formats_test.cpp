@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "image/decoder.hpp"
+#include "image/picture_checks.hpp"
 #include "picture_support.hpp"
 #include "source_folder.hpp"
 
@@ -292,6 +293,37 @@ TEST_CASE("bytes changed at random give a picture or an error") {
       picture_of(kind.file, bytes);
     }
   }
+}
+
+TEST_CASE("what a picture decodes to is bounded by the bytes of its samples") {
+  // 16,384 x 16,384 pixels of 16 bytes are 4 GiB, the limit.
+  const auto check = [](int channels, image::Sample sample) {
+    image::check_shape({16'384, 16'384, channels, sample}, std::size_t{1} << 30);
+  };
+  for (const auto& [sample, most] : {std::pair(image::Sample::byte, 16),
+                                     std::pair(image::Sample::word, 8),
+                                     {image::Sample::real, 4}}) {
+    CHECK_NOTHROW(check(most, sample));
+    CHECK_THROWS_AS(check(most + 1, sample), image::DecodeError);
+  }
+}
+
+TEST_CASE("a PNG whose text ends beyond the file is refused before libpng takes its memory") {
+  using namespace std::string_literals;
+  const std::string png =
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\0\0\0\0\x3a\x7e\x9b\x55\x7f\xff\xff\xfftEXt"s;
+  CHECK_THROWS_WITH(image::open_picture("a.png", span_of(png)), "the file ends too early");
+}
+
+TEST_CASE("a WebP that is wide and low is read") {
+  const TemporaryFolder folder;
+  const auto output = OIIO::ImageOutput::create("webp");
+  REQUIRE(
+      output->open((folder / "a.webp").string(), OIIO::ImageSpec(1'100, 4, 3, TypeDesc::UINT8)));
+  REQUIRE(output->write_image(TypeDesc::UINT8, std::vector<unsigned char>(1'100 * 4 * 3).data()));
+  REQUIRE(output->close());
+  const std::string bytes = bytes_of(folder / "a.webp");
+  CHECK(image::open_picture("a.webp", span_of(bytes))->shape().width == 1'100);
 }
 
 }  // namespace photile::test

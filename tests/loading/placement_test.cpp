@@ -23,15 +23,6 @@ void check_vector(const glm::dvec3& actual, const glm::dvec3& expected) {
   CHECK(glm::length(actual - expected) < 1e-9);
 }
 
-/// Position of a point in the picture, both from -1 to 1 with (-1, 1) the upper left corner;
-/// outside that range, or with a negative depth, it is not seen.
-glm::dvec3 projected(const Camera& camera, const glm::dvec3& point, double aspect) {
-  const glm::dvec3 d = point - camera.position;
-  const double depth = glm::dot(d, camera.forward);
-  const double half = std::tan(0.5 * camera.vertical_field_of_view) * depth;
-  return {glm::dot(d, camera.right) / (half * aspect), glm::dot(d, camera.up) / half, depth};
-}
-
 TEST_CASE("a camera that looks at a point has a right-handed orthonormal frame") {
   const Camera camera = Camera::look_at({1, 2, 3}, {4, -1, 2}, {0, 1, 0}, 1.0);
   check_vector(camera.right, glm::cross(camera.forward, camera.up));
@@ -52,50 +43,6 @@ TEST_CASE("rays of a camera meet the corners of its film where the field of view
   check_vector(camera.direction(100, 50, 200, 100), {0, 0, -1});
   check_vector(camera.direction(0, 0, 200, 100), glm::normalize(glm::dvec3(-2, 1, -1)));
   check_vector(camera.direction(200, 100, 200, 100), glm::normalize(glm::dvec3(2, -1, -1)));
-}
-
-/// A box of unit side around (0.5, 0.5, 0.5) without the sides that `open` names.
-std::string box(const std::string& open) {
-  std::string obj =
-      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nusemtl lamp\n";
-  if (open != "-z") obj += "f 1 2 3 4\n";
-  if (open != "+z") obj += "f 5 6 7 8\n";
-  if (open != "-x") obj += "f 1 4 8 5\n";
-  if (open != "+x") obj += "f 2 3 7 6\n";
-  return obj + "f 1 2 6 5\nf 4 3 7 8\n";
-}
-
-TEST_CASE("a room with an open side is framed through that side from outside") {
-  const std::vector<std::pair<std::string, glm::dvec3>> sides{
-      {"-z", {0, 0, 1}}, {"+z", {0, 0, -1}}, {"-x", {1, 0, 0}}, {"+x", {-1, 0, 0}}};
-  for (const auto& [open, forward] : sides) {
-    const Scene scene = load_obj(box(open), lamp_and_wall);
-    REQUIRE(scene.cameras.size() == 1);
-    const Camera& camera = scene.cameras[0];
-    check_vector(camera.forward, forward);
-    // The opening spans the picture's height: its edges are at +-1.
-    const glm::dvec3 lip = glm::dvec3(0.5) - 0.5 * forward;
-    CHECK(projected(camera, lip + glm::dvec3(0, 0.5, 0), 4.0 / 3.0).y == Approx(1.0));
-    CHECK(projected(camera, lip, 4.0 / 3.0).z > 0.0);
-  }
-}
-
-TEST_CASE("a closed room is seen from the inside") {
-  const Scene scene = load_obj(box("none"), lamp_and_wall);
-  const Camera& camera = scene.cameras[0];
-  CHECK(glm::all(glm::greaterThan(camera.position, glm::dvec3(0.0))));
-  CHECK(glm::all(glm::lessThan(camera.position, glm::dvec3(1.0))));
-  CHECK(glm::dot(glm::dvec3(0.5) - camera.position, camera.forward) > 0.0);
-}
-
-TEST_CASE("an object without a room is seen whole from outside") {
-  const Scene scene = load_obj(unit_square + "usemtl lamp\nf 1 2 3 4\n", lamp_and_wall);
-  for (const glm::vec3& vertex : scene.vertices) {
-    const glm::dvec3 seen = projected(scene.cameras[0], glm::dvec3(vertex), 1.0);
-    CHECK(std::abs(seen.x) <= 1.0);
-    CHECK(std::abs(seen.y) <= 1.0);
-    CHECK(seen.z > 0.0);
-  }
 }
 
 TEST_CASE("a glTF camera looks along -z of its node, and scale does not change it") {
@@ -263,6 +210,56 @@ TEST_CASE("a room that lies on its side is told with the remedy, and is not turn
 TEST_CASE("an axis that is none is refused") {
   CHECK_THROWS_WITH(load_obj(room({6, 2.8, 5}, worlds[0].file), white, up("w")),
                     Contains("'w'") && Contains("-z"));
+}
+
+// Files in another unit of length: scaled as asked, and told where they look so.
+
+std::function<glm::dvec3(const glm::dvec3&)> times(double factor) {
+  return [factor](const glm::dvec3& p) { return factor * p; };
+}
+
+TEST_CASE("a room in millimetres becomes the room in metres") {
+  SceneLoadOptions millimetres;
+  millimetres.metres_per_unit = 1e-3;
+  const Scene metres = load_obj(room({6, 2.8, 5}, worlds[0].file), white, {});
+  const Scene scaled = load_obj(room({6, 2.8, 5}, times(1000)), white, millimetres);
+  REQUIRE(scaled.vertices.size() == metres.vertices.size());
+  for (std::size_t i = 0; i < metres.vertices.size(); ++i) {
+    const glm::dvec3 there = glm::dvec3(scaled.vertices[i]) + scaled.origin;
+    CHECK(glm::distance(there, glm::dvec3(metres.vertices[i]) + metres.origin) < 1e-5);
+  }
+}
+
+TEST_CASE("a scene of a doubtful size is told with the units that make a room of it") {
+  const auto warnings = [](double factor, double metres_per_unit) {
+    SceneLoadOptions options;
+    options.metres_per_unit = metres_per_unit;
+    return load_obj(room({6, 2.8, 5}, times(factor)), white, options).report.warnings;
+  };
+  const auto millimetres = warnings(1000, 1);
+  REQUIRE(millimetres.size() == 1);
+  CHECK_THAT(millimetres.front(), Contains("6000 m") && Contains("--set units=mm makes it 6 m"));
+  const auto inches = warnings(1 / 0.0254, 1);
+  REQUIRE(inches.size() == 1);
+  CHECK_THAT(inches.front(), Contains("--set units=in makes it 6 m"));
+  CHECK(warnings(1, 1).empty());
+  CHECK(warnings(20, 1).empty());
+  CHECK(warnings(1000, 1e-3).empty());
+  CHECK_THAT(warnings(0.001, 1).front(), Contains("0.006 m") && Contains("--set units"));
+}
+
+TEST_CASE("a glTF file in centimetres has its triangles and cameras in metres") {
+  nlohmann::json document = square_document();
+  document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  document["nodes"].push_back({{"name", "eye"}, {"camera", 0}, {"translation", {50, 60, 300}}});
+  document["scenes"][0]["nodes"] = {0, 1};
+  SceneLoadOptions centimetres = up("z");
+  centimetres.metres_per_unit = 0.01;
+  const Scene scene = load_gltf(document, centimetres);
+  // A square metre in the file.
+  CHECK(triangle_area(scene, 0) == Approx(0.5e-4));
+  const glm::dvec3 eye = in_world(scene, scene.cameras.front()).position;
+  CHECK(glm::distance(eye, glm::dvec3(0.5, 0.6, 3)) < 1e-6);
 }
 
 // Coordinates are read in double precision and counted from an origin near the triangles.

@@ -191,7 +191,8 @@ void CommandBuilder::sky() {
     maybe(0.9, {"--time", dice_.one_of({"2026-06-21T14:00", "2026-12-21T02:00"})});
   }
   maybe(0.03, {"--set", "north=" + dice_.one_of({"90", "-360", "361", "nan"})});
-  maybe(0.03, {"--portals", dice_.one_of({"off", "auto", "glass*", "*", "stuff*", "["})});
+  maybe(0.03, {"--set", "portals=" + dice_.one_of({"off", "auto", "glass*", "*", "stuff*", "["})});
+  maybe(0.02, {"--set", "units=" + dice_.one_of({"mm", "m", "ft", "yards"})});
 }
 
 void CommandBuilder::luminaires() {

@@ -298,7 +298,9 @@ TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, a
   stages_refuse([](Scene& s) { s.triangle_light[5] = 0; }, "light 0, which is no area light");
   stages_refuse([](Scene& s) { s.materials[0].diffuse_texture = 0; }, "has texture 0 of 0");
   stages_refuse([](Scene& s) { s.materials[0].diffuse.g = nan; }, "reflectances lie in [0, 1]");
-  stages_refuse([](Scene& s) { s.lights[0].power = nan; }, "has the power nan");
+  for (const double power : {double{nan}, -1.0, 1e300}) {
+    stages_refuse([power](Scene& s) { s.lights[0].power = power; }, "has the power");
+  }
   stages_refuse([](Scene& s) { s.lights[0].distribution = 2; }, "has distribution 2 of 0");
   stages_refuse([](Scene& s) { s.lights[0].kind = LightKind::environment; }, "surroundings");
   stages_refuse([](Scene& s) { s.instances.emplace_back(); }, "instance of mesh 0");

@@ -159,14 +159,15 @@ struct AnimatedFile {
         {{"input", input}, {"output", output}, {"interpolation", interpolation}});
   }
 
-  reading::CameraMotion read(const std::string& animation = "") {
+  reading::CameraMotion read(const std::string& animation = "",
+                             const SceneLoadOptions& options = {}) {
     const std::string bytes(reinterpret_cast<const char*>(numbers.data()), 4 * numbers.size());
     std::ofstream(folder.path / "a.bin", std::ios::binary) << bytes;
     document["buffers"] = {{{"uri", "a.bin"}, {"byteLength", bytes.size()}}};
     std::ofstream(folder.path / "a.gltf") << document.dump();
     Camera camera;
     camera.name = "eye";
-    return gltf::read_camera_animation(folder.path / "a.gltf", {}, camera, animation);
+    return gltf::read_camera_animation(folder.path / "a.gltf", options, camera, animation);
   }
 };
 
@@ -184,6 +185,16 @@ TEST_CASE("LINEAR translations go straight, in the space of the node above") {
   check_close(motion.at(1).position, {0, 1, 0});
   check_close(motion.at(1.5).position, {1, 1.5, 0});
   check_close(motion.at(99).position, {4, 3, 0});
+  check_close(motion.at(1.5).forward, {0, 0, -1});
+}
+
+TEST_CASE("an animation in centimetres moves its camera by metres") {
+  AnimatedFile file;
+  file.animate(1, "translation", "LINEAR", {1, 3}, {0, 0, 0, 400, 200, 0});
+  SceneLoadOptions centimetres;
+  centimetres.metres_per_unit = 0.01;
+  const auto motion = file.read("", centimetres);
+  check_close(motion.at(99).position, {4, 2.01, 0});
   check_close(motion.at(1.5).forward, {0, 0, -1});
 }
 

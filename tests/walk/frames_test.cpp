@@ -1,7 +1,9 @@
 // Frames of a walk.
 #include "walk/frames.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,7 @@ TEST_CASE("hashes and printf's numbers become frame numbers, as wide as they say
       {"a%04d.exr", 7, "a0007.exr"},
       {"a%d.exr", 7, "a7.exr"},
       {"a%3d.exr", 7, "a  7.exr"},
+      {"a%09d.exr", 7, "a000000007.exr"},
       {"a%%0d.exr", 7, "a%7.exr"},
       {"c#/b##.exr", 3, "c#/b03.exr"},
       {"out/walk.png", 3, "out/walk.0003.png"},
@@ -115,6 +118,25 @@ TEST_CASE("frames lie from left to right and from top to bottom, the rest of the
   }
   const int sixth = gap + 2 * (width + gap);
   CHECK(at(image, "G", sixth, gap + height + gap) == at(image, "G", 0, 0));
+}
+
+TEST_CASE("of more frames than a sheet holds it shows as many as it holds, at even distances") {
+  const auto [count, most] = GENERATE(table<int, int>({{3, 5}, {5, 5}, {6, 5}, {9, 5}, {1000, 7}}));
+  CAPTURE(count, most);
+  std::vector<int> shown;
+  for (int frame = 0; frame < count; ++frame) {
+    const int place = walk::place_on_sheet(frame, count, most);
+    if (place < 0) continue;
+    CHECK(place == static_cast<int>(shown.size()));
+    shown.push_back(frame);
+  }
+  REQUIRE(shown.size() == static_cast<std::size_t>(std::min(count, most)));
+  CHECK(shown.front() == 0);
+  shown.push_back(count);
+  const double even = std::max(1.0, double(count) / most);
+  for (std::size_t i = 1; i < shown.size(); ++i) {
+    CHECK(std::abs(shown[i] - shown[i - 1] - even) < 1);
+  }
 }
 
 TEST_CASE("large frames are drawn small, as the means of their pixels") {

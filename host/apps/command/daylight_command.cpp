@@ -181,7 +181,7 @@ void run_daylight(DaylightOptions& options) {
   if (scene.portals.empty()) {
     progress.note(
         "no windows were found: rays look for the sky everywhere; name the panes' material by "
-        "--portals if there are some");
+        "--set portals=GLOB if there are some");
   }
   const LightMix mix = mix_of(scene, render);
   for (const auto& grid : grids)

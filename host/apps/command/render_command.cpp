@@ -234,7 +234,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   }));
   record.mix = mix_of(scene, options);
   tell_scene(scene, record.mix, progress);
-  const Camera camera = projected(choose_camera(scene, options.camera), options);
+  const Camera camera = projected(camera_of(scene, options), options);
   set_film_size(options.parameters.film, options.size, camera);
   record.scene = scene.source.filename().string();
   record.camera = camera.name;

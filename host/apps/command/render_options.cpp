@@ -25,6 +25,18 @@ void add_view_group(CLI::App& command, RenderOptions& options) {
   command.add_option("--camera", options.camera, "name or index; default: the first")
       ->type_name("NAME|INDEX")
       ->group("Picture");
+  const auto add_point = [&](const char* name, std::vector<double>& point, const char* help) {
+    command.add_option(name, point, help)
+        ->type_name("X,Y,Z")
+        ->delimiter(',')
+        ->expected(3)
+        ->transform(number_between(-limits::max_coordinate, limits::max_coordinate))
+        ->group("Picture");
+  };
+  add_point("--eye", options.eye,
+            "where the camera stands, metres in the axes of the file, whose extents photile info "
+            "prints; default: as --camera says");
+  add_point("--look-at", options.look_at, "what it looks at; default: straight on");
   command
       .add_option(
           "--size", options.size,
@@ -242,6 +254,27 @@ const Camera& choose_camera(const Scene& scene, const std::string& selector) {
   }
   throw UsageError(
       fmt::format("no camera '{}' in {}; it has {}", selector, scene.source.string(), known));
+}
+
+Camera camera_of(const Scene& scene, const RenderOptions& options) {
+  const Camera& chosen = choose_camera(scene, options.camera);
+  if (options.eye.empty() && options.look_at.empty()) return chosen;
+  const Camera from = in_world(scene, chosen);
+  const auto point = [](const std::vector<double>& given, const glm::dvec3& otherwise) {
+    return given.empty() ? otherwise : glm::dvec3(given[0], given[1], given[2]);
+  };
+  const glm::dvec3 eye = point(options.eye, from.position);
+  const glm::dvec3 target = point(options.look_at, eye + from.forward);
+  if (!(glm::distance(eye, target) > 0)) {
+    throw UsageError(fmt::format(
+        "--look-at {:g},{:g},{:g}: the camera stands there; give another point or --eye", target.x,
+        target.y, target.z));
+  }
+  const glm::dvec3 up = direction_in_world(scene, {0, 1, 0});
+  Camera camera = Camera::look_at(eye, target, up, from.vertical_field_of_view);
+  camera.name = from.name;
+  camera.aspect_ratio = from.aspect_ratio;
+  return in_scene(scene, camera);
 }
 
 Camera projected(Camera camera, const RenderOptions& options) {

@@ -38,7 +38,8 @@ struct RenderOptions {
   Quality quality = Quality::draft;  ///< the settings are its own but for those given
   RefinementGoal goal;               ///< pictures are made until it is met
   std::string camera;
-  std::string size;  ///< "" = by the camera
+  std::vector<double> eye, look_at;  ///< points in the file's world; empty = by the camera
+  std::string size;                  ///< "" = by the camera
   Projection projection = Projection::perspective;
   double field_of_view = 0;         ///< degrees, or metres of parallel rays; 0 = by the camera
   std::vector<LightChange> lights;  ///< what --light asks for
@@ -98,6 +99,10 @@ void refuse_photon_map_options(const CLI::App& command);
 /// The camera named by `selector`: a name, an index, or "" for the first.
 /// Errors: UsageError listing those there are.
 const Camera& choose_camera(const Scene& scene, const std::string& selector);
+
+/// The camera that --camera names, moved to --eye and turned to --look-at, upright.
+/// Errors: those of choose_camera; UsageError where it would look at its own place.
+Camera camera_of(const Scene& scene, const RenderOptions& options);
 
 /// The camera with the projection and the field of view that are asked for. Errors: UsageError for
 /// an angle that the projection cannot have.

@@ -14,11 +14,6 @@ namespace photile::app {
 
 void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
   command
-      .add_option("--scene", options.scene,
-                  "scene of a glTF file, name or index; default: the file's own, else the first")
-      ->type_name("NAME|INDEX")
-      ->group(group);
-  command
       .add_option_function<std::vector<std::string>>(
           "--reflectance",
           [&options](const std::vector<std::string>& texts) {
@@ -112,13 +107,6 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::
       ->type_name("KIND=LUX|perez=DIRECT,DIFFUSE|patches=N")
       ->group(group);
   add_situation_options(command, options.situation, group);
-  command
-      .add_option("--portals", options.portals,
-                  "windows that photons of suns and skies start through: auto finds them, off, or "
-                  "globs of the materials of their panes; repeatable")
-      ->type_name("auto|off|GLOB")
-      ->allow_extra_args(false)
-      ->group(group);
 }
 
 void add_mood_options(CLI::App& command, MoodOptions& options, const std::string& group) {

@@ -16,10 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-// An interior in millimetres is thousands of units wide, one in metres hardly ever 500.
-constexpr double doubtfully_large = 500;   // metres
-constexpr double doubtfully_small = 0.05;  // metres
-
 /// "reflectance 0.52", and why it is not the colour that the file has; "" of glass.
 std::string reflectance_text(const Scene& scene, const Material& material) {
   const auto reflectance = scene::reflectance_of(scene, material);
@@ -170,21 +166,6 @@ Extents extents_of(const Scene& scene) {
   return extents;
 }
 
-std::string doubtful_unit(const Extents& extents) {
-  const glm::dvec3 size = extents.size();
-  const double largest = std::max({size.x, size.y, size.z});
-  if (largest > doubtfully_large) {
-    return fmt::format(
-        "the scene is {:.4g} m wide: its file is probably in millimetres or centimetres; scale it "
-        "to metres",
-        largest);
-  }
-  if (largest < doubtfully_small) {
-    return fmt::format("the scene is {:.4g} m wide: is its file in metres?", largest);
-  }
-  return {};
-}
-
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
   const glm::dvec3 size = extents_of(scene).size();
   std::vector<std::string> lines{
@@ -225,16 +206,8 @@ std::vector<std::string> material_summary(const Scene& scene) {
   return lines;
 }
 
-std::vector<std::string> scene_warnings(const Scene& scene) {
-  std::vector<std::string> lines = scene.report.warnings;
-  if (const std::string doubt = doubtful_unit(extents_of(scene)); !doubt.empty()) {
-    lines.push_back(doubt);
-  }
-  return lines;
-}
-
 std::vector<std::string> info_warnings(const Scene& scene) {
-  std::vector<std::string> lines = scene_warnings(scene);
+  std::vector<std::string> lines = scene.report.warnings;
   const std::vector<std::uint32_t> open = scene::open_edges_of_glass(scene);
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (open[i] == 0) continue;

@@ -18,10 +18,6 @@ struct Extents {
 };
 Extents extents_of(const Scene& scene);
 
-/// "" or a line that doubts the file's unit of length: an interior is neither kilometres wide nor a
-/// few millimetres.
-std::string doubtful_unit(const Extents& extents);
-
 /// "area", "point", "spot", "photometric", "sun", "directional" or "environment".
 const char* kind_name(const Light& light);
 
@@ -34,10 +30,7 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 /// How each material scatters, on how many triangles and with which texture, a line each.
 std::vector<std::string> material_summary(const Scene& scene);
 
-/// The import's warnings and a doubtful unit, a line each.
-std::vector<std::string> scene_warnings(const Scene& scene);
-
-/// These, and what takes a look at every triangle: solid glass on open sheets.
+/// The import's warnings, and what takes a look at every triangle: solid glass on open sheets.
 std::vector<std::string> info_warnings(const Scene& scene);
 
 /// Everything that `photile info` tells.

@@ -34,6 +34,7 @@ std::string type_name(const ValueRange& range) {
   if (const auto* words = std::get_if<Words>(&range)) {
     return fmt::format("{}", fmt::join(words->words, "|"));
   }
+  if (const auto* text = std::get_if<Text>(&range)) return std::string(text->form);
   return std::holds_alternative<WholeNumbers>(range) ? "N" : "X";
 }
 
@@ -182,6 +183,35 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
        .initial = "y, and a warning where it seems to be z",
        .set = [&options](
                   const SettingValue& value) { options.up = std::get<std::string_view>(value); }},
+      {.name = "units",
+       .group = group,
+       .range = Words{loading::names_of_units()},
+       .help = "what lengths in the file are in",
+       .initial = "m, and a warning where the scene is as wide as no room",
+       .set =
+           [&options](const SettingValue& value) {
+             options.metres_per_unit = loading::metres_in(std::get<std::string_view>(value));
+           }},
+      {.name = "scene",
+       .group = group,
+       .range = Text{"NAME or INDEX"},
+       .help = "scene of a glTF file",
+       .initial = "the file's own, else the first",
+       .set =
+           [&options](const SettingValue& value) {
+             options.scene = std::get<std::string_view>(value);
+           }},
+      {.name = "portals",
+       .group = group,
+       .range = Text{"auto, off or GLOB"},
+       .help =
+           "windows that photons of suns and skies start through: auto finds them, off, or globs "
+           "of the materials of their panes; repeatable",
+       .initial = "auto",
+       .set =
+           [&options](const SettingValue& value) {
+             options.portals.emplace_back(std::get<std::string_view>(value));
+           }},
       bound_number("north", group, loading::turns, options.situation.north_degrees,
                    "where north lies, clockwise from -z as seen from above", "degrees"),
       bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,

@@ -29,7 +29,7 @@ void tell_device(const DeviceInfo& device, Progress& progress) {
 
 void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
   for (const auto& line : scene_summary(scene, mix)) progress.note(line);
-  const auto warnings = scene_warnings(scene);
+  const std::vector<std::string>& warnings = scene.report.warnings;
   for (std::size_t i = 0; i < std::min(warnings.size(), shown_warnings); ++i) {
     progress.note("warning: " + warnings[i]);
   }

@@ -170,7 +170,7 @@ void run_trade(TradeOptions& options) {
   std::vector<Device> devices = open_devices(render.device);
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
-  const Camera& camera = choose_camera(scene, render.camera);
+  const Camera camera = camera_of(scene, render);
   Film& film = render.parameters.film;
   film.width = defaults::trade_width;
   film.height = defaults::trade_height;

@@ -124,8 +124,9 @@ std::optional<SettingValue> parse_value(std::string_view text, const ValueRange&
   };
   const std::optional<SettingValue> value =
       std::holds_alternative<WholeNumbers>(range) ? as_value(parse_count(text))
-      : std::holds_alternative<Words>(range)      ? std::optional<SettingValue>(text)
-                                                  : as_value(parse_number<double>(text));
+      : std::holds_alternative<Words>(range) || std::holds_alternative<Text>(range)
+          ? std::optional<SettingValue>(text)
+          : as_value(parse_number<double>(text));
   return value && contains(range, *value) ? value : std::nullopt;
 }
 

@@ -66,7 +66,7 @@ void run_view(ViewOptions& options) {
   const Scene& scene = sourced.scene;
   render.mood.edited = true;
   const LightMix mix = mix_of(scene, render);
-  const Camera& camera = choose_camera(scene, render.camera);
+  const Camera camera = camera_of(scene, render);
   set_film_size(render.parameters.film, render.size, camera);
   tell_scene(scene, mix, progress);
 

@@ -272,7 +272,8 @@ class Walk {
 
   /// The frame as PNG and on the contact sheet, all with the exposure of the first.
   void show(int frame, std::optional<Image> root) {
-    const bool on_sheet = sheet_ && place_on_sheet(frame) >= 0;
+    const int place = walk::place_on_sheet(frame, count_, most_on_sheet);
+    const bool on_sheet = sheet_ && place >= 0;
     const bool to_png = png_names_ && (root || !is_whole(png_names_->of(number(frame))));
     if (!on_sheet && !to_png && exposure_) return;
     if (!exposure_ && !sheet_ && !png_names_) return;
@@ -282,16 +283,7 @@ class Walk {
     const ToneMapping& asked = options_.render.pictures.tone_mapping;
     const Image displayed = tone_map(*root, {false, *exposure_ + asked.exposure, asked.view});
     if (to_png) write_png(png_names_->of(number(frame)), displayed);
-    if (on_sheet) sheet_->add(place_on_sheet(frame), displayed);
-  }
-
-  /// The number of a frame on the sheet, or -1: of a long walk the sheet shows frames at even
-  /// distances.
-  int place_on_sheet(int frame) const {
-    if (count_ <= most_on_sheet) return frame;
-    const auto place = static_cast<int>(std::int64_t{frame} * most_on_sheet / count_);
-    const bool first = frame == 0 || std::int64_t{frame - 1} * most_on_sheet / count_ < place;
-    return first ? place : -1;
+    if (on_sheet) sheet_->add(place, displayed);
   }
 
   const WalkOptions& options_;
@@ -358,7 +350,7 @@ void run_walk(WalkOptions& options) {
   TerminalProgress progress(render.quiet || !leads());
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
-  const Camera& camera = choose_camera(scene, render.camera);
+  const Camera camera = camera_of(scene, render);
   set_film_size(render.parameters.film, render.size, camera);
   const Camera base = in_world(scene, camera);
   std::vector<Device> devices = devices_for(render, progress);

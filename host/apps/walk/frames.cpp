@@ -129,6 +129,13 @@ float mean(const std::vector<float>& plane, int width, int x0, int x1, int y0, i
 
 }  // namespace
 
+int place_on_sheet(int frame, int count, int most) {
+  if (count <= most) return frame;
+  const auto place = static_cast<int>(std::int64_t{frame} * most / count);
+  const bool first = frame == 0 || std::int64_t{frame - 1} * most / count < place;
+  return first ? place : -1;
+}
+
 ContactSheet::ContactSheet(int frames, int width, int height)
     : columns_(static_cast<int>(std::ceil(std::sqrt(frames)))) {
   const int rows = (frames + columns_ - 1) / columns_;

@@ -38,6 +38,10 @@ struct FrameRange {
 /// the last is not below the first, and the step is above 0.
 std::optional<FrameRange> parse_frame_range(std::string_view text);
 
+/// The place, from 0, of a frame of `count` on a sheet that shows `most` of them, at even distances
+/// where they are more; -1 for one that it leaves out.
+int place_on_sheet(int frame, int count, int most);
+
 /// Small pictures side by side, left to right and top to bottom, on grey.
 class ContactSheet {
  public:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <memory>
@@ -202,9 +203,10 @@ struct AnimatedChain {
   std::vector<tinygltf::Node> nodes;
   std::vector<int> numbers;  ///< in the file
   std::vector<Channel> channels;
+  double metres_per_unit;
 
   glm::dmat4 world(double time) const {
-    glm::dmat4 result(1.0);
+    glm::dmat4 result = glm::scale(glm::dmat4(1.0), glm::dvec3(metres_per_unit));
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       tinygltf::Node moved = nodes[i];
       for (const Channel& channel : channels) {
@@ -267,6 +269,7 @@ reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
       throw context.error(fmt::format("camera '{}' is no node of the file", camera.name));
     }
     AnimatedChain chain;
+    chain.metres_per_unit = options.metres_per_unit;
     chain.numbers = chain_to(model, *node);
     for (const int number : chain.numbers) {
       chain.nodes.push_back(model.nodes[static_cast<std::size_t>(number)]);

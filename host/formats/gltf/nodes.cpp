@@ -112,7 +112,8 @@ class Walk {
       : model_(model), context_(context), on_path_(model.nodes.size(), false) {}
 
   void from_root(int root, std::vector<NodeVisit>& visits) {
-    enter(root, glm::dmat4(context_.scene.turn), visits);
+    const glm::dvec3 metres(context_.options.metres_per_unit);
+    enter(root, glm::scale(glm::dmat4(context_.scene.turn), metres), visits);
     while (!path_.empty()) {
       Level& level = path_.back();
       const std::vector<int>& children =

@@ -2,12 +2,14 @@
 #include "loading/load_scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <new>
+#include <string_view>
 #include <utility>
 
 #include "common/ascii_text.hpp"
@@ -26,6 +28,7 @@
 #include "scene/camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
+#include "scene/scene_queries.hpp"
 #include "trace/portal_search.hpp"
 
 namespace photile {
@@ -63,6 +66,7 @@ void report_dropped_triangles(const ImportReport& report, files::Warnings& warni
 /// The ranges are those of the command's settings. Errors: UsageError.
 void check_options(const SceneLoadOptions& options) {
   check_value("lumen_per_watt", options.lumen_per_watt, PositiveNumbers{});
+  check_value("metres_per_unit", options.metres_per_unit, PositiveNumbers{});
   check_value("emissive_scale", shortest_double(options.emissive_scale), PositiveNumbers{});
   check_value("environment_scale", options.environment.scale, PositiveNumbers{});
   check_value("environment_rotation", options.environment.rotation_degrees, loading::turns);
@@ -148,6 +152,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
       throw lacks("no triangles with an area; export the scene with its geometry", context);
     }
     if (options.up.empty()) loading::warn_of_other_up(scene, warnings);
+    if (options.metres_per_unit == 1) loading::warn_of_other_unit(scene, warnings);
     for (const reading::AreaLights::Origin& origin : area_lights.finish(warnings)) {
       context.light_sources.push_back(source_of(origin, context));
     }
@@ -207,6 +212,11 @@ constexpr double least_height = 2;      ///< metres, of a room
 constexpr double small_model = 3;       ///< metres: what is smaller is no room
 constexpr double least_share = 0.5;     ///< of the width, the height of a small model
 constexpr double least_evidence = 2;
+// Metres: an interior is seldom as wide, or as small, and one in centimetres is hardly narrower.
+constexpr double doubtfully_wide = 200, doubtfully_small = 0.05;
+constexpr std::array<std::pair<std::string_view, double>, 5> length_units{
+    {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}, {"in", 0.0254}, {"ft", 0.3048}}};
+constexpr double usual_width[] = {2, 150};  ///< metres, of what a unit that is proposed makes
 
 /// Surface that faces along an axis, either way.
 struct Facing {
@@ -270,6 +280,33 @@ void warn_of_other_up(const Scene& scene, files::Warnings& warnings) {
       fmt::format("z seems to point up: {:.3g} m2 face along z, {:.3g} along y, which is taken for "
                   "up; --set up=z turns the scene, --set up=y leaves this line out",
                   z.area, y.area));
+}
+
+std::vector<std::string_view> names_of_units() {
+  std::vector<std::string_view> names;
+  for (const auto& [name, metres] : length_units) names.push_back(name);
+  return names;
+}
+
+double metres_in(std::string_view unit) {
+  const auto found = std::find_if(length_units.begin(), length_units.end(),
+                                  [&](const auto& one) { return one.first == unit; });
+  return found->second;
+}
+
+void warn_of_other_unit(const Scene& scene, files::Warnings& warnings) {
+  const glm::vec3 size = scene::bounds_of(scene).size();
+  const double width = std::max({size.x, size.y, size.z});
+  if (width >= doubtfully_small && width <= doubtfully_wide) return;
+  std::vector<std::string> remedies;
+  for (const auto& [unit, metres] : length_units) {
+    const double then = metres * width;
+    if (then >= usual_width[0] && then <= usual_width[1]) {
+      remedies.push_back(fmt::format("--set units={} makes it {:.4g} m", unit, then));
+    }
+  }
+  if (remedies.empty()) remedies.emplace_back("--set units says what its lengths are in");
+  warnings.add(fmt::format("the scene is {:.4g} m wide; {}", width, fmt::join(remedies, ", ")));
 }
 
 }  // namespace photile::loading

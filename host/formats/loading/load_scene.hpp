@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/value_range.hpp"
@@ -46,5 +47,15 @@ glm::dmat3 turn_upright(const std::string& up);
 /// both a little less. A guess: an empty room 4 x 3 m wide and 2.8 m high is the same box as one 4
 /// x 2.8 m wide and 3 m high, so nothing is turned.
 void warn_of_other_up(const Scene& scene, files::Warnings& warnings);
+
+// In which unit the lengths of a scene file are: glTF says metres, and many exporters do not care.
+
+/// "mm", "cm", "m", "in" and "ft".
+std::vector<std::string_view> names_of_units();
+double metres_in(std::string_view unit);
+
+/// Warns where the scene is wider than a hall or smaller than a cup, and names the units that would
+/// make a room of it. A guess: nothing is scaled.
+void warn_of_other_unit(const Scene& scene, files::Warnings& warnings);
 
 }  // namespace photile::loading

@@ -325,11 +325,11 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
   }
 }
 
-void turn(ObjFile& file, const glm::dmat3& turn) {
-  if (turn == glm::dmat3(1.0)) return;
-  for (auto* vectors : {&file.positions, &file.normals}) {
-    for (glm::dvec3& vector : *vectors) vector = turn * vector;
-  }
+/// Turns the file upright, and its lengths into metres.
+void place(ObjFile& file, const glm::dmat3& turn, double metres_per_unit) {
+  for (glm::dvec3& normal : file.normals) normal = turn * normal;
+  const glm::dmat3 placed = metres_per_unit * turn;
+  for (glm::dvec3& position : file.positions) position = placed * position;
 }
 
 /// Chooses Scene::origin (triangles.hpp) and counts all positions from there.
@@ -375,7 +375,7 @@ void import_obj(reading::ImportContext& context) {
       file.positions[vertex] = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
     }
   }
-  turn(file, context.scene.turn);
+  place(file, context.scene.turn, context.options.metres_per_unit);
   move_to_origin(file, context.scene);
   context.scene.unit = PowerUnit::watt;
   const std::vector<std::uint32_t> material_index =

@@ -88,7 +88,7 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
   // looks find the sky through a window: there what single looks bring would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
-  const int fine = (coarse + 3) / 4;
+  const int fine = std::max((coarse + 3) / 4, std::min(coarse, defaults::least_rays));
   if (open) {
     const int looks =
         std::min(defaults::looks_per_ray_in_the_open * coarse, limits::max_direct_rays);

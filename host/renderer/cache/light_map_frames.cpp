@@ -17,6 +17,7 @@
 
 #include "cache/charts.hpp"
 #include "cache/node_mix.hpp"
+#include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
 #include "trace/eye_path.hpp"
@@ -45,6 +46,9 @@ glm::vec2 place_in_pixel(int i) {
 
 /// Light in space is gathered anew when so many times as many nodes are valued.
 constexpr double more_nodes = 1.1;
+
+/// By so many times a node may be brighter than all next to it.
+constexpr double most_over_neighbours = 3;
 
 }  // namespace
 
@@ -184,11 +188,36 @@ void LightMapFrames::mix(std::span<const glm::vec3> powers) {
   const bool relit =
       !std::equal(powers.begin(), powers.end(), mixed_.powers().begin(), mixed_.powers().end());
   mixed_.mix(maps_.values(), nodes, powers);
+  if (relit || nodes != shown_share_.size()) dim_lone_nodes();
   if (bound_ > 0) seen_.resize(nodes, 0);
   const auto known = static_cast<double>(ambient_nodes_), now = static_cast<double>(nodes);
   if (!relit && now >= known && now <= more_nodes * known) return;
   ambient_.gather(maps_, scene_, mixed_.light());
   ambient_nodes_ = nodes;
+}
+
+/// A coarse node beside a lamp is far brighter than what lies around it, and would show as a bright
+/// square until finer nodes stand between: each shows no more than so many times its neighbours.
+void LightMapFrames::dim_lone_nodes() {
+  const Tiles& tiles = maps_.tiles();
+  std::vector<double> around(mixed_.light().size(), 0.0);
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const Tile& tile = tiles[static_cast<std::uint32_t>(i)];
+    for (std::uint32_t cell = 0; cell < 64; ++cell) {
+      if ((tile.known >> cell & 1) == 0) continue;
+      const std::array<std::uint32_t, 4> corners = tile.corners(cell);
+      for (const std::uint32_t node : corners) {
+        for (const std::uint32_t other : corners) {
+          if (other != node) around[node] = std::max(around[node], node_luminance(other));
+        }
+      }
+    }
+  }
+  shown_share_.assign(around.size(), 1.0f);
+  for (std::uint32_t node = 0; node < around.size(); ++node) {
+    const double own = node_luminance(node), most = most_over_neighbours * around[node];
+    if (own > most) shown_share_[node] = static_cast<float>(most / own);
+  }
 }
 
 /// Before a frame: the latest is the one before.
@@ -219,8 +248,9 @@ void LightMapFrames::forget_unseen() {
   seen_.resize(former.size());
 }
 
-/// Draws blocks; leaves those that lack nodes. Returns a place of each cell that is missing, those
-/// without any level first, then chart by chart: that which takes most of the picture comes first.
+/// Draws blocks; leaves those that lack nodes. Returns places of the cells that are missing, those
+/// without any level first, then chart by chart: that which changes most of the picture comes
+/// first, for a chart that is refined in part has steps between its cells.
 LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
                                                     std::vector<std::size_t>& blocks,
                                                     const FrameFilling& filling) const {
@@ -250,21 +280,18 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
   return all;
 }
 
-/// Leaves a place of each cell.
+/// Leaves one place of each cell without a coarser level.
 void LightMapFrames::put_in_order(std::vector<MissingPlace>& places) {
-  std::sort(places.begin(), places.end(),
-            [](const auto& a, const auto& b) { return a.cell < b.cell; });
-  std::size_t cells = 0;
-  std::unordered_map<std::uint32_t, std::uint64_t> seen_of_chart;
-  for (const MissingPlace& place : places) {
-    seen_of_chart[place.chart] += place.seen;
-    if (cells == 0 || places[cells - 1].cell != place.cell) places[cells++] = place;
-  }
-  places.resize(cells);
-  for (MissingPlace& place : places) place.seen = seen_of_chart[place.chart];
+  std::unordered_map<std::uint32_t, std::array<double, 2>> gain_of_chart;
+  for (const MissingPlace& place : places) gain_of_chart[place.chart][place.empty] += place.gain;
+  for (MissingPlace& place : places) place.gain = gain_of_chart[place.chart][place.empty];
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
-    return std::tie(b.empty, b.seen, a.chart, a.cell) < std::tie(a.empty, a.seen, b.chart, b.cell);
+    return std::tie(b.empty, b.gain, a.chart, a.cell) < std::tie(a.empty, a.gain, b.chart, b.cell);
   });
+  const auto is_repeated = [](const MissingPlace& a, const MissingPlace& b) {
+    return a.empty && a.cell == b.cell;
+  };
+  places.erase(std::unique(places.begin(), places.end(), is_repeated), places.end());
 }
 
 /// Shows the nodes of charts that were seen and have all of them. Returns whether there were any.
@@ -281,14 +308,16 @@ bool LightMapFrames::show_complete(std::span<const MissingPlace> missing) {
   return any;
 }
 
-/// Values the next level of places, in their order, as long as there is time: of one at least, and
-/// of empty ones alone where there are some.
+/// Values nodes of places in their order, as long as there is time, of one at least: the coarsest
+/// alone where there are places without any, else all finer ones.
 void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
                           const FrameFilling& filling, const Progress& progress) {
-  const auto known = std::partition_point(places.begin(), places.end(),
-                                          [](const MissingPlace& place) { return place.empty; });
-  const bool empty = known != places.begin();
-  if (empty) places = {places.begin(), known};
+  const bool empty = places.front().empty;
+  if (empty) {
+    places = {places.begin(),
+              std::partition_point(places.begin(), places.end(),
+                                   [](const MissingPlace& place) { return place.empty; })};
+  }
   const Stopwatch stopwatch;
   std::size_t first = 0;
   double left = seconds;
@@ -306,19 +335,12 @@ void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
       hits.sided_triangle.push_back(place.sided_triangle);
     }
     const Stopwatch batch_watch;
-    maps_.fill(hits, source_, progress, 1);
+    maps_.fill(hits, source_, progress, empty ? 1 : limits::max_light_map_levels);
     const double latest = batch_watch.seconds() / static_cast<double>(count);
     seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
     first += count;
     left = filling.has_ended() ? 0 : seconds - stopwatch.seconds();
   } while (first < places.size() && left > 0);
-  if (!empty) return;
-  for (std::size_t i = 0; i < first; ++i) {
-    // The last chart may lack others.
-    if (first == places.size() || places[i].chart != places[first].chart) {
-      is_shown_[places[i].chart] = 1;
-    }
-  }
 }
 
 void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& missing) const {
@@ -330,6 +352,7 @@ void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& mi
   for (int y = top; y < std::min(top + block_side, view.height); y += packet_side) {
     for (int x = left; x < std::min(left + block_side, view.width); x += packet_side) {
       std::array<glm::vec3, trace::coherent_rays> sum{};
+      ++missing.packet;
       for (const glm::vec2& within : view.within_pixel) {
         view.directions(x, y, within, directions);
         trace::intersect(rays_, view.eye, directions, hits);
@@ -380,10 +403,11 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
                                      const glm::vec3& position, Missing& missing) const {
   bool lacks = false;
   std::optional<glm::vec3> light =
-      known_irradiance(sided_triangle, position, missing.places, lacks);
+      known_irradiance(sided_triangle, position, missing.packet, missing.places, lacks);
   const bool is_own = light.has_value();
   if (!light && view.coarser) {
-    light = view.coarser->known_irradiance(sided_triangle, position, missing.coarser, lacks);
+    light = view.coarser->known_irradiance(sided_triangle, position, missing.packet,
+                                           missing.coarser, lacks);
   }
   missing.any |= lacks || !is_own;
   missing.lacking += lacks ? 1 : 0;
@@ -397,6 +421,7 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
 /// kinds on one surface would show where they meet.
 std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_triangle,
                                                           const glm::vec3& position,
+                                                          std::uint32_t packet,
                                                           std::vector<MissingPlace>& missing,
                                                           bool& lacks) const {
   NodeBlend blend{};
@@ -404,10 +429,10 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_tr
   if (const auto cell = maps_.tiles().find(chart, position, blend)) {
     const bool empty = blend.node[0] == none;
     lacks = true;
-    if (missing.empty() || missing.back().cell != *cell) {
-      missing.push_back({*cell, empty, chart, 0, position, sided_triangle});
+    if (missing.empty() || missing.back().cell != *cell || missing.back().packet != packet) {
+      missing.push_back({*cell, empty, chart, packet, 0, position, sided_triangle});
     }
-    ++missing.back().seen;
+    missing.back().gain += empty ? 1 : difference(blend);
     if (empty) return std::nullopt;
   }
   if (is_shown_[chart] == 0) {
@@ -420,6 +445,9 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_tr
       seen.store(frame_, std::memory_order_relaxed);
     }
   }
+  for (std::size_t i = 0; i < blend.node.size(); ++i) {
+    blend.weight[i] *= shown_share_[blend.node[i]];
+  }
   const std::span<const glm::vec4> light = mixed_.light();
   const auto blended = [&](std::span<const glm::vec4> of) {
     return (blend.weight[0] * of[blend.node[0]] + blend.weight[1] * of[blend.node[1]]) +
@@ -429,6 +457,17 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_tr
   if (mixed_.by_normal().empty()) return sum;
   return turned(sum, blended(mixed_.by_normal()),
                 trace::shading_normal(scene_, sided_triangle, position));
+}
+
+double LightMapFrames::node_luminance(std::uint32_t node) const {
+  return luminance(glm::dvec3(mixed_.light()[node]));
+}
+
+/// Of the luminance of the nodes.
+double LightMapFrames::difference(const NodeBlend& blend) const {
+  const auto light = [&](std::size_t corner) { return node_luminance(blend.node[corner]); };
+  const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
+  return most - least;
 }
 
 /// A ray that goes on: traced anew, with all that it meets.

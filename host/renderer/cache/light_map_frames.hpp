@@ -39,9 +39,8 @@ class LightMapFrames {
   /// without that, the light of nodes around. A chart changes from one to the other as a whole,
   /// when it first has all that is seen of it.
   ///   powers    per layer: power x tint
-  ///   filling   of nodes which pixels lack, level by level, on charts that take most of the
-  ///   picture
-  ///             first; their pixels are drawn again
+  ///   filling   of nodes which pixels lack: the coarsest, on charts that take most of the picture
+  ///             first, then finer ones where light differs most; their pixels are drawn again
   ///   coarser   of the same scene, whose nodes are valued first; null = none
   /// Errors: those of LightMaps::fill.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
@@ -55,12 +54,14 @@ class LightMapFrames {
     glm::vec3 reflects;      ///< radiance per irradiance, where it is plain
     enum Kind : std::uint32_t { plain, textured, lamp, followed } kind;
   };
-  /// Where a cell is seen whose nodes are not valued.
+  /// Where a cell is seen whose nodes are not valued: one place in each packet of rays.
   struct MissingPlace {
     MissingCell cell;
     bool empty;  ///< without a coarser level
-    std::uint32_t chart;
-    std::uint64_t seen;  ///< so many times; once in order, all that are missing of the chart
+    std::uint32_t chart, packet;
+    /// Without a coarser level, how often it is seen; else as often times the difference of the
+    /// coarser nodes around it. Once in order, that of its chart.
+    double gain;
     glm::vec3 position;
     std::uint32_t sided_triangle;
   };
@@ -68,6 +69,7 @@ class LightMapFrames {
     std::vector<MissingPlace> places;
     std::vector<MissingPlace> coarser;    ///< of the coarser light maps, where no level is valued
     bool any = false;                     ///< of the block at hand
+    std::uint32_t packet = 0;             ///< the one at hand, of those that a thread traced
     std::uint64_t lacking = 0, read = 0;  ///< places, of both light maps together
   };
   struct View;
@@ -88,7 +90,11 @@ class LightMapFrames {
   glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
                        Missing& missing) const;
   std::optional<glm::vec3> known_irradiance(std::uint32_t sided_triangle, const glm::vec3& position,
+                                            std::uint32_t packet,
                                             std::vector<MissingPlace>& missing, bool& lacks) const;
+  void dim_lone_nodes();
+  double node_luminance(std::uint32_t node) const;
+  double difference(const NodeBlend& blend) const;
   glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                      Missing& missing) const;
   glm::vec3 background(const glm::vec3& direction) const;
@@ -102,6 +108,7 @@ class LightMapFrames {
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   trace::DistantLights distant_;
   NodeMix mixed_;
+  std::vector<float> shown_share_;           ///< per node: of its light
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell

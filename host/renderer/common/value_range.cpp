@@ -32,6 +32,8 @@ std::string range_text(const Words& range) {
   return fmt::format("one of {}", fmt::join(range.words, ", "));
 }
 
+std::string range_text(const Text& range) { return std::string(range.form); }
+
 bool holds(const WholeNumbers& range, std::uint64_t value) {
   return value >= range.least && value <= range.most;
 }
@@ -47,6 +49,8 @@ bool holds(const PositiveNumbers&, double value) {
 bool holds(const Words& range, std::string_view value) {
   return std::find(range.words.begin(), range.words.end(), value) != range.words.end();
 }
+
+bool holds(const Text&, std::string_view value) { return !value.empty(); }
 
 template <class Range, class Value>
 bool holds(const Range&, const Value&) {

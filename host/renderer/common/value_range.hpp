@@ -23,7 +23,11 @@ struct PositiveNumbers {};
 struct Words {
   std::vector<std::string_view> words;
 };
-using ValueRange = std::variant<WholeNumbers, Numbers, PositiveNumbers, Words>;
+/// Any text; whoever takes it says what it cannot be.
+struct Text {
+  std::string_view form;  ///< "NAME or INDEX"
+};
+using ValueRange = std::variant<WholeNumbers, Numbers, PositiveNumbers, Words, Text>;
 
 /// "1000000", "0.25", "clipped".
 std::string text_of(const SettingValue& value);

@@ -386,14 +386,14 @@ std::vector<Portal> portals_of_materials(const Scene& scene, std::span<const std
     }
     if (!matched) {
       throw UsageError(
-          fmt::format("--portals {}: no material of {} matches; photile info lists "
+          fmt::format("portals={}: no material of {} matches; photile info lists "
                       "them, or use auto or off",
                       glob, scene.source.string()));
     }
   }
   const auto panes = panes_of(scene, chosen);
   if (panes.size() > limits::max_portals) {
-    throw UsageError(fmt::format("--portals: {} panes, more than {}; name fewer, or use auto",
+    throw UsageError(fmt::format("portals: {} panes, more than {}; name fewer, or use auto",
                                  panes.size(), limits::max_portals));
   }
   const RayScene rays(scene);
@@ -407,7 +407,7 @@ std::vector<Portal> portals_asked_for(const Scene& scene, std::span<const std::s
                                       std::span<const glm::dvec3> points) {
   for (const char* word : {"auto", "off"}) {
     if (asked.size() > 1 && std::find(asked.begin(), asked.end(), word) != asked.end())
-      throw UsageError(fmt::format("--portals {}: give it alone, or materials alone", word));
+      throw UsageError(fmt::format("portals={}: give it alone, or materials alone", word));
   }
   if (asked.empty() || asked.front() == "auto") return find_portals(scene, points);
   if (asked.front() == "off") return {};
