@@ -108,22 +108,15 @@ FURTHER_TESTS = {
     "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
 
 
-def host_files(folders):
-    return [file for folder in folders for file in sorted(ROOT.glob(f"host/*/{folder}/**/*.[ch]pp"))]
-
-
 def folder_of(name):
     """The folder of host/'s parts that a file or a mutant of it is in, or kernels."""
     return name.split("/")[2] if name.startswith("host/") else "kernels"
 
 
 def all_files(options):
-    kernels = [] if options.only == "host" else sorted(ROOT.glob("kernels/**/*.cl*"))
-    return kernels + ([] if options.only == "kernels" else host_files(options.folders))
-
-
-def all_sites(options):
-    return list(mutant_sites.sites(ROOT, all_files(options)))
+    kernels = [] if options.only == "host" else ["kernels/**/*.cl*"]
+    host = [] if options.only == "kernels" else [f"host/*/{folder}/**/*.[ch]pp" for folder in options.folders]
+    return [file for pattern in kernels + host for file in sorted(ROOT.glob(pattern))]
 
 
 def wilson(killed, count):
@@ -177,7 +170,7 @@ class Host:
         self.schemata = Schemata(builder, sites, folders)
         self.folders = folders
         self.numbers = {site.name: number for number, site in self.schemata.sites.items()}
-        self.own = {}  # programs of a mutant that is built alone
+        self.own, self.own_programs = {}, {}  # objects and programs of a mutant that is built alone
         self.number = 0
         self.reached = {}  # step -> numbers of the mutants that can change what it does
         self.folder_steps = {
@@ -190,8 +183,7 @@ class Host:
                                             for other, file in FURTHER_TESTS[folder]]
 
     def prepare(self, site):
-        self.own, self.number = {}, self.numbers[site.name]
-        self.own_programs = {}
+        self.own, self.own_programs, self.number = {}, {}, self.numbers[site.name]
         if self.number not in self.schemata.alone:
             return
         copy, text = self.work / site.file, (ROOT / site.file).read_text(encoding="utf-8")
@@ -216,11 +208,8 @@ class Host:
                 file.parent.mkdir(exist_ok=True)
                 part = file.with_suffix(".part")
                 part.unlink(missing_ok=True)
-                environment = {"PHOTILE_MUTANT_RECORD": str(part)}
-                outcome = self._run(step, self.schemata.program, environment)
-                if outcome.failed or outcome.crashed:
-                    raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
-                self.order.note(step, outcome.seconds)
+                outcome = self._run(step, self.schemata.program, {"PHOTILE_MUTANT_RECORD": str(part)})
+                self.order.note(step, outcome.sound().seconds)
                 part.touch()  # a step that comes by no mutant writes none
                 part.rename(file)
             self.reached[step.key] = {int(line) for line in file.read_text(encoding="utf-8").split()}
@@ -252,10 +241,7 @@ def try_mutant(site, runner, steps, order, whole):
         if not runner.matters(step):
             continue
         if not order.passed_before(step):
-            outcome = runner.run(step, False, None, whole)
-            if outcome.failed or outcome.crashed:
-                raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
-            order.note(step, outcome.seconds)
+            order.note(step, runner.run(step, False, None, whole).sound().seconds)
         outcome = runner.run(step, True, order.limit(step), whole)
         failed = [f"/{name}" for name in outcome.failed] or [f"/{step.file}: crash"] * outcome.crashed
         noticed += [f"{step.folder}{what}{step.under_layer}" for what in failed]
@@ -288,7 +274,7 @@ def draw(options):
     """The mutants of the results, or as many as asked for: name -> site, None where its line is gone."""
     results = stored(options.results)
     if not results:
-        everything = all_sites(options)
+        everything = list(mutant_sites.sites(ROOT, all_files(options)))
         for site in random.Random(options.seed).sample(everything, min(options.count, len(everything))):
             text = (ROOT / site.file).read_text(encoding="utf-8").split("\n")[site.line]
             results[site.name] = {"line": text}

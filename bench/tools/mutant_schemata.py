@@ -8,6 +8,7 @@ compiler computes): these are left out of the common build and built one by one.
 import hashlib
 import json
 import re
+import shutil
 
 from tools import mutant_builder
 from tools.mutant_sites import changed
@@ -121,7 +122,8 @@ class Schemata:
         names = builder.objects_with(folders)
         if any(file.endswith(".hpp") for file in texts):
             names += builder.test_objects(folders)
-        digest = hashlib.sha256(repr((sites, texts, names, HEADER.read_text())).encode()).hexdigest()
+        built_at = [(builder.build / name).stat().st_mtime for name in names]
+        digest = hashlib.sha256(repr((sites, texts, names, built_at, HEADER.read_text())).encode()).hexdigest()
         kept = builder.work / "schemata.json"
         built = json.loads(kept.read_text(encoding="utf-8")) if kept.is_file() else {"digest": ""}
         if built["digest"] == digest:
@@ -131,6 +133,8 @@ class Schemata:
         if built["digest"] == digest:
             self.objects = {name: builder.work / "common" / name for name in names}
             return
+        # What steps reach is told by the numbers of the sites.
+        shutil.rmtree(builder.work / "reached", ignore_errors=True)
         for name in names:
             self.objects[name] = self._compile(name)
         kept.write_text(json.dumps({"digest": digest, "alone": sorted(self.alone)}), encoding="utf-8")

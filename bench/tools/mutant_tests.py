@@ -38,6 +38,12 @@ class Outcome:
     cases: list = dataclasses.field(default_factory=list)  # of the report
     seconds: float = 0.0  # of the processor
 
+    def sound(self):
+        """Itself. Errors: CannotRun where a test failed, although nothing was changed."""
+        if self.failed or self.crashed:
+            raise CannotRun(f"without the mutant: {', '.join(self.failed) or 'crash'}")
+        return self
+
 
 @dataclasses.dataclass(frozen=True)
 class Step:
@@ -168,9 +174,7 @@ class Order:
 def steps_of_folder(program, folder, file, order, quick=0.5):
     """A step for the quick cases of each source file of tests, one for each longer case. Kept in `file`."""
     if not file.is_file():
-        outcome = run(program, ["~[slow]"])
-        if outcome.failed or outcome.crashed:
-            raise CannotRun(f"without the mutant: {', '.join(outcome.failed) or 'crash'}")
+        outcome = run(program, ["~[slow]"]).sound()
         steps = []
         for source in dict.fromkeys(pathlib.PurePath(case.get("filename")).stem for case in outcome.cases):
             cases = {case.get("name"): float(case.find("OverallResult").get("durationInSeconds"))

@@ -402,6 +402,20 @@ TEST_CASE("an address space that is too small for a device's compiler is told be
   CHECK_THAT(last_error(run_photile(run), no_device), Contains("ulimit -v"));
 }
 
+TEST_CASE("photons for which the address space is too small end in one line, and not in PoCL") {
+  const FileFolder folder;
+  Run run;
+  run.arguments = typed("render", write_box(folder), "-q -o", folder / "out.png",
+                        "--photons 4M --size 16x12 --quality draft");
+  const std::uint64_t megabytes = GENERATE(1'200, 1'250);
+  run.address_limit = megabytes << 20;
+  const Outcome outcome = run_photile(run);
+  CAPTURE(megabytes, outcome.errors);
+  if (outcome.exit_code == 0) return;  // another machine's libraries may take less
+  CHECK_THAT(only_error(outcome, outcome.exit_code),
+             Contains("out of memory") || Contains("ulimit -v") || Contains("may use"));
+}
+
 TEST_CASE("while a limit of threads lives, TBB keeps to it") {
   const std::size_t before = allowed();
   for (const int count : {1, 2, 3}) {

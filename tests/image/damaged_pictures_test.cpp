@@ -1,6 +1,9 @@
 // A damaged file gives an error or a picture, never a crash; the sanitizers preset makes this
 // sharp.
+#include <OpenImageIO/imageio.h>
+
 #include <array>
+#include <random>
 
 #include "memory_meter.hpp"
 #include "photile/layered_picture.hpp"
@@ -79,6 +82,50 @@ TEST_CASE("an EXR whose window is not that of its pixels is refused, not read as
     bytes.replace(place + attribute.size(), 16, "\0\0\0\0\0\0\0\0\xFF\x3F\0\0\x01\0\0\0"s);
     put(folder / "wide.exr", bytes);
     CHECK_THROWS_WITH(read_image(folder / "wide.exr"), Catch::Contains("damaged"));
+  }
+}
+
+/// 40 x 40 pixels of one grey, which every compression makes small, or of noise, which none does.
+std::string foreign_exr(const std::string& compression, int tile, bool noise) {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec(40, 40, 3, OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", compression);
+  spec.tile_width = spec.tile_height = tile;
+  std::vector<float> pixels(40 * 40 * 3, 0.5f);
+  std::mt19937 random(1);
+  if (noise) {
+    for (float& value : pixels) value = std::uniform_real_distribution<float>(0, 1)(random);
+  }
+  const std::string file = (folder / "foreign.exr").string();
+  const auto output = OIIO::ImageOutput::create(file);
+  REQUIRE(output->open(file, spec));
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  REQUIRE(output->close());
+  return bytes_of(folder / "foreign.exr");
+}
+
+TEST_CASE("an EXR whose window is a little wider or higher than its pixels is refused") {
+  using namespace std::string_literals;
+  const std::string compression = GENERATE("none", "rle", "zips", "zip");
+  const int tile = GENERATE(0, 16);
+  const bool noise = GENERATE(false, true);
+  CAPTURE(compression, tile, noise);
+  const TemporaryFolder folder;
+  const std::string whole = foreign_exr(compression, tile, noise);
+  put(folder / "whole.exr", whole);
+  CHECK_NOTHROW(read_image(folder / "whole.exr"));
+  for (const auto& [right, bottom] : {std::pair{40, 39}, {44, 39}, {39, 44}}) {
+    // With a row to a block, more rows are more entries of the table, which is another error.
+    std::string bytes = whole;
+    for (const std::string& name : {"dataWindow\0box2i\0"s, "displayWindow\0box2i\0"s}) {
+      const std::size_t place = bytes.find(name);
+      REQUIRE(place != std::string::npos);
+      bytes[place + name.size() + 12] = static_cast<char>(right);
+      bytes[place + name.size() + 16] = static_cast<char>(bottom);
+    }
+    put(folder / "changed.exr", bytes);
+    CAPTURE(right, bottom);
+    CHECK_THROWS_WITH(read_image(folder / "changed.exr"), Catch::Contains("changed.exr"));
   }
 }
 

@@ -1,5 +1,8 @@
 // Pictures within a small part of the device's memory: the same bits.
 #include <catch2/catch.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "device/context.hpp"
 #include "photile/errors.hpp"
@@ -96,15 +99,37 @@ TEST_CASE("a picture of one light within a tenth of the memory that it takes has
   CHECK(test::same_bits(render(box, camera, small, parameters).layers, expected));
 }
 
+const auto names_the_limit = Catch::Predicate<DeviceMemoryError>(
+    [](const DeviceMemoryError& error) {
+      return std::string(error.what()).find("memory limit") != std::string::npos;
+    },
+    "names the memory limit");
+
 TEST_CASE("a memory too small for the triangles alone is refused with the remedy") {
   Device small = limited_device(2'000);
-  CHECK_THROWS_MATCHES(
-      render(room(), test::room_camera(), small, tiny_parameters()), DeviceMemoryError,
-      Catch::Predicate<DeviceMemoryError>(
-          [](const DeviceMemoryError& error) {
-            return std::string(error.what()).find("memory limit") != std::string::npos;
-          },
-          "names the memory limit"));
+  CHECK_THROWS_MATCHES(render(room(), test::room_camera(), small, small_picture(20, 48, 36)),
+                       DeviceMemoryError, names_the_limit);
+}
+
+/// Knows which stages began.
+class Stages : public Progress {
+ public:
+  void begin(std::string_view stage, std::uint64_t, std::string_view) override {
+    begun.emplace_back(stage);
+  }
+  std::vector<std::string> begun;
+};
+
+TEST_CASE("photons of which one map does not fit are refused before they are traced") {
+  const Scene box = test::closed_box(test::diffuse(glm::vec3(0.5f)), 5);
+  const Camera camera = Camera::look_at({0.1, 0.1, 0.2}, {1, 0.9, 0.6}, {0, 0, 1}, 1.2);
+  RenderParameters parameters = small_picture(1'000'000, 48, 36);
+  parameters.passes = GENERATE(1, 2);
+  Device small = limited_device(100'000);
+  Stages stages;
+  CHECK_THROWS_MATCHES(render(box, camera, small, parameters, stages), DeviceMemoryError,
+                       names_the_limit);
+  CHECK(stages.begun.empty());
 }
 
 }  // namespace photile::test

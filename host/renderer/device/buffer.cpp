@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "common/process_limits.hpp"
 #include "device/context_impl.hpp"
 
 namespace photile::device {
@@ -60,6 +61,24 @@ void prefer_huge_pages(cl_command_queue queue, cl_mem memory, std::size_t bytes)
   clEnqueueUnmapMemObject(queue, memory, mapped, 0, nullptr, nullptr);
 }
 
+/// PoCL ends the process where it gets no addresses for a command, or for a buffer that it
+/// allocates when it is first used.
+constexpr std::uint64_t addresses_for_commands = std::uint64_t{64} << 20;
+
+/// Whether the addresses of the process, of which the host takes more and more, suffice for a
+/// buffer of a CPU.
+bool has_addresses(const DeviceInfo& info, std::uint64_t bytes) {
+  if (info.type != DeviceType::cpu) return true;
+  const std::uint64_t left = address_bytes_left();
+  return left > addresses_for_commands && bytes <= left - addresses_for_commands;
+}
+
+/// Where addresses are bounded, a buffer has its own at once.
+cl_mem_flags flags_of_buffers() {
+  const bool bounded = address_bytes_left() != std::numeric_limits<std::uint64_t>::max();
+  return CL_MEM_READ_WRITE | (bounded ? CL_MEM_ALLOC_HOST_PTR : 0);
+}
+
 /// A runtime fills a buffer from one core, and the system clears its memory on the way.
 constexpr std::size_t least_bytes_for_all_cores = std::size_t{1} << 20;
 
@@ -95,11 +114,12 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
   const cl_int status = impl_->persevere([&] {
     // Runtimes that allocate on first use accept more than there is and fail, or are killed, later.
     const std::uint64_t live = impl_->memory->live;
-    if (bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
+    if (bytes > impl_->memory_limit - std::min(impl_->memory_limit, live) ||
+        !has_addresses(info, bytes)) {
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     cl_int created = CL_SUCCESS;
-    memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_WRITE, std::max(bytes, smallest),
+    memory = clCreateBuffer(impl_->context.get(), flags_of_buffers(), std::max(bytes, smallest),
                             nullptr, &created);
     return created;
   });

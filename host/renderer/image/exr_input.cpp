@@ -105,6 +105,31 @@ std::uint64_t blocks_of(const Imf::Header& header) {
   return sum;
 }
 
+/// The last block of a part, or of its largest level: where the sides of its window are wrong it
+/// has other pixels than they say.
+///   entry   of its first block
+ExrBlock last_block(const Imf::Header& header, std::uint64_t entry) {
+  const Imath::Box2i& window = header.dataWindow();
+  const auto side = [](int from, int to) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(std::int64_t{to} - from + 1, 1));
+  };
+  std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+  std::uint64_t across = 1, rows = rows_of_block(header.compression());
+  if (header.hasTileDescription()) {
+    const Imf::TileDescription& tile = header.tileDescription();
+    across = (width - 1) / std::max(tile.xSize, 1u) + 1;
+    width -= (across - 1) * tile.xSize;
+    rows = std::max(tile.ySize, 1u);
+  }
+  const std::uint64_t down = (height - 1) / rows + 1;
+  height -= (down - 1) * rows;
+  std::uint64_t pixel_bytes = 0;
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+    pixel_bytes += i.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return {entry + across * down - 1, width * height * pixel_bytes, header.compression()};
+}
+
 ExrInput::Part part_of(const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) {
     throw DecodeError("holds deep pixels; flatten it, e.g. with oiiotool --flatten");
@@ -180,17 +205,22 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   std::uint64_t blocks = 0;
   bool deflated = true;
   std::vector<bool> tiled;
+  std::vector<ExrBlock> last_blocks;
   for (int i = 0; i < file_->parts(); ++i) {
     const Part& part = parts_.emplace_back(part_of(file_->header(i)));
     const std::uint64_t own = static_cast<std::uint64_t>(part.width) * part.height;
     pixels = std::max(pixels, own);
     channels += part.channels.size();
     decoded += own * part.channels.size() * sizeof(float);
+    last_blocks.push_back(last_block(file_->header(i), blocks));
     blocks += blocks_of(file_->header(i));
     tiled.push_back(file_->header(i).hasTileDescription());
     deflated &= file_->header(i).compression() <= Imf::ZIP_COMPRESSION;
   }
   const std::uint64_t encoded = exr_pixel_bytes(*stream_, table, bytes, blocks, tiled);
+  for (std::size_t i = 0; i < last_blocks.size(); ++i) {
+    check_exr_block(*stream_, table, last_blocks[i], tiled[i]);
+  }
   // What is missing OpenEXR reads as zeros. Deflate's longest match makes 258 bytes of 2 bits, and
   // halves become floats.
   constexpr std::uint64_t most_deflated = 2 * 4 * 258;

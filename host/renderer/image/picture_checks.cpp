@@ -1,9 +1,11 @@
 #include "image/picture_checks.hpp"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -374,6 +376,64 @@ std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::ui
   }
   // A file whose writer was ended before it wrote the table: OpenEXR looks for the blocks.
   return sum == 0 ? bytes - end : sum;
+}
+
+namespace {
+
+/// What runs of equal bytes become, or what is wrong as any other number.
+std::uint64_t bytes_of_runs(std::string_view coded) {
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < coded.size();) {
+    const auto count = static_cast<signed char>(coded[i]);
+    bytes += static_cast<std::uint64_t>(count < 0 ? -count : count + 1);
+    i += static_cast<std::size_t>(count < 0 ? 1 - count : 2);
+  }
+  return bytes;
+}
+
+std::uint64_t inflated_bytes(std::string_view deflated, std::uint64_t most) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(deflated.data()));
+  stream.avail_in = static_cast<uInt>(deflated.size());
+  std::array<Bytef, 1 << 14> out;
+  int status = Z_OK;
+  while (status == Z_OK && stream.total_out <= most) {
+    stream.next_out = out.data();
+    stream.avail_out = static_cast<uInt>(out.size());
+    status = inflate(&stream, Z_NO_FLUSH);
+  }
+  const std::uint64_t bytes = stream.total_out;
+  inflateEnd(&stream);
+  return bytes;
+}
+
+}  // namespace
+
+void check_exr_block(Imf::IStream& stream, std::uint64_t table, const ExrBlock& block, bool tiled) {
+  constexpr std::uint64_t several_parts = 0x1000;
+  constexpr int entry_bytes = 8;
+  if (block.compression > Imf::ZIP_COMPRESSION) return;
+  const std::uint64_t before = stream.tellg();
+  stream.seekg(4);
+  const bool several = (little_endian(stream, 4) & several_parts) != 0;
+  stream.seekg(table + entry_bytes * block.entry);
+  if (const std::uint64_t place = little_endian(stream, entry_bytes); place != 0) {
+    stream.seekg(place);
+    for (int i = 0; i < (several ? 1 : 0) + (tiled ? 4 : 1); ++i) little_endian(stream, 4);
+    std::uint64_t found = little_endian(stream, 4);
+    // Where compressing would not make it smaller, it is as it is.
+    if (found < block.bytes && block.compression != Imf::NO_COMPRESSION) {
+      std::string coded(found, '\0');
+      stream.read(coded.data(), static_cast<int>(found));
+      found = block.compression == Imf::RLE_COMPRESSION ? bytes_of_runs(coded)
+                                                        : inflated_bytes(coded, block.bytes);
+    }
+    if (found != block.bytes) {
+      throw DecodeError("the header is damaged: its window is not that of the pixels");
+    }
+  }
+  stream.seekg(before);
 }
 
 }  // namespace photile::image

@@ -1,6 +1,7 @@
 // What a picture may ask for, and what is checked before a decoder sees it, EXR headers among it.
 #pragma once
 
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfIO.h>
 
 #include <cstdint>
@@ -53,5 +54,17 @@ std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
 /// Errors: DecodeError where a block is not within the file, or the tables have more entries.
 std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
                               std::uint64_t entries, const std::vector<bool>& tiled);
+
+/// A block of pixels, as the header of its part has it.
+struct ExrBlock {
+  std::uint64_t entry = 0;  ///< in the tables of all parts
+  std::uint64_t bytes = 0;  ///< decoded
+  Imf::Compression compression = Imf::NO_COMPRESSION;
+};
+
+/// Refuses a block that decodes to fewer bytes than its pixels take: for the others OpenEXR takes
+/// what is in its memory. Other compressions than none, RLE and ZIP it checks itself. Leaves the
+/// stream where it was. To be called after exr_pixel_bytes. Errors: DecodeError.
+void check_exr_block(Imf::IStream& stream, std::uint64_t table, const ExrBlock& block, bool tiled);
 
 }  // namespace photile::image

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "device/context.hpp"
 #include "estimate/neighbour_choice.hpp"
+#include "maps/map_page.hpp"
 #include "render/exchange.hpp"
 #include "render/setting.hpp"
 #include "render/shared_photons.hpp"
@@ -166,8 +170,35 @@ PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estim
   return {by(Exchange::Points::own), by(Exchange::Points::common), estimate};
 }
 
+/// A map is not cut, and holds the photons of a triangle at least. Where those of one may be too
+/// many, a few paths tell before all are traced. Errors: DeviceMemoryError.
+void PhotonPasses::check_map_memory() const {
+  constexpr std::uint64_t few = 10'000, most_of_a_path = 8;
+  std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();
+  for (Device& device : devices_) {
+    memory = std::min(memory, device::context_of(device).memory_limit());
+  }
+  PhotonTracerParameters paths = plan_.tracing(0, {});
+  paths.shard = {};
+  const double all = static_cast<double>(paths.emitted_photons);
+  const std::uint64_t bytes = maps::bytes_per_entry(rays_.needs());
+  if (memory / bytes / most_of_a_path >= paths.emitted_photons) return;
+  paths.emitted_photons = std::min(few, paths.emitted_photons);
+  const std::vector<std::uint32_t> landed = landed_on(scene_, trace_photons(rays_, paths).photons);
+  const double most = *std::max_element(landed.begin(), landed.end());
+  const double certain =
+      (most - 4 * std::sqrt(most)) * all / static_cast<double>(paths.emitted_photons);
+  const double needed = certain * static_cast<double>(bytes);
+  if (!(needed > static_cast<double>(memory))) return;
+  throw DeviceMemoryError(fmt::format(
+      "a surface has more than {:.0f} photons, whose map takes {:.1f} MB, and the device may use "
+      "{:.1f}; use fewer photons, more passes, or a larger memory limit if one is set",
+      certain, needed / 1e6, static_cast<double>(memory) / 1e6));
+}
+
 PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhotons* keep,
                                        Progress& progress) {
+  if (pass_ == 0 && !prepared) check_map_memory();
   if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
   const Stopwatch trace_watch;
   PhotonTracerResult traced;

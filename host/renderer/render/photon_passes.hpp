@@ -108,6 +108,7 @@ class PhotonPasses {
   };
 
   PassPhotons waiting(PreparedPhotons& prepared, const KeepPhotons* keep);
+  void check_map_memory() const;
   /// Photons of the pass, with all that is found before there are maps.
   PhotonTracerResult trace(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   Maps trace_and_build(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
