@@ -55,17 +55,21 @@ let text = '';
 for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
 return btoa(text);
 """
-# Paints all that is not matt black, and back: pixels that do not change see matt surfaces alone.
-# Normal maps, which a page leaves out, count as not matt.
+# Paints all that is not matt black, lamps included, and leaves reflections out, and back: pixels that do
+# not change see matt surfaces alone. Normal maps, which a page leaves out, count as not matt.
 SHOW_MATT_ONLY = """
-const [matt] = arguments;
-page.allMaterials ??= page.renderer.materials;
-page.renderer.materials = matt ? page.renderer.floatTexture(3, room.materials.length, Float32Array.from(
+const [matt, bumpy] = arguments;
+const {renderer} = page;
+page.whole ??= {materials: renderer.materials, emitters: renderer.emitters};
+renderer.materials = matt ? renderer.floatTexture(3, room.materials.length, Float32Array.from(
     room.materials.flatMap((m, i) => {
-      const known = m.specular.every((part) => part === 0) && !arguments[1].includes(i);
+      const known = m.specular.every((part) => part === 0) && !bumpy.includes(i);
       return [...(known ? m.diffuse : [0, 0, 0]), m.alpha, 0, 0, 0, 1, 0, 0, 0, 0];
-    }))) : page.allMaterials;
-page.renderer.probeIsOld = false;
+    }))) : page.whole.materials;
+const lamps = room.emitters.length + 1;
+renderer.emitters = matt ? renderer.floatTexture(lamps, 1, new Float32Array(4 * lamps)) : page.whole.emitters;
+renderer.drawsProbe = matt;
+renderer.probeIsOld = false;
 """
 # A new state of a light by its slider, as a user moves it.
 SET_POWER = """

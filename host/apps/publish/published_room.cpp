@@ -377,6 +377,11 @@ class PageWriter {
       list.emplace_back(
           "glass is clear and bends no light, but what it casts is in the light maps");
     }
+    if (std::any_of(scene_.lights.begin(), scene_.lights.end(), [](const Light& light) {
+          return light.distribution != none && !light.triangles.empty();
+        })) {
+      list.emplace_back("lamps look as bright from all sides as they are on the whole");
+    }
     if (some([](const Material& m) { return m.normal_texture != none; })) {
       list.emplace_back("bumps of normal maps are left out");
     }
