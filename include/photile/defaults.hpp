@@ -60,9 +60,9 @@ inline constexpr float strong_lobe = 0.2f;
 inline constexpr int least_rays = 16;
 /// Light samples for each ray of a node.
 inline constexpr int looks_per_ray = 2;
-/// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window, varies
-/// more.
-inline constexpr int rays_in_the_open = 2;
+/// Times as many rays where a sun or a sky shines, and light samples for each: what they bring,
+/// sunlit floor or a window, varies more.
+inline constexpr int times_in_the_open = 2;
 /// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
 /// so many times as often, but at most `most_looks_again` times: 2% shows as ragged borders.
 inline constexpr double tolerated_look_error = 0.02;

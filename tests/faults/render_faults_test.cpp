@@ -175,7 +175,7 @@ TEST_CASE("a render in a small device_memory is the same; in too small a one it 
     CHECK(picture_of(folder, small_render(folder, {}, {"--set", memory})) == undisturbed_picture());
   }
   const Outcome outcome = run_photile(small_render(folder, {}, {"--set", "device_memory=3e-7"}));
-  CHECK_THAT(last_error(outcome, device_error), Catch::Contains("use a larger memory limit"));
+  CHECK_THAT(last_error(outcome, device_error), Catch::Contains("a larger memory limit"));
 }
 
 TEST_CASE("PoCL with 256 MiB a buffer renders the same picture", "[slow]") {

@@ -88,11 +88,11 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
   // it, and few looks find the sky through a window: there what single looks bring would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
-  const int rays =
-      std::min(open ? defaults::rays_in_the_open * coarse : coarse, limits::max_gathering_rays);
+  const int times = open ? defaults::times_in_the_open : 1;
+  const int rays = std::min(times * coarse, limits::max_gathering_rays);
   const int fine = std::max((rays + 3) / 4, std::min(rays, defaults::least_rays));
-  const auto looks_of = [](int of_rays) {
-    return std::min(defaults::looks_per_ray * of_rays, limits::max_direct_rays);
+  const auto looks_of = [&](int of_rays) {
+    return std::min(times * defaults::looks_per_ray * of_rays, limits::max_direct_rays);
   };
   return {{rays, looks_of(rays)}, {fine, looks_of(open ? rays : fine)}, inset};
 }

@@ -188,12 +188,12 @@ void PhotonPasses::check_map_memory() const {
   const double most = *std::max_element(landed.begin(), landed.end());
   const double certain =
       (most - 4 * std::sqrt(most)) * all / static_cast<double>(paths.emitted_photons);
-  const double needed = certain * static_cast<double>(bytes);
-  if (!(needed > static_cast<double>(memory))) return;
+  const std::uint64_t held = memory / bytes;
+  if (!(certain > static_cast<double>(held))) return;
   throw DeviceMemoryError(fmt::format(
-      "a surface has more than {:.0f} photons, whose map takes {:.1f} MB, and the device may use "
-      "{:.1f}; use fewer photons, more passes, or a larger memory limit if one is set",
-      certain, needed / 1e6, static_cast<double>(memory) / 1e6));
+      "a surface has {:.0f} photons or more, and the device's memory holds {}; use fewer photons, "
+      "more passes, or a larger memory limit if one is set",
+      certain, held));
 }
 
 PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhotons* keep,
