@@ -90,6 +90,8 @@ class Walker {
     const ground = this.ground(this.eye);
     if (ground === null) return;
     const target = ground + this.height;
+    // The ground below is known but for a rounding, which must not keep the page drawing for ever.
+    if (Math.abs(target - this.eye[1]) < 1e-9) return;
     // A table is not climbed.
     if (target - this.eye[1] > walking.step) return;
     this.eye[1] += (target - this.eye[1]) * (1 - Math.exp(-10 * seconds));
