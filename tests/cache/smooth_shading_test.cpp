@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimate/neighbour_choice.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/light_maps.hpp"

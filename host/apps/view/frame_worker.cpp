@@ -168,7 +168,8 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     return time_to_fill(task, draw_seconds_);
   };
   const auto ended = [&] { return stop.stop_requested() || (!at_once && outdated(task)); };
-  const auto draw_with = [&](const FrameFilling& filling) {
+  const auto draw_with = [&](FrameFilling filling) {
+    filling.soft = !maps.whole;
     picture.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height),
                    {});
     const DrawnFrame drawn =

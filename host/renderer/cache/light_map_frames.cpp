@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "cache/charts.hpp"
-#include "cache/node_mix.hpp"
+#include "cache/shown_nodes.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 #include "trace/coherent_rays.hpp"
@@ -46,9 +46,6 @@ glm::vec2 place_in_pixel(int i) {
 
 /// Light in space is gathered anew when so many times as many nodes are valued.
 constexpr double more_nodes = 1.1;
-
-/// By so many times a node may be brighter than all next to it.
-constexpr double most_over_neighbours = 3;
 
 }  // namespace
 
@@ -138,21 +135,27 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
   begin_frame();
   if (coarser) coarser->begin_frame();
   DrawnFrame drawn;
-  std::vector<std::size_t> blocks(view.blocks());
-  std::iota(blocks.begin(), blocks.end(), std::size_t{0});
+  std::vector<std::size_t> all_blocks(view.blocks());
+  std::iota(all_blocks.begin(), all_blocks.end(), std::size_t{0});
+  std::vector<std::size_t> blocks = all_blocks;
   std::uint64_t places = 0;
   double left = filling.seconds;
   for (;;) {
     progress.throw_if_cancelled();
     const Stopwatch of_drawing;
-    mix(powers);
-    if (coarser) coarser->mix(powers);
+    mix(powers, filling.soft);
+    if (coarser) coarser->mix(powers, true);
     const Missing missing = draw_blocks(view, blocks, filling);
     drawn.draw_seconds += of_drawing.seconds();
     if (filling.has_ended()) return drawn;
     places = std::max(places, missing.read);  // the first round draws all
     const bool more = show_complete(missing.places);
     if ((coarser && coarser->show_complete(missing.coarser)) || more) continue;
+    const bool changed = soften(missing.places);
+    if ((coarser && coarser->soften(missing.coarser)) || changed) {
+      blocks = all_blocks;
+      continue;
+    }
 
     const std::vector<MissingPlace>& last = coarser ? missing.coarser : missing.places;
     drawn.lacking = missing.places.size() + missing.coarser.size();
@@ -183,41 +186,16 @@ void LightMapFrames::begin_frame() {
   forget_unseen();
 }
 
-void LightMapFrames::mix(std::span<const glm::vec3> powers) {
+void LightMapFrames::mix(std::span<const glm::vec3> powers, bool soft) {
   const std::size_t nodes = maps_.statistics().nodes;
-  const bool relit =
-      !std::equal(powers.begin(), powers.end(), mixed_.powers().begin(), mixed_.powers().end());
-  mixed_.mix(maps_.values(), nodes, powers);
-  if (relit || nodes != shown_share_.size()) dim_lone_nodes();
+  const std::span<const glm::vec3> former = nodes_.held().powers();
+  const bool relit = !std::equal(powers.begin(), powers.end(), former.begin(), former.end());
+  nodes_.mix(maps_, powers, lacking_, soft);
   if (bound_ > 0) seen_.resize(nodes, 0);
   const auto known = static_cast<double>(ambient_nodes_), now = static_cast<double>(nodes);
   if (!relit && now >= known && now <= more_nodes * known) return;
-  ambient_.gather(maps_, scene_, mixed_.light());
+  ambient_.gather(maps_, scene_, nodes_.held().light());
   ambient_nodes_ = nodes;
-}
-
-/// A coarse node beside a lamp is far brighter than what lies around it, and would show as a bright
-/// square until finer nodes stand between: each shows no more than so many times its neighbours.
-void LightMapFrames::dim_lone_nodes() {
-  const Tiles& tiles = maps_.tiles();
-  std::vector<double> around(mixed_.light().size(), 0.0);
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    const Tile& tile = tiles[static_cast<std::uint32_t>(i)];
-    for (std::uint32_t cell = 0; cell < 64; ++cell) {
-      if ((tile.known >> cell & 1) == 0) continue;
-      const std::array<std::uint32_t, 4> corners = tile.corners(cell);
-      for (const std::uint32_t node : corners) {
-        for (const std::uint32_t other : corners) {
-          if (other != node) around[node] = std::max(around[node], node_luminance(other));
-        }
-      }
-    }
-  }
-  shown_share_.assign(around.size(), 1.0f);
-  for (std::uint32_t node = 0; node < around.size(); ++node) {
-    const double own = node_luminance(node), most = most_over_neighbours * around[node];
-    if (own > most) shown_share_[node] = static_cast<float>(most / own);
-  }
 }
 
 /// Before a frame: the latest is the one before.
@@ -243,7 +221,8 @@ void LightMapFrames::forget_unseen() {
   const auto stay = std::count(keep.begin(), keep.end(), std::uint8_t{1});
   if (static_cast<std::size_t>(stay) > keep.size() - keep.size() / 4) return;
   const std::vector<std::uint32_t> former = maps_.forget(keep);
-  mixed_.keep(former);
+  nodes_.keep(former);
+  lacking_.clear();  // tiles have other numbers now
   for (std::size_t i = 0; i < former.size(); ++i) seen_[i] = seen_[former[i]];
   seen_.resize(former.size());
 }
@@ -306,6 +285,19 @@ bool LightMapFrames::show_complete(std::span<const MissingPlace> missing) {
     any = true;
   }
   return any;
+}
+
+/// Softens what is shown around cells that lack their nodes. Returns whether there were none in the
+/// picture before, or are none any more: then it is to be drawn again.
+bool LightMapFrames::soften(std::span<const MissingPlace> missing) {
+  const bool any_before = !lacking_.empty();
+  lacking_.clear();
+  for (const MissingPlace& place : missing) {
+    if (place.cell.has_tile && (lacking_.empty() || lacking_.back() != place.cell)) {
+      lacking_.push_back(place.cell);
+    }
+  }
+  return lacking_.empty() == any_before;
 }
 
 /// Values nodes of places in their order, as long as there is time, of one at least: the coarsest
@@ -393,7 +385,7 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
     const std::uint32_t lamp = scene_.triangle_light[triangle];
     const bool even = scene_.lights[lamp].distribution == none;
     if (!even) point = trace::surface_point(scene_, point.where, side);
-    radiance += mixed_.powers()[layer_of_[lamp]] * emitted_[lamp] *
+    radiance += nodes_.held().powers()[layer_of_[lamp]] * emitted_[lamp] *
                 trace::emission_towards(scene_, point, -direction);
   }
   return radiance;
@@ -403,11 +395,11 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
                                      const glm::vec3& position, Missing& missing) const {
   bool lacks = false;
   std::optional<glm::vec3> light =
-      known_irradiance(sided_triangle, position, missing.packet, missing.places, lacks);
+      known_irradiance(sided_triangle, position, missing, missing.places, lacks);
   const bool is_own = light.has_value();
   if (!light && view.coarser) {
-    light = view.coarser->known_irradiance(sided_triangle, position, missing.packet,
-                                           missing.coarser, lacks);
+    light =
+        view.coarser->known_irradiance(sided_triangle, position, missing, missing.coarser, lacks);
   }
   missing.any |= lacks || !is_own;
   missing.lacking += lacks ? 1 : 0;
@@ -421,18 +413,18 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_trian
 /// kinds on one surface would show where they meet.
 std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_triangle,
                                                           const glm::vec3& position,
-                                                          std::uint32_t packet,
-                                                          std::vector<MissingPlace>& missing,
+                                                          Missing& missing,
+                                                          std::vector<MissingPlace>& places,
                                                           bool& lacks) const {
   NodeBlend blend{};
   const std::uint32_t chart = surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)];
   if (const auto cell = maps_.tiles().find(chart, position, blend)) {
     const bool empty = blend.node[0] == none;
     lacks = true;
-    if (missing.empty() || missing.back().cell != *cell || missing.back().packet != packet) {
-      missing.push_back({*cell, empty, chart, packet, 0, position, sided_triangle});
+    if (places.empty() || places.back().cell != *cell || places.back().packet != missing.packet) {
+      places.push_back({*cell, empty, chart, missing.packet, 0, position, sided_triangle});
     }
-    missing.back().gain += empty ? 1 : difference(blend);
+    places.back().gain += empty ? 1 : difference(blend);
     if (empty) return std::nullopt;
   }
   if (is_shown_[chart] == 0) {
@@ -445,27 +437,23 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_tr
       seen.store(frame_, std::memory_order_relaxed);
     }
   }
-  for (std::size_t i = 0; i < blend.node.size(); ++i) {
-    blend.weight[i] *= shown_share_[blend.node[i]];
-  }
-  const std::span<const glm::vec4> light = mixed_.light();
+  missing.any |= nodes_.lacks_beside(blend);
+  blend = nodes_.weighted(blend);
   const auto blended = [&](std::span<const glm::vec4> of) {
     return (blend.weight[0] * of[blend.node[0]] + blend.weight[1] * of[blend.node[1]]) +
            (blend.weight[2] * of[blend.node[2]] + blend.weight[3] * of[blend.node[3]]);
   };
-  const glm::vec3 sum(blended(light));
-  if (mixed_.by_normal().empty()) return sum;
-  return turned(sum, blended(mixed_.by_normal()),
+  const glm::vec3 sum(blended(nodes_.light()));
+  if (nodes_.by_normal().empty()) return sum;
+  return turned(sum, blended(nodes_.by_normal()),
                 trace::shading_normal(scene_, sided_triangle, position));
-}
-
-double LightMapFrames::node_luminance(std::uint32_t node) const {
-  return luminance(glm::dvec3(mixed_.light()[node]));
 }
 
 /// Of the luminance of the nodes.
 double LightMapFrames::difference(const NodeBlend& blend) const {
-  const auto light = [&](std::size_t corner) { return node_luminance(blend.node[corner]); };
+  const auto light = [&](std::size_t corner) {
+    return luminance(glm::dvec3(nodes_.held().light()[blend.node[corner]]));
+  };
   const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
   return most - least;
 }
@@ -491,7 +479,7 @@ glm::vec3 LightMapFrames::followed(const View& view, std::uint32_t pixel,
                 irradiance(view, hit.sided_triangle, hit.position, missing);
   }
   for (const SeenEmission& lamp : record.emission) {
-    radiance += mixed_.powers()[layer_of_[lamp.light]] * lamp.radiance;
+    radiance += nodes_.held().powers()[layer_of_[lamp.light]] * lamp.radiance;
   }
   return radiance;
 }
@@ -499,7 +487,7 @@ glm::vec3 LightMapFrames::followed(const View& view, std::uint32_t pixel,
 glm::vec3 LightMapFrames::background(const glm::vec3& direction) const {
   glm::vec3 radiance(0.0f);
   for (const trace::DistantLight& light : distant_) {
-    radiance += mixed_.powers()[layer_of_[light.light()]] * light.radiance(direction);
+    radiance += nodes_.held().powers()[layer_of_[light.light()]] * light.radiance(direction);
   }
   return radiance;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cache/ambient_light.hpp"
-#include "cache/node_mix.hpp"
+#include "cache/shown_nodes.hpp"
 #include "cache/tiles.hpp"
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
@@ -68,19 +68,20 @@ class LightMapFrames {
   struct Missing {
     std::vector<MissingPlace> places;
     std::vector<MissingPlace> coarser;    ///< of the coarser light maps, where no level is valued
-    bool any = false;                     ///< of the block at hand
+    bool any = false;                     ///< of the block at hand: it is to be drawn again
     std::uint32_t packet = 0;             ///< the one at hand, of those that a thread traced
     std::uint64_t lacking = 0, read = 0;  ///< places, of both light maps together
   };
   struct View;
 
   void begin_frame();
-  void mix(std::span<const glm::vec3> powers);
+  void mix(std::span<const glm::vec3> powers, bool soft);
   void forget_unseen();
   Missing draw_blocks(const View& view, std::vector<std::size_t>& blocks,
                       const FrameFilling& filling) const;
   static void put_in_order(std::vector<MissingPlace>& places);
   bool show_complete(std::span<const MissingPlace> missing);
+  bool soften(std::span<const MissingPlace> missing);
   void fill(std::span<const MissingPlace> places, double seconds, const FrameFilling& filling,
             const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
@@ -90,10 +91,8 @@ class LightMapFrames {
   glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
                        Missing& missing) const;
   std::optional<glm::vec3> known_irradiance(std::uint32_t sided_triangle, const glm::vec3& position,
-                                            std::uint32_t packet,
-                                            std::vector<MissingPlace>& missing, bool& lacks) const;
-  void dim_lone_nodes();
-  double node_luminance(std::uint32_t node) const;
+                                            Missing& missing, std::vector<MissingPlace>& places,
+                                            bool& lacks) const;
   double difference(const NodeBlend& blend) const;
   glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                      Missing& missing) const;
@@ -107,8 +106,8 @@ class LightMapFrames {
   std::vector<std::uint32_t> layer_of_;  ///< per light
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1
   trace::DistantLights distant_;
-  NodeMix mixed_;
-  std::vector<float> shown_share_;           ///< per node: of its light
+  ShownNodes nodes_;
+  std::vector<MissingCell> lacking_;         ///< in the latest picture, of those that have a tile
   std::uint64_t bound_ = 0;                  ///< bytes of light maps; 0 = none
   std::uint32_t frame_ = 0;                  ///< of those that are bounded, from 1
   mutable std::vector<std::uint32_t> seen_;  ///< per node: the latest frame that shows its cell

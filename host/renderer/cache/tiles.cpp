@@ -37,6 +37,33 @@ void Tiles::split(std::uint32_t tile, std::uint32_t cell) {
   tiles_[tile].child[quadrant] = child;
 }
 
+std::uint32_t Tiles::tile_at(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                             std::uint32_t y) const {
+  const Chart& lattice = charts_[chart];
+  const std::uint32_t column = x >> level >> 3, row = y >> level >> 3;
+  if (column >= lattice.root_columns() || row >= lattice.root_rows()) return none;
+  std::uint32_t tile = root_[lattice.first_root + row * lattice.root_columns() + column];
+  for (std::uint32_t finer = level; finer > 0 && tile != none; --finer) {
+    const std::uint32_t right = x >> finer >> 2 & 1, up = y >> finer >> 2 & 1;
+    tile = tiles_[tile].child[up * 2 + right];
+  }
+  return tile;
+}
+
+std::uint32_t Tiles::node(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                          std::uint32_t y) const {
+  for (std::uint32_t around = 0; around < 4; ++around) {
+    const std::uint32_t left = around & 1, below = around >> 1;
+    if (x < left || y < below) continue;
+    const std::uint32_t index = tile_at(chart, level, x - left, y - below);
+    if (index == none) continue;
+    const Tile& tile = tiles_[index];
+    const std::uint32_t node = tile.node[(y - tile.y) * 9 + x - tile.x];
+    if (node != none) return node;
+  }
+  return none;
+}
+
 std::uint32_t Tiles::add(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
                          std::uint32_t y) {
   Tile tile;

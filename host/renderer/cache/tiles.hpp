@@ -82,6 +82,15 @@ class Tiles {
     }
   }
 
+  /// The tile that has a cell of a level; none where there is none.
+  ///   x, y   in cells of the level; those before the first, counted modulo 2^32, have no tile
+  std::uint32_t tile_at(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                        std::uint32_t y) const;
+  /// The node at the corner of cells of a level, wherever a tile has it; none where none has.
+  ///   x, y   in cells of the level
+  std::uint32_t node(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                     std::uint32_t y) const;
+
   /// The tile of a missing cell, made if there is none.
   std::uint32_t tile_of(const MissingCell& missing);
   /// Makes the tile of the next level that refines a cell, if there is none.

@@ -1,0 +1,182 @@
+// Light between nodes while others are lacking: without steps, spots and squares.
+#include "cache/shown_nodes.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "cache/charts.hpp"
+#include "cache/node_sources.hpp"
+#include "test_scenes.hpp"
+
+namespace photile::test {
+namespace {
+
+constexpr int points_per_side = 400;
+constexpr float floor_side = 4.0f;
+
+/// Cells of all sizes have corners that differ.
+float rising_light(const glm::vec3& p, std::uint32_t) { return std::exp(2 * p.x + p.y); }
+
+/// A square floor, and a number for the surroundings of each node.
+class FloorSource : public FormulaSource {
+ public:
+  using FormulaSource::FormulaSource;
+  NodeValues value(const NodeBatch& batch, const Progress& progress) override {
+    NodeValues values = FormulaSource::value(batch, progress);
+    for (std::size_t node = 0; node < batch.nodes; ++node) {
+      values.error.push_back(0);
+      values.distance.push_back(surroundings(batch.points.position[node]));
+    }
+    return values;
+  }
+  std::function<float(const glm::vec3&)> surroundings = [](const glm::vec3&) { return 10.0f; };
+};
+
+struct Floor {
+  explicit Floor(FormulaSource::Formula light, int levels = 4)
+      : scene(with_one_lamp(floor_scene())),
+        source(std::move(light)),
+        maps(scene, quiet_parameters(0.5, levels)) {}
+
+  static Scene floor_scene() {
+    Scene scene = plate(diffuse(glm::vec3(0.5f)), floor_side);
+    for (glm::vec3& position : scene.vertices)
+      position += glm::vec3(0.5f * floor_side, 0.5f * floor_side, 0);
+    return scene;
+  }
+
+  /// Fills what is needed where x lies in [from, to].
+  void fill(float from, float to, int levels) {
+    PrimaryHits hits;
+    for_points([&](float x, float y) {
+      if (x >= from && x <= to) add_hit(hits, {x, y, 0}, sided(0, 0));
+    });
+    maps.fill(hits, source, Progress::none(), levels);
+  }
+
+  template <class Visit>
+  void for_points(const Visit& visit) const {
+    for (int i = 0; i < points_per_side; ++i) {
+      for (int j = 0; j < points_per_side; j += 10) {
+        const float x = floor_side * (static_cast<float>(i) + 0.5f) / points_per_side;
+        const float y = floor_side * (static_cast<float>(j) + 0.27f) / points_per_side;
+        visit(x, y);
+      }
+    }
+  }
+
+  NodeBlend at(float x, float y, std::vector<cache::MissingCell>* lacking = nullptr) const {
+    NodeBlend blend;
+    const std::uint32_t chart = maps.charts().chart_of()[sided(0, 0)];
+    const auto missing = maps.tiles().find(chart, {x, y, 0}, blend);
+    if (missing && lacking) lacking->push_back(*missing);
+    return blend;
+  }
+
+  std::vector<cache::MissingCell> lacking() const {
+    std::vector<cache::MissingCell> cells;
+    for_points([&](float x, float y) { at(x, y, &cells); });
+    return cells;
+  }
+
+  /// The largest difference, relative to the light, between points so close that smooth light has
+  /// none.
+  template <class Light>
+  float largest_step(const Light& light) const {
+    constexpr float apart = 1e-4f;
+    float largest = 0;
+    for_points([&](float x, float y) {
+      // Borders of cells of all sizes lie at multiples of the smallest.
+      const float border = std::round(x / 0.0625f) * 0.0625f;
+      if (border < apart || border > floor_side - apart) return;
+      const float before = light(border - 0.5f * apart, y), after = light(border + 0.5f * apart, y);
+      largest = std::max(largest, std::abs(after - before) / before);
+    });
+    return largest;
+  }
+
+  const Scene scene;
+  FloorSource source;
+  LightMaps maps;
+  cache::ShownNodes nodes;
+};
+
+float shown_between(std::span<const glm::vec4> light, const NodeBlend& blend) {
+  float sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += blend.weight[i] * light[blend.node[i]].x;
+  return sum;
+}
+
+const std::vector<glm::vec3> at_full_power{glm::vec3(1.0f)};
+
+}  // namespace
+
+TEST_CASE("Between cells that have their nodes and cells that lack them there is no step") {
+  Floor floor(rising_light);
+  floor.fill(0, floor_side, 1);
+  const std::vector<cache::MissingCell> lacking = floor.lacking();
+  REQUIRE_FALSE(lacking.empty());
+  floor.fill(0, 1.7f, 2);  // in part, to levels of several kinds
+  floor.fill(0, 1.2f, 8);
+  const auto own = [&](float x, float y) {
+    return shown_between(floor.nodes.held().light(), floor.at(x, y));
+  };
+  const auto shown = [&](float x, float y) {
+    return shown_between(floor.nodes.light(), floor.nodes.weighted(floor.at(x, y)));
+  };
+  floor.nodes.mix(floor.maps, at_full_power, lacking, false);
+  CHECK(floor.largest_step(own) > 0.03f);
+  CHECK(floor.largest_step(shown) < 0.001f);  // it rises by two a metre
+
+  floor.fill(0, floor_side, 8);
+  floor.nodes.mix(floor.maps, at_full_power, {}, false);
+  CHECK(std::equal(floor.nodes.light().begin(), floor.nodes.light().end(),
+                   floor.nodes.held().light().begin()));
+}
+
+TEST_CASE("Soft light has no step at cells that are larger because their corners agree") {
+  // A ridge between nodes of the coarsest level, that ends at a border of cells.
+  Floor floor([](const glm::vec3& p, std::uint32_t) {
+    const float across = std::max(0.0f, 1 - 8 * std::abs(p.y - 2.25f));
+    return 1 + across * std::clamp(4 * (2.25f - p.x), 0.0f, 1.0f) + (p.x < 1.6f ? 4 * p.y : 2.0f);
+  });
+  floor.fill(0, floor_side, 8);
+  REQUIRE(floor.lacking().empty());
+  floor.nodes.mix(floor.maps, at_full_power, {}, true);
+  const float own = floor.largest_step(
+      [&](float x, float y) { return shown_between(floor.nodes.held().light(), floor.at(x, y)); });
+  const float shown = floor.largest_step([&](float x, float y) {
+    return shown_between(floor.nodes.light(), floor.nodes.weighted(floor.at(x, y)));
+  });
+  CHECK(own > 0.1f);
+  CHECK(shown < 0.02f);
+}
+
+TEST_CASE("A node that is shut in counts for little around it while others are lacking") {
+  const auto is_shut_in = [](const glm::vec3& p) {
+    return glm::length(p - glm::vec3(2, 2, 0)) < 0.1f;
+  };
+  Floor floor([&](const glm::vec3& p, std::uint32_t) { return is_shut_in(p) ? 0.0f : 1.0f; });
+  floor.source.surroundings = [&](const glm::vec3& p) { return is_shut_in(p) ? 0.005f : 10.0f; };
+  floor.fill(0, floor_side, 1);
+  floor.nodes.mix(floor.maps, at_full_power, floor.lacking(), false);
+  const NodeBlend beside = floor.at(2.2f, 2.2f);
+  CHECK(shown_between(floor.nodes.held().light(), beside) < 0.7f);
+  CHECK(shown_between(floor.nodes.light(), floor.nodes.weighted(beside)) > 0.95f);
+}
+
+TEST_CASE("A node that is far brighter than all around it is dimmed while others are lacking") {
+  Floor floor([](const glm::vec3& p, std::uint32_t) {
+    return glm::length(p - glm::vec3(2, 2, 0)) < 0.1f ? 100.0f : 1.0f;
+  });
+  floor.fill(0, floor_side, 1);
+  floor.nodes.mix(floor.maps, at_full_power, floor.lacking(), false);
+  const auto [least, most] =
+      std::minmax_element(floor.nodes.light().begin(), floor.nodes.light().end(),
+                          [](const glm::vec4& a, const glm::vec4& b) { return a.x < b.x; });
+  CHECK(least->x == 1.0f);
+  CHECK(most->x == Approx(3.0f));
+}
+
+}  // namespace photile::test
