@@ -14,7 +14,7 @@ namespace {
 
 /// Loads a scene as every command does: it has to be one that stages accept.
 bool accepts_scene(const std::filesystem::path& file) {
-  return accepts([&] {
+  const auto load = [&] {
     const Scene scene = load_scene(file);
     try {
       check_scene(scene);
@@ -24,7 +24,8 @@ bool accepts_scene(const std::filesystem::path& file) {
     for (const Camera& camera : scene.cameras) {
       require(std::isfinite(glm::length(camera.position)), "a camera is nowhere");
     }
-  });
+  };
+  return accepts(load, file);
 }
 
 bool accepts_resource(const auto& read) {
