@@ -73,23 +73,23 @@ slow() {
 }
 
 # What reads files, then the stages; random commands reach what is between them.
-sanitized=(scene image measuring saved_maps fuzz trace groups surface maps light_maps daylight glare
-  gather walk property)
+sanitized=(scene image loading cloud saved_maps measuring fuzz trace groups surface maps cache daylight
+  glare walk bake property)
 sanitized_tests="^($(IFS='|'; echo "${sanitized[*]}"))/"
 step "build" cmake/build.sh release
 step "quick tests" ctest --preset release --parallel "$jobs"
-for area in app blender device estimate faults gather groups mpi package property python reference \
-  render runtimes trade validation; do
+for area in blender cache command device estimate faults groups mpi package property publish python \
+  reference render runtimes validation view; do
   slow "$area"
 done
 step "build sanitizers" cmake/build.sh sanitizers "${sanitized[@]/#/photile_tests_}"
 step "sanitizers" ctest --preset sanitizers --no-tests=error -R "$sanitized_tests"
 step "build threads" cmake/build.sh threads \
-  photile_tests_{view,render,gather,trace,groups,daylight} photile_command
+  photile_tests_{view,render,cache,trace,groups,daylight} photile_command
 # On one processor, where oneTBB has no threads of its own, and without the test that asks for them:
 # docs/testing.md.
 step "threads" taskset -c 0 ctest --preset threads --no-tests=error -E reproducib \
-  -R "^((view|gather|trace|groups|daylight)/|render/(several|shared_rendering|load_balance))"
+  -R "^((view|cache|trace|groups|daylight)/|render/(several|shared_rendering|load_balance))"
 step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
 step "soak" bench/tools/soak.sh "$hours"
 step "build coverage" cmake/build.sh coverage photile_fuzz
