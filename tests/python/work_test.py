@@ -102,7 +102,7 @@ photile.load({str(tmp_path / "crossing.obj")!r})
     time.sleep(3)
     process.send_signal(signal.SIGINT)
     try:
-        assert process.communicate(timeout=20)[1].endswith("KeyboardInterrupt\n")
+        assert process.communicate(timeout=60)[1].endswith("KeyboardInterrupt\n")
     finally:
         process.kill()
 
