@@ -143,4 +143,21 @@ TEST_CASE("a small EXR that announces gigabytes is refused without taking them")
   }
 }
 
+TEST_CASE(
+    "a small picture takes little memory to read, in any format that is stored as it is read") {
+  const TemporaryFolder folder;
+  for (const std::string name : {"a.png", "a.tif", "a.bmp", "a.webp"}) {
+    CAPTURE(name);
+    const std::string file = (folder / name).string();
+    const auto output = OIIO::ImageOutput::create(file);
+    REQUIRE(output->open(file, OIIO::ImageSpec(4, 4, 3, OIIO::TypeDesc::UINT8)));
+    REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, std::vector<unsigned char>(48, 100).data()));
+    REQUIRE(output->close());
+    read_image(file);  // what the library keeps is taken once
+    const MemoryMeter meter;
+    CHECK(read_image(file).pixels() == 16);
+    CHECK(meter.peak() < std::size_t{1} << 20);
+  }
+}
+
 }  // namespace photile::test
