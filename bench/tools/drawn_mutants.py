@@ -104,8 +104,17 @@ FURTHER_TESTS = {
               ("loading", "material_reflectance"), ("loading", "photometric_files"),
               ("loading", "textured_lights"), ("loading", "obj"), ("loading", "color_temperature"),
               ("loading", "bad_input")),
+    "gltf": (("fuzz", "corpus"),), "obj": (("fuzz", "corpus"),),
     "image": (("loading", "textures"),),
     "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
+
+# Folders of host/ whose tests are in a folder of another name.
+TESTED_IN = {"gltf": "loading", "obj": "loading"}
+
+
+def home_of(folder):
+    """The folder of tests/ for a folder of host/."""
+    return TESTED_IN.get(folder, folder)
 
 
 def folder_of(name):
@@ -174,8 +183,8 @@ class Host:
         self.number = 0
         self.reached = {}  # step -> numbers of the mutants that can change what it does
         self.folder_steps = {
-            folder: steps_of_folder(self.schemata.program(tests_of(folder)), folder,
-                                    work / f"{folder}.json", order)
+            folder: steps_of_folder(self.schemata.program(tests_of(home_of(folder))), home_of(folder),
+                                    work / f"{home_of(folder)}.json", order)
             for folder in folders}
 
     def steps(self, folder):
@@ -364,7 +373,7 @@ def noticed_alone(options):
     """Lines: how many mutants each test of the folders noticed with others and alone."""
     lists = [result["noticed"] for result in stored(options.results).values()
              if isinstance(result.get("noticed"), list)]
-    tests = [f"{folder}/{case}" for folder in options.folders
+    tests = [f"{folder}/{case}" for folder in dict.fromkeys(map(home_of, options.folders))
              for _, cases, _ in stored(options.work / f"{folder}.json") for case in cases]
     return [f"{sum(test in noticed for noticed in lists):4} {lists.count([test]):4}  {test}"
             for test in dict.fromkeys([*tests, *(test for noticed in lists for test in noticed)])]

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "arrays.hpp"
+#include "loading/load_scene.hpp"
 #include "parts.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
@@ -154,7 +155,9 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
     load.sun = Sun::parse(text);
   if (const auto text = options["sky"].cast<std::string>(); !text.empty())
     load.sky = Sky::parse(text);
-  return run(progress, [&](Progress&) { return std::make_shared<Scene>(load_scene(file, load)); });
+  return run(progress, [&](Progress& told) {
+    return std::make_shared<Scene>(loading::load_scene(file, load, told));
+  });
 }
 
 struct Arrays {

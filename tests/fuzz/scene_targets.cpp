@@ -12,10 +12,13 @@
 namespace photile::test {
 namespace {
 
-/// Loads a scene as every command does: it has to be one that stages accept.
-bool accepts_scene(const std::filesystem::path& file) {
-  return accepts([&] {
-    const Scene scene = load_scene(file);
+/// Loads a scene as every command does: it has to be one that stages accept. Rays that search for
+/// windows take half the time of scenes with a sun: inputs of one length in eight have them.
+bool accepts_scene(const std::filesystem::path& file, Bytes bytes) {
+  const auto load = [&] {
+    SceneLoadOptions options;
+    if (bytes.size() % 8 != 0) options.portals = {"off"};
+    const Scene scene = load_scene(file, options);
     try {
       check_scene(scene);
     } catch (const Error& error) {
@@ -24,7 +27,8 @@ bool accepts_scene(const std::filesystem::path& file) {
     for (const Camera& camera : scene.cameras) {
       require(std::isfinite(glm::length(camera.position)), "a camera is nowhere");
     }
-  });
+  };
+  return accepts(load, file);
 }
 
 bool accepts_resource(const auto& read) {
@@ -47,15 +51,15 @@ bool accepts_photometry(const char* name, Bytes bytes) {
 
 }  // namespace
 
-bool fuzz_gltf(Bytes bytes) { return accepts_scene(file_of("scene.gltf", bytes)); }
+bool fuzz_gltf(Bytes bytes) { return accepts_scene(file_of("scene.gltf", bytes), bytes); }
 
-bool fuzz_glb(Bytes bytes) { return accepts_scene(file_of("scene.glb", bytes)); }
+bool fuzz_glb(Bytes bytes) { return accepts_scene(file_of("scene.glb", bytes), bytes); }
 
 bool fuzz_obj(Bytes bytes) {
   const auto end = std::find(bytes.begin(), bytes.end(), 0);
   const auto obj = static_cast<std::size_t>(end - bytes.begin());
   file_of("scene.mtl", bytes.subspan(std::min(obj + 1, bytes.size())));
-  return accepts_scene(file_of("scene.obj", bytes.first(obj)));
+  return accepts_scene(file_of("scene.obj", bytes.first(obj)), bytes);
 }
 
 bool fuzz_ies(Bytes bytes) { return accepts_photometry("lamp.ies", bytes); }

@@ -1,6 +1,7 @@
 """Long work: progress, Ctrl-C, the interpreter's lock."""
 
 import logging
+import random
 import signal
 import subprocess
 import sys
@@ -78,6 +79,32 @@ except KeyboardInterrupt:
     time.sleep(0.3)
     run.send_signal(signal.SIGINT)
     assert run.communicate(timeout=60)[0] == "heard\n" and run.returncode == 0
+
+
+def test_ctrl_c_is_heard_while_a_scene_is_loaded(tmp_path):
+    # Minutes of work: 40 polygons whose corners are the same random points, in another order each.
+    draw, corners = random.Random(1), 60_000
+    names = list(range(1, corners + 1))
+    with open(tmp_path / "crossing.obj", "w") as file:
+        for _ in names:
+            file.write(f"v {draw.randrange(100_000)} {draw.randrange(100_000)} 0\n")
+        for _ in range(40):
+            draw.shuffle(names)
+            print("f", *names, file=file)
+    program = f"""
+import photile
+print("ready", flush=True)
+photile.load({str(tmp_path / "crossing.obj")!r})
+"""
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    try:
+        assert process.communicate(timeout=60)[1].endswith("KeyboardInterrupt\n")
+    finally:
+        process.kill()
 
 
 SETUP = """

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/foreign_text.hpp"
@@ -78,7 +79,7 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
   // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
   bytes.resize(bytes.size() + 8, 0);
   const std::string_view json = json_chunk(std::span(bytes).first(size), binary);
-  check_json(json, context);
+  check_required_extensions(check_json(json, context), context);
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks(context.folder));
   loader.SetImageLoader(keep_encoded, nullptr);
@@ -94,11 +95,10 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
     error = "a value of another type than the format has";
   }
   if (!loaded) {
-    check_required_extensions(json, context);
     throw context.error("malformed glTF: " + first_line(error) + "; export it again");
   }
   if (!error.empty()) context.warnings.add("malformed glTF: " + first_line(error));
-  check_extensions(model, context);
+  warn_of_extensions(model, context);
   return model;
 }
 
@@ -193,6 +193,7 @@ class JsonCheck {
   using binary_t = nlohmann::json::binary_t;
 
   std::string problem;
+  std::vector<std::string> required;  ///< extensions
 
   bool null() { return value(!is_whole(), "null"); }
   bool boolean(bool) { return value(!is_whole(), "true or false"); }
@@ -204,7 +205,11 @@ class JsonCheck {
   bool number_unsigned(number_unsigned_t number) {
     return value(levels_.empty() || number <= levels_.back().most, number);
   }
-  bool string(string_t&) { return value(!is_whole(), "a text"); }
+  bool string(string_t& text) {
+    const bool listed = levels_.size() == 2 && levels_.back().array;
+    if (listed && levels_.front().key == "extensionsRequired") required.push_back(text);
+    return value(!is_whole(), "a text");
+  }
   bool binary(binary_t&) { return value(!is_whole(), "binary"); }
 
   bool start_object(std::size_t) { return enter(false); }
@@ -321,9 +326,9 @@ class JsonCheck {
 
 }  // namespace
 
-void check_json(std::string_view json, const reading::ImportContext& context) {
+std::vector<std::string> check_json(std::string_view json, const reading::ImportContext& context) {
   JsonCheck check;
-  if (nlohmann::json::sax_parse(json, &check)) return;
+  if (nlohmann::json::sax_parse(json, &check)) return std::move(check.required);
   const bool malformed = check.problem.starts_with("malformed");
   throw context.error(check.problem + (malformed ? "; export it again" : ""));
 }

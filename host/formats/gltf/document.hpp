@@ -1,7 +1,9 @@
 // A glTF file, parsed and with its buffers read, before any of it is interpreted.
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "gltf/tiny_gltf.hpp"
 #include "reading/import_context.hpp"
@@ -14,14 +16,14 @@ namespace photile::gltf {
 /// requires an extension that photile does not understand.
 tinygltf::Model read_gltf(reading::ImportContext& context);
 
-/// Names every extension that the file uses and photile does not understand in a warning. Errors:
-/// InputError naming one that the file requires, with the remedy.
-void check_extensions(const tinygltf::Model& model, reading::ImportContext& context);
+/// Errors: InputError naming the first of the extensions that a file requires which photile does
+/// not understand, with the remedy. To be asked before the file is parsed: what such an extension
+/// leaves out of it (buffers without data, ...) makes it malformed.
+void check_required_extensions(const std::vector<std::string>& required,
+                               const reading::ImportContext& context);
 
-/// Errors as of check_extensions for a file that could not be parsed, often because of what an
-/// extension left out of it (buffers without data, ...). Does nothing where its JSON names no such
-/// extension.
-void check_required_extensions(std::string_view json, const reading::ImportContext& context);
+/// Names every extension that the file uses and photile does not understand in a warning.
+void warn_of_extensions(const tinygltf::Model& model, reading::ImportContext& context);
 
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.
 double number_member(const tinygltf::Value& object, const std::string& key, double fallback);
@@ -50,9 +52,9 @@ std::string decoded_uri(const std::string& uri);
 
 /// Reads the text once, as a stream: whatever it says, that takes no memory but for its depth.
 /// tinygltf would build all of it, recursively, and read numbers that are out of their range as
-/// others. Errors: InputError where it is no JSON, is nested deeper than limits::max_json_depth,
-/// has more nodes or materials than the limits, or where a number, count or offset of the format is
-/// no whole number of its range.
-void check_json(std::string_view json, const reading::ImportContext& context);
+/// others. Returns what it names in extensionsRequired. Errors: InputError where it is no JSON, is
+/// nested deeper than limits::max_json_depth, has more nodes or materials than the limits, or where
+/// a number, count or offset of the format is no whole number of its range.
+std::vector<std::string> check_json(std::string_view json, const reading::ImportContext& context);
 
 }  // namespace photile::gltf

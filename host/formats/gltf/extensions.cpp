@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "gltf/document.hpp"
 
@@ -61,28 +61,22 @@ std::string remedy_for(std::string_view extension, std::string_view otherwise) {
   return std::string(found == remedies.end() ? otherwise : found->second);
 }
 
-void check_required(const std::string& extension, const reading::ImportContext& context) {
-  if (is_understood(extension)) return;
-  throw context.error(fmt::format("requires the glTF extension {}, which is not understood; {}",
-                                  extension, remedy_for(extension, "export without it")));
-}
-
 }  // namespace
 
-void check_extensions(const tinygltf::Model& model, reading::ImportContext& context) {
-  for (const std::string& extension : model.extensionsRequired) check_required(extension, context);
+void check_required_extensions(const std::vector<std::string>& required,
+                               const reading::ImportContext& context) {
+  for (const std::string& extension : required) {
+    if (is_understood(extension)) continue;
+    throw context.error(fmt::format("requires the glTF extension {}, which is not understood; {}",
+                                    extension, remedy_for(extension, "export without it")));
+  }
+}
+
+void warn_of_extensions(const tinygltf::Model& model, reading::ImportContext& context) {
   for (const std::string& extension : model.extensionsUsed) {
     if (is_understood(extension)) continue;
     context.warnings.add("extension", extension,
                          "not understood; " + remedy_for(extension, "what it says is ignored"));
-  }
-}
-
-void check_required_extensions(std::string_view json, const reading::ImportContext& context) {
-  const auto document = nlohmann::json::parse(json, nullptr, /*allow_exceptions=*/false);
-  if (!document.is_object() || !document.contains("extensionsRequired")) return;
-  for (const nlohmann::json& extension : document["extensionsRequired"]) {
-    if (extension.is_string()) check_required(extension.get<std::string>(), context);
   }
 }
 

@@ -145,7 +145,11 @@ class OpenImageIODecoder : public image::Decoder {
   std::vector<T> values(OIIO::TypeDesc type) {
     const Silence silence;
     std::vector<T> values(shape_.values());
-    const bool read = input_->read_image(0, 0, 0, shape_.channels, type, values.data());
+    // Values that are stored as they are wanted need no conversion, for which OpenImageIO would
+    // take 64 MiB however small the picture is.
+    const bool stored = input_->spec().format == type && input_->spec().channelformats.empty();
+    const OIIO::TypeDesc wanted = stored ? OIIO::TypeDesc() : type;
+    const bool read = input_->read_image(0, 0, 0, shape_.channels, wanted, values.data());
     if (!read || input_->has_error()) throw image::DecodeError(reason_of(*input_));
     if constexpr (std::is_same_v<T, std::uint8_t>) {
       if (associated_) divide_by_alpha(values);

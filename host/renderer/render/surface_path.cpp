@@ -29,7 +29,7 @@ class SurfacePath {
 
   void trace(const SurfacePoint& start, const OpaqueBsdf& bsdf) {
     const trace::Receiver receiver(start, bsdf);
-    look_at_lamp(
+    sample_light(
         start, [&](const glm::vec3& to) { return receiver.weights(to); },
         [&](const glm::vec3& to) { return receiver.density(to); });
     const RandomBlock numbers = random_.block(Purpose::path_scattering, 1);
@@ -63,13 +63,11 @@ class SurfacePath {
   }
 
   void add_what_lies_beyond(const glm::vec3& direction) {
-    for (const std::uint32_t index : lights_.distant().towards(direction)) {
-      const trace::DistantLight& light = lights_.distant()[index];
-      const glm::vec3 radiance = light.radiance(direction);
-      if (radiance == glm::vec3(0.0f)) continue;
-      add(lights_.layer(light.light()),
-          weights_ * (weight_against(lights_.density(light, from_, direction)) * radiance));
-    }
+    lights_.distant().for_each_shining(
+        direction, [&](const trace::DistantLight& light, const glm::vec3& radiance) {
+          add(lights_.layer(light.light()),
+              weights_ * (weight_against(lights_.density(light, from_, direction)) * radiance));
+        });
   }
 
   /// The weight of light that the path met, where sampling lights finds it with density `other`.
@@ -93,7 +91,7 @@ class SurfacePath {
       return survives(scattered.weight, numbers);
     }
     const OpaqueBsdf bsdf(scene_, point, direction);
-    look_at_lamp(
+    sample_light(
         point, [&](const glm::vec3& to) { return weights_ * bsdf.reflected(to); },
         [&](const glm::vec3& to) { return bsdf.density(to); });
     const auto scattered = bsdf.sample(numbers);
@@ -107,16 +105,16 @@ class SurfacePath {
 
   /// Light of one light, chosen at random, at a point: `weigh` and `density` of directions there.
   template <class Weigh, class Density>
-  void look_at_lamp(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
+  void sample_light(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
     const auto lamp =
         lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));
     if (!lamp || !(glm::dot(lamp->direction, point.normal) > 0.0f)) return;
     const glm::vec3 origin = point.origin_towards(lamp->direction);
-    glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
+    const glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
     if (arrives == glm::vec3(0.0f)) return;
-    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density(lamp->direction));
-    add(lamp->layer, weigh(lamp->direction) * arrives);
+    const float weight = lamp->weight_beside(density(lamp->direction));
+    add(lamp->layer, weigh(lamp->direction) * (arrives * weight));
   }
 
   /// Roulette on what is left of the light, as photons play it.

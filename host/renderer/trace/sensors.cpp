@@ -63,7 +63,7 @@ class Gatherer {
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       const RandomStream random(film.seed, number(sample), 0);
       follow(random, sobol_point(static_cast<std::uint32_t>(sample), scramble), record);
-      look_at_lamp(random, (sample + shift) / film.samples_per_pixel, lamps);
+      sample_light(random, (sample + shift) / film.samples_per_pixel, lamps);
     }
   }
 
@@ -82,18 +82,17 @@ class Gatherer {
                    &looking);
   }
 
-  void look_at_lamp(const RandomStream& random, double choice,
+  void sample_light(const RandomStream& random, double choice,
                     std::vector<SeenEmission>& lamps) const {
     const auto lamp = lamps_.sample(photometer_.origin(), RandomBlock::of(choice),
                                     random.block(Purpose::sensor_light, 1));
     if (!lamp || !(photometer_.sees_lamps() || lamp->distant)) return;
     const float density = photometer_.density(lamp->direction);
     if (!(density > 0.0f)) return;
-    glm::vec3 arrives = density * weight() * lamp->received *
-                        transmittance(rays_, photometer_.origin(), lamp->target);
+    const glm::vec3 arrives = density * weight() * lamp->received *
+                              transmittance(rays_, photometer_.origin(), lamp->target);
     if (arrives == glm::vec3(0.0f)) return;
-    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density);
-    lamps.push_back({pixel_, lamp->layer, arrives});
+    lamps.push_back({pixel_, lamp->layer, arrives * lamp->weight_beside(density)});
   }
 
   const RayScene& rays_;
