@@ -180,6 +180,33 @@ TEST_CASE("gathering: light gathered from near coats is that of paths, with less
   check_against_paths(scene, 0.02, {.near = 0.6});
 }
 
+TEST_CASE("gathering: floor beside a narrow rim of metal is lit as paths find it") {
+  // A half round bar of a centimetre in a white box: photons of its faces that look up count among
+  // the neighbours of those that look aside.
+  SceneBuilder builder;
+  builder.box(glm::vec3(-1, -1, 0), glm::vec3(1, 1, 2), builder.add(diffuse(glm::vec3(0.6f))),
+              true);
+  const std::uint32_t metal = builder.add(glossy(glm::vec3(0.0f), glm::vec3(0.6f), 0.4f));
+  constexpr int faces = 6;
+  const auto at = [](int i) {
+    const double angle = pi * i / faces;
+    return glm::vec3(0.01 * std::cos(angle), -1, 0.01 * std::sin(angle));
+  };
+  for (int i = 0; i < faces; ++i) builder.grid(at(i), at(i + 1) - at(i), {0, 2, 0}, 1, metal);
+  builder.grid({0.3f, -0.2f, 1.99f}, {0, 0.4f, 0}, {0.4f, 0, 0}, 1,
+               builder.add(diffuse(glm::vec3(0.0f))), builder.add(area_light("lamp")));
+  GatheringScene room(builder.build(), looked_up(200'000));
+  const std::vector<Sensor> sensors = sensors_on({0.0105, -0.5, 0}, {0.02, 0, 0}, {0, 1, 0}, up, 8);
+  const cache::GatheredIrradiance light = room.at(sensors, {.near = 0.2});
+  const PathReference truth = by_paths(room.rays, sensors, 4096);
+  double sum = 0, expected = 0;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    sum += lux(light, i);
+    expected += truth.lux[i];
+  }
+  CHECK(sum / expected == Approx(1).margin(0.03));
+}
+
 TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
   Scene scene = furnished_room();
   SECTION("a coat on the floor and the walls") {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
+#include <optional>
 
 #include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
@@ -34,8 +35,41 @@ struct RunSetup {
   EyeSetup later;  ///< of those that go on from near surface
 };
 
-/// Replaces the last end by light that reaches it, as long as it is surface near the point that
-/// reflects light from everywhere alike, or nearly so.
+/// A direction in which a ray goes on from near surface.
+struct Onward {
+  glm::vec3 direction;
+  glm::vec3 weight;  ///< of the light from there
+  float density;     ///< of the direction, per steradian
+};
+
+/// Light that a lobe reflects: of one light sample, which is added to the ends, and from a
+/// direction of its own; none where that would enter the surface.
+///   hit   where the lobe is, with the throughput of the ray
+std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsdf,
+                                      const SurfacePoint& point, const RandomStream& random,
+                                      const EyeHit& hit, EyeRecord& ends) {
+  const auto lamp =
+      run.parameters.lamps->sample(point.position, random.block(Purpose::direct_light, 0),
+                                   random.block(Purpose::direct_light, 1));
+  if (lamp) {
+    const glm::vec3 radiance = hit.throughput * bsdf.reflected(lamp->direction) * lamp->received *
+                               lamp->weight_beside(bsdf.density(lamp->direction));
+    if (radiance != glm::vec3(0.0f)) {
+      const glm::vec3 origin = point.origin_towards(lamp->direction);
+      ends.direct.push_back(
+          {hit.pixel, lamp->layer, radiance * transmittance(run.rays, origin, lamp->target)});
+    }
+  }
+  const auto direction = bsdf.sample(random.block(Purpose::hemisphere_direction, 1));
+  if (!direction) return std::nullopt;
+  const float density = bsdf.density(*direction);
+  if (!(density > 0.0f)) return std::nullopt;
+  return Onward{*direction, bsdf.reflected(*direction) / density, density};
+}
+
+/// Replaces the last end by light that reaches it, as long as it is surface near the point. Photons
+/// around such an end would be those of a part of the hemisphere: of the faces of a narrow frame
+/// that lie at angles to it, for instance.
 ///   from     the point
 ///   before   ends of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
@@ -47,33 +81,44 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
   const LightSampler& lamps = *run.parameters.lamps;
   for (int bounce = 1; bounce <= defaults::most_near_surfaces && ends.hits.size() > before;
        ++bounce) {
-    const EyeHit hit = ends.hits.back();
+    EyeHit hit = ends.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
     const std::uint32_t triangle = triangle_of(hit.sided_triangle);
     const EndReflection reflection = reflection_of(ends, ends.hits.size() - 1);
-    if (reflection.strong_lobe) return;
-    ends.hits.pop_back();
-    if (!ends.glossy.empty()) ends.glossy.pop_back();
     const SurfacePoint point =
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
                       side_of(hit.sided_triangle));
+    std::optional<OpaqueBsdf> bsdf;
+    if (reflection.strong_lobe) bsdf.emplace(scene, point, -ends.glossy.back().outgoing);
+    ends.hits.pop_back();
+    if (!ends.glossy.empty()) ends.glossy.pop_back();
     const RandomStream random(run.parameters.seed, number,
                               stream + static_cast<std::uint32_t>(bounce) * streams);
     const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
     const float survival =
         std::min(1.0f, defaults::survival_of_reflectance * largest(reflection.reflectance));
     if (!(numbers.uniform(2) < survival)) return;
-    const glm::vec3 throughput = hit.throughput * reflection.reflectance / survival;
-    looks.add(lamps, point,
-              {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
-              glm::one_over_pi<float>() * throughput, 1.0f, by_power_alone, hit.pixel);
-    const glm::vec3 direction =
-        Frame(point.normal)
-            .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
-    const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
-    const LightTechnique look{lamps, cosine * glm::one_over_pi<float>(), true};
+    hit.throughput /= survival;
+    std::optional<Onward> on;
+    if (bsdf) {
+      on = reflect_by_lobe(run, *bsdf, point, random, hit, ends);
+      if (!on) return;
+    } else {
+      looks.add(lamps, point,
+                {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
+                glm::one_over_pi<float>() * hit.throughput * reflection.reflectance, 1.0f,
+                by_power_alone, hit.pixel);
+      const glm::vec3 direction =
+          Frame(point.normal)
+              .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
+      on = {direction, reflection.reflectance,
+            std::max(0.0f, glm::dot(direction, point.normal)) * glm::one_over_pi<float>()};
+    }
+    const LightTechnique look{lamps, on->density, true};
     const std::size_t seen_before = ends.emission.size();
-    follow_eye_ray(run.later, {point.origin_towards(direction), direction, throughput, hit.pixel},
+    follow_eye_ray(run.later,
+                   {point.origin_towards(on->direction), on->direction, hit.throughput * on->weight,
+                    hit.pixel},
                    random, ends, &look);
     for (std::size_t i = seen_before; i < ends.emission.size(); ++i) {
       const SeenEmission& seen = ends.emission[i];
