@@ -105,6 +105,11 @@ FURTHER_TESTS = {
               ("loading", "textured_lights"), ("loading", "obj"), ("loading", "color_temperature"),
               ("loading", "bad_input")),
     "image": (("loading", "textures"),),
+    "measuring": (("command", "measure"),), "daylight": (("command", "daylight"),), "glare": (("command", "glare"),),
+    "report": (("measuring", "plan_drawing"), ("measuring", "plan_surroundings"), ("measuring", "isolines"),
+               ("measuring", "false_colour_picture"), ("measuring", "sensor_files"), ("image", "colours"),
+               ("command", "pictures"), ("command", "measure"), ("command", "glare"), ("command", "daylight")),
+    "saved_maps": (("command", "saved_maps"),), "cloud": (), "view": (), "denoise": (("render", "denoiser"),),
     "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
 
 
@@ -176,6 +181,7 @@ class Host:
         self.folder_steps = {
             folder: steps_of_folder(self.schemata.program(tests_of(folder)), folder,
                                     work / f"{folder}.json", order)
+            if (ROOT / "tests" / folder).is_dir() else []
             for folder in folders}
 
     def steps(self, folder):
