@@ -104,6 +104,7 @@ FURTHER_TESTS = {
               ("loading", "material_reflectance"), ("loading", "photometric_files"),
               ("loading", "textured_lights"), ("loading", "obj"), ("loading", "color_temperature"),
               ("loading", "bad_input")),
+    "gltf": (("fuzz", "corpus"),), "obj": (("fuzz", "corpus"),),
     "image": (("loading", "textures"),),
     "measuring": (("command", "measure"),), "daylight": (("command", "daylight"),), "glare": (("command", "glare"),),
     "report": (("measuring", "plan_drawing"), ("measuring", "plan_surroundings"), ("measuring", "isolines"),
@@ -111,6 +112,14 @@ FURTHER_TESTS = {
                ("command", "pictures"), ("command", "measure"), ("command", "glare"), ("command", "daylight")),
     "saved_maps": (("command", "saved_maps"),), "cloud": (), "view": (), "denoise": (("render", "denoiser"),),
     "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
+
+# Folders of host/ whose tests are in a folder of another name.
+TESTED_IN = {"gltf": "loading", "obj": "loading"}
+
+
+def home_of(folder):
+    """The folder of tests/ for a folder of host/."""
+    return TESTED_IN.get(folder, folder)
 
 
 def folder_of(name):
@@ -179,9 +188,9 @@ class Host:
         self.number = 0
         self.reached = {}  # step -> numbers of the mutants that can change what it does
         self.folder_steps = {
-            folder: steps_of_folder(self.schemata.program(tests_of(folder)), folder,
-                                    work / f"{folder}.json", order)
-            if (ROOT / "tests" / folder).is_dir() else []
+            folder: steps_of_folder(self.schemata.program(tests_of(home_of(folder))), home_of(folder),
+                                    work / f"{home_of(folder)}.json", order)
+            if (ROOT / "tests" / home_of(folder)).is_dir() else []
             for folder in folders}
 
     def steps(self, folder):
@@ -370,7 +379,7 @@ def noticed_alone(options):
     """Lines: how many mutants each test of the folders noticed with others and alone."""
     lists = [result["noticed"] for result in stored(options.results).values()
              if isinstance(result.get("noticed"), list)]
-    tests = [f"{folder}/{case}" for folder in options.folders
+    tests = [f"{folder}/{case}" for folder in dict.fromkeys(map(home_of, options.folders))
              for _, cases, _ in stored(options.work / f"{folder}.json") for case in cases]
     return [f"{sum(test in noticed for noticed in lists):4} {lists.count([test]):4}  {test}"
             for test in dict.fromkeys([*tests, *(test for noticed in lists for test in noticed)])]

@@ -48,15 +48,17 @@ inline std::filesystem::path file_of(const std::string& name, Bytes bytes) {
   return file;
 }
 
-/// Whether the reader takes the bytes. Errors: std::logic_error where a refusal is not one line.
+/// Whether the reader takes the bytes. Errors: std::logic_error where a refusal is not one line
+/// that names the file, if one is given.
 template <class Read>
-bool accepts(const Read& read) {
+bool accepts(const Read& read, const std::filesystem::path& file = {}) {
   try {
     read();
     return true;
   } catch (const Error& error) {
     const std::string line = error.what();
-    if (line.empty() || line.find('\n') != std::string::npos) {
+    if (line.empty() || line.find('\n') != std::string::npos ||
+        line.find(file.filename().string()) == std::string::npos) {
       throw std::logic_error("not a line for the user: " + line);
     }
     return false;

@@ -210,21 +210,23 @@ void parse_option(unsigned char option, const std::string& text) {
 
 bool fuzz_points(Bytes bytes) {
   const auto file = file_of("points.pts", bytes);
-  return accepts([&] {
+  const auto read = [&] {
     const measuring::SensorGrid points = measuring::read_points(file);
     check_sensors(points);
     for (const auto& observer : glare::observers_at(points, trace::PlanAxes())) {
       require(std::abs(glm::length(observer.up) - 1) < 1e-6, "an observer without an up");
       require(std::abs(glm::dot(observer.up, observer.forward)) < 1e-6, "an up that leans");
     }
-  });
+  };
+  return accepts(read, file);
 }
 
 bool fuzz_planes(Bytes bytes) {
   const auto file = file_of("planes.json", bytes);
-  return accepts([&] {
+  const auto read = [&] {
     for (const auto& grid : measuring::read_planes(file)) check_sensors(grid);
-  });
+  };
+  return accepts(read, file);
 }
 
 bool fuzz_moods(Bytes bytes) {

@@ -15,7 +15,7 @@ namespace {
 /// Loads a scene as every command does: it has to be one that stages accept. Rays that search for
 /// windows take half the time of scenes with a sun: inputs of one length in eight have them.
 bool accepts_scene(const std::filesystem::path& file, Bytes bytes) {
-  return accepts([&] {
+  const auto load = [&] {
     SceneLoadOptions options;
     if (bytes.size() % 8 != 0) options.portals = {"off"};
     const Scene scene = load_scene(file, options);
@@ -27,7 +27,8 @@ bool accepts_scene(const std::filesystem::path& file, Bytes bytes) {
     for (const Camera& camera : scene.cameras) {
       require(std::isfinite(glm::length(camera.position)), "a camera is nowhere");
     }
-  });
+  };
+  return accepts(load, file);
 }
 
 bool accepts_resource(const auto& read) {

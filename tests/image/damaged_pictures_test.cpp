@@ -1,8 +1,6 @@
-// A damaged file gives an error or a picture, never a crash; the sanitizers preset makes this
-// sharp.
+// Damaged EXRs are refused; those with bytes changed at random are the corpora of tests/fuzz.
 #include <OpenImageIO/imageio.h>
 
-#include <array>
 #include <random>
 
 #include "memory_meter.hpp"
@@ -47,25 +45,6 @@ TEST_CASE("an EXR cut at any 64th of its length is refused") {
     INFO("cut at " << part << "/64");
     CHECK(relight_bytes(folder, whole.substr(0, whole.size() * part / 64)) == Outcome::refused);
   }
-}
-
-TEST_CASE("an EXR with one bit flipped gives an error or a picture, 300 times") {
-  const TemporaryFolder folder;
-  const std::string whole = layered_exr();
-  std::mt19937 engine(2026);
-  // Half of the flips in the header, where they do most.
-  std::uniform_int_distribution<std::size_t> header(0, 1'500), anywhere(0, whole.size() - 1);
-  std::uniform_int_distribution<int> bit(0, 7);
-  std::array<int, 2> outcomes{};
-  for (int flip = 0; flip < 300; ++flip) {
-    std::string damaged = whole;
-    const std::size_t position = flip % 2 == 0 ? header(engine) : anywhere(engine);
-    damaged[position] = static_cast<char>(damaged[position] ^ (1 << bit(engine)));
-    INFO("flip " << flip << " at byte " << position);
-    ++outcomes[relight_bytes(folder, damaged) == Outcome::picture ? 0 : 1];
-  }
-  CHECK(outcomes[0] + outcomes[1] == 300);
-  CHECK(outcomes[1] > 0);
 }
 
 TEST_CASE("an EXR whose window is not that of its pixels is refused, not read as black") {

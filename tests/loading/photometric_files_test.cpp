@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "files/scene_files.hpp"
 #include "message_of.hpp"
@@ -254,26 +253,15 @@ TEST_CASE("openings are rectangles, circles in the way of 1995 or of 2019, or el
   }
 }
 
-TEST_CASE("a file cut anywhere, or with bytes replaced at random, is read or refused", "[ies]") {
+TEST_CASE("a file cut before its last number is refused", "[ies]") {
   IesText file;
   file.tilt = "TILT=INCLUDE\n1 2 0 90 1 0.9\n";
   file.horizontal = angles(0, 90, 2);
   const std::string sound = file.str();
   const std::size_t needed = sound.find_last_of('1');  // cut within the last number it is another
-  const auto is_read = [](const std::string& text) {
-    try {
-      read_ies(text);
-    } catch (const files::ResourceError&) {  // nothing else is thrown
-      return false;
-    }
-    return true;
-  };
-  for (std::size_t length = 0; length < sound.size(); ++length) {
-    const bool read = is_read(sound.substr(0, length));
-    if (length <= needed) REQUIRE_FALSE(read);
+  for (std::size_t length = 0; length <= needed; ++length) {
+    REQUIRE_FALSE(ies_refusal(sound.substr(0, length)).empty());
   }
-  std::mt19937 random(7);
-  for (int trial = 0; trial < 20'000; ++trial) is_read(damaged(sound, random));
 }
 
 // EULUMDAT files against closed forms, and files that are none.
@@ -385,14 +373,10 @@ TEST_CASE("openings are millimetres: length along C90, width 0 of round ones") {
   CHECK(round.opening().projected_area(round.axes(), {0, 0, -1}) == Approx(pi * 0.01));
 }
 
-TEST_CASE("a EULUMDAT file cut anywhere, or with bytes replaced at random, is read or refused") {
+TEST_CASE("a EULUMDAT file cut anywhere is refused") {
   const std::string sound = EulumdatText().str();
   for (std::size_t length = 0; length + 4 < sound.size(); ++length) {
     REQUIRE_FALSE(eulumdat_refusal(sound.substr(0, length)).empty());
-  }
-  std::mt19937 random(8);
-  for (int trial = 0; trial < 20'000; ++trial) {
-    eulumdat_refusal(damaged(sound, random));  // nothing but a ResourceError
   }
 }
 

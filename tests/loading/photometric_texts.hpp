@@ -5,7 +5,6 @@
 
 #include <array>
 #include <functional>
-#include <random>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,16 +16,6 @@ inline std::vector<double> angles(double first, double last, int steps) {
   std::vector<double> result;
   for (int i = 0; i <= steps; ++i) result.push_back(first + (last - first) * i / steps);
   return result;
-}
-
-/// A text with up to six of its bytes replaced.
-inline std::string damaged(std::string text, std::mt19937& random) {
-  using namespace std::string_view_literals;
-  constexpr auto bytes = "0123456789.-+eE, \n\rTnaNifINCLUDE=\0\xFF"sv;
-  for (unsigned i = 0, changes = 1 + random() % 6; i < changes; ++i) {
-    text[random() % text.size()] = bytes[random() % bytes.size()];
-  }
-  return text;
 }
 
 /// An LM-63 file. `candela` is asked for each horizontal and vertical angle, in degrees.

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "geometry/disjoint_sets.hpp"
 #include "photile/device/surface.h"
 #include "photile/surface_index.hpp"
 #include "photon_sets.hpp"
@@ -296,7 +297,7 @@ TEST_CASE("the blades of a fan are joined as by all pairs, of which few are look
       const surface::SurfaceMesh mesh(scene);
       for (const double angle : {0.5, 2.0, 5.0, 20.0, 60.0, 120.0}) {
         CAPTURE(count, random, angle);
-        surface::DisjointSets pairs(2 * scene.triangle_count());
+        geometry::DisjointSets pairs(2 * scene.triangle_count());
         for (const surface::MeshEdge& a : mesh.edges) {
           for (const surface::MeshEdge& b : mesh.edges) {
             if (a.triangle == b.triangle || a.low != b.low || a.high != b.high) continue;

@@ -210,10 +210,12 @@ TEST_CASE("STEP holds each value until the next key") {
 TEST_CASE("CUBICSPLINE follows Hermite curves with its tangents times the seconds between keys") {
   AnimatedFile file;
   // in-tangent, value, out-tangent per key; two seconds apart.
-  file.animate(1, "translation", "CUBICSPLINE", {0, 2},
-               {9, 9, 9, 0, 0, 0, 1, 0, 0, -1, 0, 0, 4, 0, 0, 9, 9, 9});
+  file.animate(1, "translation", "CUBICSPLINE", {0, 2, 4},
+               {9, 9, 9, 0, 0, 0, 1, 0, 0, -1, 0, 0, 4, 0, 0, 0, 2, 0, 0, 0, 4, 6, 0, 2, 9, 9, 9});
+  const auto motion = file.read();
   // At the middle: 1/2 p0 + 1/8 (2 x 1) + 1/2 p1 - 1/8 (2 x -1).
-  check_close(file.read().at(1).position, {2.5, 1, 0});
+  check_close(motion.at(1).position, {2.5, 1, 0});
+  check_close(motion.at(3).position, {5, 1.5, 0});
 }
 
 TEST_CASE("rotations turn about the node above as well, along the shortest arc") {

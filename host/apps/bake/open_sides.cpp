@@ -1,14 +1,12 @@
 #include "bake/open_sides.hpp"
 
 #include <tbb/parallel_for.h>
-#include <tsl/robin_map.h>
 
-#include <array>
 #include <atomic>
-#include <bit>
-#include <numeric>
 
+#include "geometry/disjoint_sets.hpp"
 #include "photile/camera.hpp"
+#include "surface/surface_mesh.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
@@ -100,77 +98,26 @@ std::vector<std::uint8_t> met_sides(const RayScene& rays) {
   return met;
 }
 
-/// The ends of an edge, in the order of their bits.
-struct Edge {
-  std::array<std::array<std::uint32_t, 3>, 2> ends;
-  bool operator==(const Edge&) const = default;
-};
-
-struct EdgeHash {
-  std::size_t operator()(const Edge& edge) const {
-    std::uint64_t hash = 0;
-    for (const auto& end : edge.ends) {
-      for (const std::uint32_t bits : end) {
-        hash = (hash ^ bits) * 0x9E37'79B9'7F4A'7C15ull;
-        hash ^= hash >> 29;
-      }
-    }
-    return static_cast<std::size_t>(hash);
-  }
-};
-
-std::array<std::uint32_t, 3> bits_of(const glm::vec3& v) {
-  return {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y),
-          std::bit_cast<std::uint32_t>(v.z)};
-}
-
-/// Of sided triangles that go on over common edges: a disjoint-set forest.
-class Sheets {
- public:
-  explicit Sheets(const Scene& scene) : parent_(2 * std::size_t{scene.triangle_count()}) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-    /// A triangle, and whether it runs from the first end of its edge to the second.
-    struct Neighbour {
-      std::uint32_t triangle;
-      bool forwards;
-    };
-    tsl::robin_map<Edge, Neighbour, EdgeHash> first_at;
-    for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
-      const auto corners = scene.corners(triangle);
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto from = bits_of(corners[i]), to = bits_of(corners[(i + 1) % 3]);
-        const bool forwards = from < to;
-        const auto [entry, is_new] =
-            first_at.insert({forwards ? Edge{{from, to}} : Edge{{to, from}}, {triangle, forwards}});
-        if (is_new) continue;
-        // Neighbours of one winding run along their edge in opposite directions.
-        const Neighbour& other = entry->second;
-        const std::uint32_t turned = other.forwards == forwards ? 1 : 0;
-        for (const std::uint32_t side : {0u, 1u}) {
-          parent_[root(sided(triangle, side))] = root(sided(other.triangle, side ^ turned));
-        }
-      }
-    }
-  }
-
-  std::uint32_t root(std::uint32_t side) {
-    while (parent_[side] != side) side = parent_[side] = parent_[parent_[side]];
-    return side;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 }  // namespace
 
 std::vector<std::uint8_t> open_sides(const RayScene& rays) {
   std::vector<std::uint8_t> open = met_sides(rays);
-  Sheets sheets(rays.scene());
+  const surface::SurfaceMesh mesh(rays.scene());
+  geometry::DisjointSets joined(open.size());
+  mesh.for_each_edge([&](std::span<const surface::MeshEdge> edges) {
+    const surface::MeshEdge& first = edges.front();
+    for (const surface::MeshEdge& edge : edges.subspan(1)) {
+      const std::uint32_t flip = surface::flip_between(first, edge);
+      for (const std::uint32_t side : {0u, 1u}) {
+        joined.join(sided(first.triangle, side), sided(edge.triangle, side ^ flip));
+      }
+    }
+  });
+  for (std::uint32_t side = 0; side < open.size(); ++side) joined.join(side, mesh.original[side]);
   for (std::uint32_t side = 0; side < open.size(); ++side) {
-    if (open[side]) open[sheets.root(side)] = 1;
+    if (open[side]) open[joined.find(side)] = 1;
   }
-  for (std::uint32_t side = 0; side < open.size(); ++side) open[side] = open[sheets.root(side)];
+  for (std::uint32_t side = 0; side < open.size(); ++side) open[side] = open[joined.find(side)];
   return open;
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
@@ -17,6 +18,7 @@
 #include "publish/room_mesh.hpp"
 #include "publish/sections.hpp"
 #include "report/palette.hpp"
+#include "report/report.hpp"
 #include "scene/light_emission.hpp"
 #include "trace/distant_light.hpp"
 #include "weather/sky_patches.hpp"
@@ -397,21 +399,6 @@ class PageWriter {
   Sections sections_;
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<')
-      result += "&lt;";
-    else if (c == '&')
-      result += "&amp;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
-
 /// JSON that no HTML ends.
 std::string inline_json(const json& document) {
   std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -466,9 +453,9 @@ void write_page(const std::filesystem::path& file, const PublishedRoom& room) {
   PageWriter writer(room);
   const std::string document = inline_json(writer.document());
   std::map<std::string_view, std::string> parts;
-  parts["@TITLE@"] = escaped(room.title);
+  parts["@TITLE@"] = escaped_xml(room.title);
   parts["@ROOM@"] = document;
-  parts["@DATA@"] = base64(writer.bytes());
+  parts["@DATA@"] = report::base64(writer.bytes());
   OutputFile output(file);
   std::string_view rest = page_template();
   while (!rest.empty()) {

@@ -3,33 +3,16 @@
 #include <tsl/robin_map.h>
 
 #include <algorithm>
-#include <bit>
 #include <map>
 #include <utility>
 
+#include "common/content_hash.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::publish {
 namespace {
 
-struct VertexHash {
-  std::size_t operator()(const RoomVertex& vertex) const {
-    std::uint64_t hash = vertex.material;
-    const auto mix = [&](std::uint32_t bits) {
-      hash = (hash ^ bits) * 0x9E3779B97F4A7C15ull;
-      hash ^= hash >> 29;
-    };
-    for (int i = 0; i < 3; ++i) {
-      mix(std::bit_cast<std::uint32_t>(vertex.position[i]));
-      mix(std::bit_cast<std::uint32_t>(vertex.normal[i]));
-    }
-    for (int i = 0; i < 2; ++i) {
-      mix(std::bit_cast<std::uint32_t>(vertex.uv[i]));
-      mix(std::bit_cast<std::uint32_t>(vertex.light_uv[i]));
-    }
-    return static_cast<std::size_t>(hash);
-  }
-};
+static_assert(sizeof(RoomVertex) == 12 * sizeof(float), "hashed by its bytes");
 
 /// The light that shines from a side, or none.
 std::uint32_t light_of(const Scene& scene, std::uint32_t side) {
@@ -61,7 +44,7 @@ RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked) {
         side);
   }
   RoomMesh mesh;
-  tsl::robin_map<RoomVertex, std::uint32_t, VertexHash> number_of;
+  tsl::robin_map<RoomVertex, std::uint32_t, BytesHash> number_of;
   for (const auto& [key, members] : sides) {
     const auto& [interaction, textures] = key;
     RoomPart part{interaction, textures, static_cast<std::uint32_t>(mesh.indices.size()), 0};

@@ -45,7 +45,4 @@ class Sections {
   std::string bytes_;
 };
 
-/// The bytes as text (RFC 4648).
-std::string base64(std::string_view bytes);
-
 }  // namespace photile::publish

@@ -16,29 +16,29 @@ namespace photile::walk {
 namespace {
 
 /// The position of a number in a name.
-struct Place {
+struct Placeholder {
   std::size_t length = 0;  ///< 0: none is there
   int width = 1;
   char fill = '0';
 };
 
 /// The position that a text begins with. Not by std::regex, whose stack grows with the text.
-Place place_at(std::string_view text) {
+Placeholder placeholder_at(std::string_view text) {
   const std::size_t hashes = std::min(text.find_first_not_of('#'), text.size());
   if (hashes > 0) return {hashes, static_cast<int>(hashes), '0'};
   if (!text.starts_with('%')) return {};
-  Place place{1, 1, ' '};
-  if (text.substr(place.length).starts_with('0')) {
-    place.fill = '0';
-    ++place.length;
+  Placeholder found{1, 1, ' '};
+  if (text.substr(found.length).starts_with('0')) {
+    found.fill = '0';
+    ++found.length;
   }
-  if (place.length < text.size() && text[place.length] >= '1' && text[place.length] <= '9') {
-    place.width = text[place.length] - '0';
-    ++place.length;
+  if (found.length < text.size() && text[found.length] >= '1' && text[found.length] <= '9') {
+    found.width = text[found.length] - '0';
+    ++found.length;
   }
-  if (!text.substr(place.length).starts_with('d')) return {};
-  ++place.length;
-  return place;
+  if (!text.substr(found.length).starts_with('d')) return {};
+  ++found.length;
+  return found;
 }
 
 }  // namespace
@@ -47,25 +47,25 @@ FrameNames::FrameNames(const std::string& pattern) {
   // Only the name: a folder may be called C#.
   const std::string name = std::filesystem::path(pattern).filename().string();
   const std::string folder = pattern.substr(0, pattern.size() - name.size());
-  int places = 0;
+  int placeholders = 0;
   for (std::size_t begin = 0; begin < name.size();) {
-    const Place place = place_at(std::string_view(name).substr(begin));
-    if (place.length > 0) {
-      ++places;
+    const Placeholder found = placeholder_at(std::string_view(name).substr(begin));
+    if (found.length > 0) {
+      ++placeholders;
       before_ = folder + name.substr(0, begin);
-      after_ = name.substr(begin + place.length);
-      width_ = place.width;
-      fill_ = place.fill;
+      after_ = name.substr(begin + found.length);
+      width_ = found.width;
+      fill_ = found.fill;
     }
-    begin += std::max<std::size_t>(place.length, 1);
+    begin += std::max<std::size_t>(found.length, 1);
   }
   const bool meant_one =
       name.find('%') != std::string::npos || folder.find("##") != std::string::npos;
-  if (places > 1 || (places == 0 && meant_one)) {
+  if (placeholders > 1 || (placeholders == 0 && meant_one)) {
     throw UsageError(
         fmt::format("{}: needs one field for the number of a frame, #### or %04d", pattern));
   }
-  if (places == 0) {
+  if (placeholders == 0) {
     const std::filesystem::path path(name);
     before_ = folder + path.stem().string() + ".";
     after_ = path.extension().string();
@@ -131,9 +131,9 @@ float mean(const std::vector<float>& plane, int width, int x0, int x1, int y0, i
 
 int place_on_sheet(int frame, int count, int most) {
   if (count <= most) return frame;
-  const auto place = static_cast<int>(std::int64_t{frame} * most / count);
-  const bool first = frame == 0 || std::int64_t{frame - 1} * most / count < place;
-  return first ? place : -1;
+  const auto index = static_cast<int>(std::int64_t{frame} * most / count);
+  const bool first = frame == 0 || std::int64_t{frame - 1} * most / count < index;
+  return first ? index : -1;
 }
 
 ContactSheet::ContactSheet(int frames, int width, int height)

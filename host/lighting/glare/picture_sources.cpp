@@ -6,7 +6,8 @@
 #include <functional>
 #include <glm/gtc/constants.hpp>
 #include <map>
-#include <numeric>
+
+#include "geometry/disjoint_sets.hpp"
 
 namespace photile::glare {
 namespace {
@@ -24,8 +25,7 @@ class Groups {
  public:
   Groups(const LuminancePicture& picture, double angle,
          const std::function<bool(std::size_t)>& accepts)
-      : picture_(picture), member_(picture.luminance.size()), parent_(picture.luminance.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
+      : picture_(picture), member_(picture.luminance.size()), joined_(picture.luminance.size()) {
     for (std::size_t i = 0; i < member_.size(); ++i) member_[i] = accepts(i) ? 1 : 0;
     join_neighbours();
     join_borders(angle);
@@ -34,8 +34,8 @@ class Groups {
   /// Their pixels, by the first of each.
   std::map<std::uint32_t, std::vector<std::uint32_t>> lists() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> all;
-    for (std::uint32_t i = 0; i < parent_.size(); ++i) {
-      if (member_[i]) all[root(i)].push_back(i);
+    for (std::uint32_t i = 0; i < member_.size(); ++i) {
+      if (member_[i]) all[joined_.find(i)].push_back(i);
     }
     return all;
   }
@@ -49,21 +49,13 @@ class Groups {
   bool holds(int x, int y) const {
     return x >= 0 && y >= 0 && x < side() && y < side() && member_[index(x, y)] != 0;
   }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t first = root(a), second = root(b);
-    parent_[std::max(first, second)] = std::min(first, second);
-  }
 
   void join_neighbours() {
     for (int y = 0; y < side(); ++y) {
       for (int x = 0; x < side(); ++x) {
         if (!holds(x, y)) continue;
-        if (holds(x + 1, y)) join(index(x, y), index(x + 1, y));
-        if (holds(x, y + 1)) join(index(x, y), index(x, y + 1));
+        if (holds(x + 1, y)) joined_.join(index(x, y), index(x + 1, y));
+        if (holds(x, y + 1)) joined_.join(index(x, y), index(x, y + 1));
       }
     }
   }
@@ -88,9 +80,9 @@ class Groups {
         if (std::abs(borders[b].x - borders[a].x) > reach) continue;
         const std::uint32_t first = index(borders[a].x, borders[a].y),
                             second = index(borders[b].x, borders[b].y);
-        if (root(first) == root(second)) continue;
+        if (joined_.find(first) == joined_.find(second)) continue;
         if (glm::dot(direction, picture_.direction(borders[b].x, borders[b].y)) >= least_cosine) {
-          join(first, second);
+          joined_.join(first, second);
         }
       }
     }
@@ -98,7 +90,7 @@ class Groups {
 
   const LuminancePicture& picture_;
   std::vector<std::uint8_t> member_;
-  std::vector<std::uint32_t> parent_;
+  geometry::DisjointSets joined_;
 };
 
 struct Sums {

@@ -107,12 +107,12 @@ const std::map<std::string, std::vector<double>>& knots() {
 glm::dvec3 knot_colour(const std::string& name, double share) {
   const std::vector<double>& values = knots().at(name);
   const std::size_t intervals = values.size() / 3 - 1;
-  const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(intervals);
-  const std::size_t below = std::min(intervals - 1, static_cast<std::size_t>(place));
+  const double position = std::clamp(share, 0.0, 1.0) * static_cast<double>(intervals);
+  const std::size_t below = std::min(intervals - 1, static_cast<std::size_t>(position));
   const auto colour = [&](std::size_t knot) {
     return glm::dvec3(values[3 * knot], values[3 * knot + 1], values[3 * knot + 2]);
   };
-  return glm::mix(colour(below), colour(below + 1), place - static_cast<double>(below));
+  return glm::mix(colour(below), colour(below + 1), position - static_cast<double>(below));
 }
 
 namespace {
@@ -122,9 +122,9 @@ double linear(double x) { return std::pow(x, 2.2); }
 
 /// Linear interpolation in a table whose entries are 0.0454545 apart.
 double table_at(const std::array<double, 23>& table, double x) {
-  const double place = std::clamp(x / 0.0454545, 0.0, 22.0);
-  const auto below = std::min<std::size_t>(21, static_cast<std::size_t>(place));
-  const double part = place - static_cast<double>(below);
+  const double position = std::clamp(x / 0.0454545, 0.0, 22.0);
+  const auto below = std::min<std::size_t>(21, static_cast<std::size_t>(position));
+  const double part = position - static_cast<double>(below);
   return (1 - part) * table[below] + part * table[below + 1];
 }
 

@@ -25,23 +25,6 @@ namespace {
 
 constexpr std::size_t most_light_plans = 6;  ///< more do not fit on a page
 
-/// RFC 4648.
-std::string base64(const std::string& bytes) {
-  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t byte = 0; byte < 3; ++byte) {
-      bits = bits << 8 | (byte < count ? static_cast<unsigned char>(bytes[i + byte]) : 0u);
-    }
-    for (std::size_t digit = 0; digit < 4; ++digit) {
-      text += digit <= count ? digits[bits >> (18 - 6 * digit) & 63u] : '=';
-    }
-  }
-  return text;
-}
-
 constexpr const char* style = R"(<style>
 body { font-family: sans-serif; font-size: 10pt; margin: 2em auto; max-width: 60em; color: #222; }
 h1 { font-size: 16pt; } h2 { font-size: 12pt; margin-bottom: 0.3em; }
@@ -220,6 +203,22 @@ std::string section(const measuring::GridValues& values, const FalseColour& colo
 }
 
 }  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t byte = 0; byte < 3; ++byte) {
+      bits = bits << 8 | (byte < count ? static_cast<unsigned char>(bytes[i + byte]) : 0u);
+    }
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text += digit <= count ? digits[bits >> (18 - 6 * digit) & 63u] : '=';
+    }
+  }
+  return text;
+}
 
 std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,

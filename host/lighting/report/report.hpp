@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,9 @@ std::string report_html(const measuring::Measurement& measurement, const ReportT
 /// The page as PDF, on the paper that its style names, by WeasyPrint in a process of its own
 /// (Debian's package weasyprint). Errors: OutputError where it is missing or fails.
 std::string pdf_of(const std::string& html);
+
+/// RFC 4648, for files within a page.
+std::string base64(std::string_view bytes);
 
 /// Among the system's temporary files; removed with what it holds at the end.
 class ScratchFolder {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace photile::cache {
 
@@ -90,16 +89,11 @@ Charts::Charts(const Scene& scene, double spacing, double angle_degrees)
   charts_.resize(growth.seed.size());
   places_.resize(charts_.size());
   trees_.resize(charts_.size());
-  first_member_.assign(charts_.size() + 1, 0);
-  for (const std::uint32_t chart : chart_of_) {
-    if (chart != none) ++first_member_[chart + 1];
-  }
-  std::partial_sum(first_member_.begin(), first_member_.end(), first_member_.begin());
-  members_.resize(first_member_.back());
-  std::vector<std::uint32_t> next(first_member_.begin(), first_member_.end() - 1);
-  for (std::uint32_t s = 0; s < chart_of_.size(); ++s) {
-    if (chart_of_[s] != none) members_[next[chart_of_[s]]++] = s;
-  }
+  members_ = rows_of(charts_.size(), [&](const auto& put) {
+    for (std::uint32_t s = 0; s < chart_of_.size(); ++s) {
+      if (chart_of_[s] != none) put(chart_of_[s], s);
+    }
+  });
   tbb::parallel_for(std::size_t{0}, charts_.size(), [&](std::size_t chart) {
     frame(static_cast<std::uint32_t>(chart), growth.seed[chart]);
   });
@@ -142,7 +136,7 @@ void Charts::frame(std::uint32_t index, std::uint32_t seed) {
     chart.across = direction;
     chart.along = glm::cross(normal, direction);
     Rectangle rectangle;
-    for (const std::uint32_t member : members(index)) {
+    for (const std::uint32_t member : members_.of(index)) {
       for (const glm::vec3& corner : scene_.corners(triangle_of(member))) {
         rectangle.extend(in_plane(chart, corner));
       }
@@ -163,9 +157,9 @@ glm::dvec2 Charts::in_plane(const Chart& chart, const glm::vec3& point) const {
 }
 
 void Charts::prepare(std::uint32_t index) {
-  if (trees_[index] || members(index).size() < least_triangles_of_tree) return;
+  if (trees_[index] || members_.of(index).size() < least_triangles_of_tree) return;
   std::vector<geometry::Box> boxes;
-  for (const std::uint32_t member : members(index)) {
+  for (const std::uint32_t member : members_.of(index)) {
     geometry::Box box;
     for (const glm::vec3& corner : scene_.corners(triangle_of(member))) {
       box.extend(glm::vec3(in_plane(charts_[index], corner), 0.0f));
@@ -184,7 +178,7 @@ Charts::Owner Charts::owner(const NodePlace& node, int levels) const {
 
 Charts::Owner Charts::owner(std::uint32_t index, const glm::dvec2& place, double nearby) const {
   const Chart& chart = charts_[index];
-  const std::span<const std::uint32_t> triangles = members(index);
+  const std::span<const std::uint32_t> triangles = members_.of(index);
   NearestPoint nearest{std::numeric_limits<double>::infinity(), 0, 0};
   std::uint32_t owner = none;
   const auto look_at = [&](std::uint32_t i) {
@@ -217,7 +211,8 @@ Charts::Owner Charts::owner(std::uint32_t index, const glm::dvec2& place, double
 }
 
 std::uint64_t Charts::bytes() const {
-  return (chart_of_.size() + first_member_.size() + members_.size()) * sizeof(std::uint32_t) +
+  return (chart_of_.size() + members_.first.size() + members_.items.size()) *
+             sizeof(std::uint32_t) +
          charts_.size() * (sizeof(Chart) + sizeof(ChartPlace));
 }
 

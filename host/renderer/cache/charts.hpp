@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/index_rows.hpp"
 #include "geometry/box_tree.hpp"
 #include "photile/scene.hpp"
 #include "trace/surface.hpp"
@@ -95,14 +96,11 @@ class Charts {
  private:
   void frame(std::uint32_t chart, std::uint32_t seed);
   glm::dvec2 in_plane(const Chart& chart, const glm::vec3& point) const;
-  std::span<const std::uint32_t> members(std::uint32_t chart) const {
-    return {members_.data() + first_member_[chart], members_.data() + first_member_[chart + 1]};
-  }
 
   const Scene& scene_;
   double spacing_;
   std::vector<std::uint32_t> chart_of_;
-  std::vector<std::uint32_t> first_member_, members_;  ///< sided triangles, ascending in a chart
+  IndexRows members_;  ///< sided triangles of the charts
   std::vector<Chart> charts_;
   std::vector<ChartPlace> places_;
   std::vector<std::unique_ptr<geometry::BoxTree>>
@@ -118,10 +116,9 @@ struct ChartGrowth {
 };
 
 /// Charts grow from the largest triangles over shared edges, as far as the surface stays near the
-/// plane of the first one and folds little, on the same sheet: the two sides of a plate, and plates
-/// that lie on each other, are charts of their own. Charts of one sheet in one plane that touch
-/// along edges only, as tiles do, are joined. Triangles that coincide share a chart. A rule of
-/// geometry alone.
+/// plane of the first one and folds little, and over edges that run along each other, as those of
+/// tiles do, where it does not fold: the two sides of a plate, and plates that lie on each other,
+/// are charts of their own. Triangles that coincide share a chart. A rule of geometry alone.
 ///   spacing         metres, > 0: how far a chart may leave its plane
 ///   angle_degrees   largest angle between the normals of neighbours on a sheet
 ChartGrowth grow_charts(const Scene& scene, double spacing, double angle_degrees);

@@ -78,7 +78,8 @@ class EndLight {
   std::vector<NodeBlend> nodes_around(const PrimaryHits& hits, const Progress& progress);
   const Estimates& values() const { return maps_->maps.values(); }
 
-  /// That have the photon maps, and make the same calls; null: this one alone.
+  /// The processes that have the photon maps, and make the same calls; null where this one is
+  /// alone.
   auto* processes() const { return parameters_.processes; }
 
   /// Metres, from node to node: as wide as the estimates that value them.
@@ -116,7 +117,7 @@ class EndLight {
         : maps(rays.scene(), parameters), sight(rays, maps, any_contrast) {}
     LightMaps maps;
     NodeSight sight;
-    /// By the first node of a cell: whether its middle sees all nodes, once an end asked.
+    /// Whether the middle of a cell sees all nodes, by the first node; known once an end asked.
     mutable std::vector<std::uint8_t> cells;
   };
   const LightMapParameters parameters_;

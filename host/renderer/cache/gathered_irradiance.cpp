@@ -103,22 +103,22 @@ GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance&
   const bool smooth = !a.mean.by_normal.empty() || !b.mean.by_normal.empty();
   const auto count = static_cast<std::size_t>(a.batches);
   if (sparse) sum.mean.first.push_back(0);
-  std::vector<std::size_t> place(lights);
+  std::vector<std::size_t> index_of(lights);
   const std::size_t points = a.points(lights);
   for (std::size_t point = 0; point < points; ++point) {
     const std::size_t first = sum.mean.irradiance.size();
-    place.assign(lights, first + lights);  // of none
+    index_of.assign(lights, first + lights);  // of none
     for (const GatheredIrradiance* part : {&a, &b}) {
       estimate::for_each_estimate(part->mean, point, lights, [&](std::size_t layer, std::size_t i) {
-        if (place[layer] == first + lights) {
-          place[layer] = sum.mean.irradiance.size();
+        if (index_of[layer] == first + lights) {
+          index_of[layer] = sum.mean.irradiance.size();
           sum.mean.irradiance.emplace_back(0.0f);
           if (smooth) sum.mean.by_normal.emplace_back(0.0f);
           sum.batch.resize(sum.batch.size() + count, 0.0f);
           if (sparse) sum.mean.light.push_back(static_cast<std::uint16_t>(layer));
           if (shared) sum.shared_variance.push_back(0);
         }
-        const std::size_t to = place[layer];
+        const std::size_t to = index_of[layer];
         sum.mean.irradiance[to] += part->mean.irradiance[i];
         if (smooth) sum.mean.by_normal[to] += part->mean.by_normal[i];
         for (std::size_t b = 0; b < count; ++b) {
@@ -142,14 +142,14 @@ BatchSums::BatchSums(const SceneNeeds& needs, int batches, bool caustics,
       sums_(needs.light_count * batches_, glm::vec3(0.0f)),
       by_normal_(needs.smooth_shading ? needs.light_count : 0, glm::vec4(0.0f)),
       shared_variance_(needs.light_count, 0.0),
-      is_lit_(needs.light_count) {
+      lit_(needs.light_count) {
   result_.batches = batches;
   if (sparse_) result_.mean.first.push_back(0);
 }
 
 void BatchSums::add_to_all(std::uint32_t layer, const glm::vec3& irradiance,
                            double relative_variance) {
-  light_up(layer);
+  lit_.add(layer);
   for (std::size_t b = 0; b < batches_; ++b) sums_[layer * batches_ + b] += irradiance;
   const double value = luminance(glm::dvec3(irradiance));
   shared_variance_[layer] += relative_variance * value * value;
@@ -173,21 +173,19 @@ void BatchSums::add_by_normal(std::uint32_t layer, const glm::vec3& irradiance,
 
 void BatchSums::end_point() {
   if (sparse_) {
-    std::sort(lit_.begin(), lit_.end());
-    for (const std::uint16_t layer : lit_) {
+    for (const std::uint16_t layer : lit_.sorted()) {
       write(layer);
       result_.mean.light.push_back(layer);
     }
     result_.mean.first.push_back(result_.mean.irradiance.size());
   } else {
-    for (std::uint32_t layer = 0; layer < is_lit_.size(); ++layer) write(layer);
+    for (std::uint32_t layer = 0; layer < shared_variance_.size(); ++layer) write(layer);
   }
-  for (const std::uint16_t layer : lit_) {
+  for (const std::uint16_t layer : lit_.sorted()) {
     std::fill_n(sums_.begin() + static_cast<std::ptrdiff_t>(layer * batches_), batches_,
                 glm::vec3(0.0f));
     shared_variance_[layer] = 0;
     if (smooth_) by_normal_[layer] = glm::vec4(0.0f);
-    is_lit_[layer] = 0;
   }
   lit_.clear();
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "estimate/lit_lights.hpp"
 #include "photile/defaults.hpp"
 #include "photile/estimator.hpp"
 #include "photile/scene.hpp"
@@ -92,16 +93,11 @@ class BatchSums {
   static constexpr float no_bound = std::numeric_limits<float>::infinity();
 
   void add(std::uint32_t layer, std::uint32_t batch, const glm::vec3& irradiance) {
-    light_up(layer);
+    lit_.add(layer);
     sums_[std::size_t{layer} * batches_ + batch] += irradiance;
   }
   void add_by_normal(std::uint32_t layer, const glm::vec3& irradiance, const glm::vec3& direction,
                      float even, float most_inverse_cosine);
-  void light_up(std::uint32_t layer) {
-    if (is_lit_[layer]) return;
-    is_lit_[layer] = 1;
-    lit_.push_back(static_cast<std::uint16_t>(layer));
-  }
   void write(std::uint32_t layer);
 
   bool sparse_, caustics_, smooth_;
@@ -111,8 +107,7 @@ class BatchSums {
   std::vector<glm::vec3> sums_;       ///< [layer][batch]
   std::vector<glm::vec4> by_normal_;  ///< [layer], of all batches; empty without smooth shading
   std::vector<double> shared_variance_;
-  std::vector<std::uint8_t> is_lit_;
-  std::vector<std::uint16_t> lit_;
+  estimate::LitLights lit_;
 };
 
 }  // namespace photile::cache

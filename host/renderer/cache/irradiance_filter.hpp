@@ -27,8 +27,8 @@ struct NoiseTolerance {
   /// Where one standard error is larger than this many times the other, the two count less, by the
   /// square of what is more: they do not see the same light.
   double ratio = std::numeric_limits<double>::infinity();
-  /// But only where the smaller error is at most this share of the light it is of: a point that few
-  /// rays brought light to, or none, does not know its error.
+  /// The ratio counts only where the smaller error is at most this share of the light it is of: a
+  /// point that few rays brought light to, or none, does not know its error.
   double known = defaults::known_error;
 };
 

@@ -17,9 +17,9 @@
 namespace photile::cache {
 
 struct IrradianceGatherParameters {
-  /// From each point to the surfaces around; 0 = indirect light is left out.
+  /// Rays from each point to the surfaces around; 0 = indirect light is left out.
   int rays = 144;
-  /// At lamps from each point; 0 = direct light is left out.
+  /// Light samples from each point; 0 = direct light is left out.
   int looks = 96;
   /// Rays and looks are shared by so many independent batches, rounded up to a whole number in
   /// each: their scatter is the error.

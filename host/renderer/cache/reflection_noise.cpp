@@ -63,13 +63,13 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
     if (pixel >= first && pixel < first + pixels)
       seen_weight[pixel - first] += weight_of(seen, hit);
   }
-  const trace::ByPixel by_pixel(reflected.size(), first, pixels,
-                                [&](std::size_t i) { return reflected.pixel[i] / count; });
+  const IndexRows hits_of = trace::by_pixel(
+      reflected.size(), first, pixels, [&](std::size_t i) { return reflected.pixel[i] / count; });
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pixels, pixels_per_task),
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
-          const std::span<const std::uint32_t> hits = by_pixel.of(pixel);
+          const std::span<const std::uint32_t> hits = hits_of.of(pixel);
           const double weight = sum_of_weights(reflected, hits);
           const double tolerated =
               defaults::tolerated_reflection_noise * (weight + seen_weight[pixel]);

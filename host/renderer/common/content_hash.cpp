@@ -33,6 +33,10 @@ ContentHash::Digest ContentHash::digest() const {
   return result;
 }
 
+std::size_t hash_of_bytes(const void* bytes, std::size_t count) {
+  return XXH3_64bits(bytes, count);
+}
+
 std::string hex(const ContentHash::Digest& digest) {
   std::string digits;
   for (const unsigned char byte : digest) digits += fmt::format("{:02x}", byte);

@@ -44,6 +44,18 @@ class ContentHash {
   std::unique_ptr<State> state_;
 };
 
+/// XXH3, 64 bits.
+std::size_t hash_of_bytes(const void* bytes, std::size_t count);
+
+/// Of keys of tables: values without padding, by their bytes.
+struct BytesHash {
+  template <class T>
+  std::size_t operator()(const T& value) const {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    return hash_of_bytes(&value, sizeof value);
+  }
+};
+
 /// 32 digits.
 std::string hex(const ContentHash::Digest& digest);
 

@@ -15,7 +15,7 @@ struct PlaneSampleSize {
 };
 
 /// A square of two triangles with photons on its front, uniform and independent; hits sorted as
-/// PrimaryHits are. The same for the same arguments, everywhere.
+/// PrimaryHits are. Equal arguments give equal samples on every machine.
 struct PlaneSample {
   Scene scene;
   Photons photons;

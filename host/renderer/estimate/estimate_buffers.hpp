@@ -49,7 +49,7 @@ struct LightSums {
 /// where memory runs out between two batches.
 class EstimateBuffers final : private device::Reclaimer {
  public:
-  /// For kernels compiled with the symbols of `sums`.
+  /// Buffers for kernels that are compiled with the symbols of `sums`.
   EstimateBuffers(device::Context& context, const LightSums& sums);
   EstimateBuffers(const EstimateBuffers&) = delete;
   EstimateBuffers& operator=(const EstimateBuffers&) = delete;

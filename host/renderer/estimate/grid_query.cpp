@@ -52,7 +52,7 @@ class GridQuery : public Query {
   /// Calls run_part(count) for the hits, part by part.
   template <class RunPart>
   void run(device::Launch& launch, const PageHits& hits, RunPart run_part) {
-    // Work-items and tiles take the same hits together whatever the parts are.
+    // A work-item takes the same hits together whatever the parts are.
     constexpr std::uint32_t unit = 64;
     static_assert(unit % max_hits_per_item == 0);
     PhotileQuery query = query_of(store_, hits, parameters_);

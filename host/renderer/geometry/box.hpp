@@ -48,6 +48,12 @@ inline float squared_distance(const Box& a, const Box& b) {
   return squared_gap(0) + squared_gap(1) + squared_gap(2);
 }
 
+/// What squared_distance is at most of boxes `radius` metres apart, with room for its rounding, a
+/// few parts in 10^7.
+inline float squared_reach(double radius) {
+  return static_cast<float>(radius * radius * (1 + 1e-5));
+}
+
 /// Whether they share a point. Without branches: most boxes are apart, along which axis nobody
 /// knows.
 inline bool overlap(const Box& a, const Box& b) {

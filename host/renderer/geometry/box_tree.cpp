@@ -1,5 +1,6 @@
 #include "geometry/box_tree.hpp"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -13,6 +14,20 @@ constexpr std::uint32_t leaf_size = 4;
 constexpr std::uint32_t boxes_per_task = 4096;
 
 }  // namespace
+
+Box triangle_box(const Scene& scene, std::uint32_t triangle) {
+  Box box;
+  for (const glm::vec3& corner : scene.corners(triangle)) box.extend(corner);
+  return box;
+}
+
+std::vector<Box> triangle_boxes(const Scene& scene) {
+  std::vector<Box> boxes(scene.triangle_count());
+  tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t t) {
+    boxes[t] = triangle_box(scene, static_cast<std::uint32_t>(t));
+  });
+  return boxes;
+}
 
 class BoxTree::Builder {
  public:

@@ -9,8 +9,13 @@
 #include <vector>
 
 #include "geometry/box.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::geometry {
+
+Box triangle_box(const Scene& scene, std::uint32_t triangle);
+/// Of all triangles.
+std::vector<Box> triangle_boxes(const Scene& scene);
 
 /// Split at the median of the boxes' centres along the longest axis, down to leaves of 4. Large
 /// trees are built in parallel; what is visited, and in which order, does not depend on it.
@@ -23,13 +28,21 @@ class BoxTree {
   /// until it returns true.
   template <class Visit>
   void visit_within(const Box& box, float limit, Visit&& visit) const {
+    visit_within(
+        box, limit, [](std::size_t) { return true; }, visit);
+  }
+
+  /// The same, without nodes that enter(node) denies and all below them.
+  template <class Enter, class Visit>
+  void visit_within(const Box& box, float limit, Enter&& enter, Visit&& visit) const {
     if (nodes_.empty() || !(squared_distance(nodes_[0].box, box) <= limit)) return;
     std::array<std::uint32_t, 64> stack;  // halves: at most 32 levels
     std::size_t depth = 0;
     std::uint32_t node = 0;
     for (;;) {
       const Node& here = nodes_[node];
-      if (here.count != 0) {
+      if (!enter(node)) {
+      } else if (here.count != 0) {
         for (std::uint32_t i = here.first; i < here.first + here.count; ++i) {
           if (visit(order_[i])) return;
         }
@@ -50,6 +63,20 @@ class BoxTree {
       if (depth == 0) return;
       node = stack[--depth];
     }
+  }
+
+  /// Per node what join(a, b) makes of the values of(index of a box) of all boxes below it.
+  template <class Value, class Of, class Join>
+  std::vector<Value> folded(const Value& of_none, const Of& of, const Join& join) const {
+    std::vector<Value> values(nodes_.size(), of_none);
+    for (std::size_t node = nodes_.size(); node-- > 0;) {  // children come after their parents
+      const Node& here = nodes_[node];
+      if (here.count == 0) values[node] = join(values[here.first], values[here.first + 1]);
+      for (std::uint32_t i = here.first; i < here.first + here.count; ++i) {
+        values[node] = join(values[node], of(order_[i]));
+      }
+    }
+    return values;
   }
 
   /// Calls visit(index of a box) for all boxes that overlap `box`.

@@ -33,8 +33,8 @@ std::vector<CodedPhoton> along_curve(const std::vector<glm::vec3>& positions) {
       glm::max(bounds.upper - bounds.lower, glm::vec3(std::numeric_limits<float>::min()));
   std::vector<CodedPhoton> coded(positions.size());
   tbb::parallel_for(std::size_t{0}, positions.size(), [&](std::size_t i) {
-    const glm::vec3 place = glm::clamp((positions[i] - bounds.lower) / extent, 0.0f, 1.0f);
-    const glm::uvec3 cell(place * static_cast<float>((1 << bits_of_axis) - 1));
+    const glm::vec3 fraction = glm::clamp((positions[i] - bounds.lower) / extent, 0.0f, 1.0f);
+    const glm::uvec3 cell(fraction * static_cast<float>((1 << bits_of_axis) - 1));
     coded[i] = {static_cast<std::uint32_t>(geometry::morton_code(cell)),
                 static_cast<std::uint32_t>(i)};
   });
@@ -103,9 +103,9 @@ void PhotonBlocks::find_squared_gaps(const glm::vec3& query, std::size_t first,
   std::fill(gaps.begin(), gaps.end(), 0.0f);
   for (int axis = 0; axis < 3; ++axis) {
     const float *low = low_[axis].data() + first, *high = high_[axis].data() + first;
-    const float place = query[axis];
+    const float coordinate = query[axis];
     for (std::size_t j = 0; j < gaps.size(); ++j) {
-      const float gap = std::max(low[j] - place, place - high[j]);
+      const float gap = std::max(low[j] - coordinate, coordinate - high[j]);
       gaps[j] += gap * std::max(0.0f, gap);
     }
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -46,19 +45,14 @@ Patches PatchUnion::apply(const Patches& patches) const {
                  [this](std::uint32_t old) { return map(old); });
   std::uint32_t count = 0;
   for (const std::uint32_t map : joined.map_of) count = std::max(count, map / 2 + 1);
-  joined.first_of.assign(count + 1, 0);
-  for (std::uint32_t s = 0; s < joined.map_of.size(); s += 2) {
-    ++joined.first_of[joined.map_of[s] / 2 + 1];
-  }
-  for (std::uint32_t patch = 0; patch < count; ++patch) {
-    joined.first_of[patch + 1] += joined.first_of[patch];
-  }
-  joined.members.resize(joined.map_of.size() / 2);
-  std::vector<std::uint32_t> next(joined.first_of.begin(), joined.first_of.end() - 1);
-  for (std::uint32_t s = 0; s < joined.map_of.size(); s += 2) {
-    const std::uint32_t map = joined.map_of[s];
-    joined.members[next[map / 2]++] = s + (map & 1u);  // the side that map 2 p holds
-  }
+  IndexRows members = rows_of(count, [&](const auto& put) {
+    for (std::uint32_t s = 0; s < joined.map_of.size(); s += 2) {
+      const std::uint32_t map = joined.map_of[s];
+      put(map / 2, s + (map & 1u));  // the side that map 2 p holds
+    }
+  });
+  joined.first_of = std::move(members.first);
+  joined.members = std::move(members.items);
   return joined;
 }
 
@@ -110,17 +104,12 @@ PhotonSample::PhotonSample(std::span<const PatchShape> shapes, const NeighbourGr
 
 void PhotonSample::rename(const PatchUnion& patches) { rename_maps(first_of_, maps_, patches); }
 
-HeldPhotons::HeldPhotons(const PhotonSample& sample, std::size_t map_count)
-    : first_of_(map_count + 1, 0) {
-  for (std::size_t photon = 0; photon < sample.size(); ++photon) {
-    for (const std::uint32_t map : sample.maps_of(photon)) ++first_of_[map + 1];
-  }
-  std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
-  photons_.resize(first_of_.back());
-  std::vector<std::uint32_t> next(first_of_.begin(), first_of_.end() - 1);
-  for (std::uint32_t photon = 0; photon < sample.size(); ++photon) {
-    for (const std::uint32_t map : sample.maps_of(photon)) photons_[next[map]++] = photon;
-  }
+IndexRows held_photons(const PhotonSample& sample, std::size_t map_count) {
+  return rows_of(map_count, [&](const auto& put) {
+    for (std::uint32_t photon = 0; photon < sample.size(); ++photon) {
+      for (const std::uint32_t map : sample.maps_of(photon)) put(map, photon);
+    }
+  });
 }
 
 }  // namespace photile::groups
@@ -204,7 +193,7 @@ struct Sharing {
 /// Whether more than `most` photons that the other patch holds around this one are not this one's:
 /// what its queries would look at in vain if the two were joined.
 bool holds_more_in_vain(double most, const Sharing& sharing, const PatchShape& shape,
-                        const PhotonSample& sample, const HeldPhotons& held, double radius) {
+                        const PhotonSample& sample, const IndexRows& held, double radius) {
   std::uint32_t count = 0;
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::span own = held.of(2 * sharing.patch + side);
@@ -223,7 +212,7 @@ bool holds_more_in_vain(double most, const Sharing& sharing, const PatchShape& s
 /// share first.
 class SharingCounter {
  public:
-  SharingCounter(const PhotonSample& sample, const HeldPhotons& held, std::size_t patch_count)
+  SharingCounter(const PhotonSample& sample, const IndexRows& held, std::size_t patch_count)
       : sample_(sample), held_(held), counts_(2 * patch_count, 0) {}
 
   std::vector<Sharing> of(std::uint32_t patch) {
@@ -236,11 +225,11 @@ class SharingCounter {
         }
       }
     }
-    const std::uint32_t own = held_.of_patch(patch);
+    const std::uint32_t own = held_by_patch(held_, patch);
     std::vector<Sharing> enough;
     for (const std::uint32_t sharing : met_) {
       const std::uint32_t other = sharing / 2, photons = std::exchange(counts_[sharing], 0);
-      const std::uint32_t others = held_.of_patch(other);
+      const std::uint32_t others = held_by_patch(held_, other);
       const bool holds_more = own < others || (own == others && patch > other);
       if (other == patch || !holds_more || photons < least_shared * own) continue;
       enough.push_back({patch, other, sharing & 1, photons});
@@ -254,7 +243,7 @@ class SharingCounter {
 
  private:
   const PhotonSample& sample_;
-  const HeldPhotons& held_;
+  const IndexRows& held_;
   std::vector<std::uint32_t> counts_;  ///< per map of another patch; 0 between two patches
   std::vector<std::uint32_t> met_;     ///< whose counts are not 0
 };
@@ -265,12 +254,14 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, const PatchFacts&
                                    double radius) {
   const std::vector<NormalSpread>& spreads = facts.spreads;
   const std::size_t patch_count = spreads.size();
-  const HeldPhotons held(sample, 2 * patch_count);
+  const IndexRows held = held_photons(sample, 2 * patch_count);
   const auto joins = [&](const Sharing& found) {
     const NormalSpread& other = spreads[found.other];
     const bool bends = other.flat() && !other.joined(spreads[found.patch], found.turned).flat();
-    if (bends && found.photons < least_saved_by_bending * held.of_patch(found.other)) return false;
-    const double most_in_vain = found.photons / least_shared_around - held.of_patch(found.patch);
+    if (bends && found.photons < least_saved_by_bending * held_by_patch(held, found.other))
+      return false;
+    const double most_in_vain =
+        found.photons / least_shared_around - held_by_patch(held, found.patch);
     return !holds_more_in_vain(most_in_vain, found, facts.shapes[found.patch], sample, held,
                                radius);
   };
@@ -287,8 +278,8 @@ std::vector<Sharing> find_partners(const PhotonSample& sample, const PatchFacts&
                     });
   std::erase_if(best, [](const Sharing& sharing) { return sharing.patch == none; });
   std::stable_sort(best.begin(), best.end(), [&](const Sharing& a, const Sharing& b) {
-    return std::uint64_t{a.photons} * held.of_patch(b.patch) >
-           std::uint64_t{b.photons} * held.of_patch(a.patch);
+    return std::uint64_t{a.photons} * held_by_patch(held, b.patch) >
+           std::uint64_t{b.photons} * held_by_patch(held, a.patch);
   });
   return best;
 }

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "common/index_rows.hpp"
 #include "groups/patch_shape.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
@@ -94,23 +95,12 @@ class PhotonSample {
   std::vector<std::uint32_t> maps_;
 };
 
-/// The photons of a sample that a map holds.
-class HeldPhotons {
- public:
-  HeldPhotons(const PhotonSample& sample, std::size_t map_count);
-
-  /// Ascending.
-  std::span<const std::uint32_t> of(std::uint32_t map) const {
-    return {photons_.data() + first_of_[map], photons_.data() + first_of_[map + 1]};
-  }
-  /// The number of photons in both maps of a patch.
-  std::uint32_t of_patch(std::uint32_t patch) const {
-    return first_of_[2 * patch + 2] - first_of_[2 * patch];
-  }
-
- private:
-  std::vector<std::uint32_t> first_of_, photons_;
-};
+/// Per map the photons of a sample that it holds, ascending.
+IndexRows held_photons(const PhotonSample& sample, std::size_t map_count);
+/// The number of them in both maps of a patch.
+inline std::uint32_t held_by_patch(const IndexRows& held, std::uint32_t patch) {
+  return held.first[2 * patch + 2] - held.first[2 * patch];
+}
 
 /// Whether a point lies at most `radius` metres from the box of a patch.
 bool is_within(const PatchShape& shape, const glm::dvec3& point, double radius);

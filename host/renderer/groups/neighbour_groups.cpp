@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "common/value_range.hpp"
-#include "geometry/triangle_bvh.hpp"
+#include "geometry/box_tree.hpp"
 #include "geometry/triangle_distance.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -243,47 +243,41 @@ namespace photile {
 namespace {
 
 using namespace groups;
-using geometry::triangle_box;
-using geometry::TriangleBvh;
-
 class Search {
  public:
   Search(const Scene& scene, const NeighbourGroupParameters& parameters)
-      : scene_(scene),
-        radius_(parameters.radius),
+      : limit_(geometry::squared_reach(parameters.radius)),
         cos_angle_(std::cos(glm::radians(parameters.angle_degrees))),
-        bvh_(scene),
+        boxes_(geometry::triangle_boxes(scene)),
+        tree_(boxes_),
         proximity_(scene, parameters.radius),
         bounds_(scene.triangle_count()) {
-    tbb::parallel_for(std::size_t{0}, bounds_.size(),
-                      [&](std::size_t i) { bounds_[i] = proximity_.bound(bvh_.order()[i]); });
+    tbb::parallel_for(std::size_t{0}, bounds_.size(), [&](std::size_t t) {
+      bounds_[t] = proximity_.bound(static_cast<std::uint32_t>(t));
+    });
   }
 
   /// Appends the neighbours of `triangle`, itself among them, ascending.
   void append_neighbours(std::uint32_t triangle, std::vector<std::uint32_t>& neighbours) const {
     const std::size_t first_of_list = neighbours.size();
-    const TriangleBound own = proximity_.bound(triangle);
-    bvh_.for_each_leaf_within(
-        triangle_box(scene_, triangle), radius_, [&](std::size_t first, std::size_t last) {
-          for (std::size_t i = first; i < last; ++i) {
-            const TriangleBound& other = bounds_[i];
-            std::uint32_t sides = agreeing_sides(own.normal, other.normal, cos_angle_);
-            if (other.triangle == triangle) sides |= equal_sides;
-            if (sides != 0 && proximity_.within(own, other)) {
-              neighbours.push_back(4 * other.triangle + sides);
-            }
-          }
-        });
+    const TriangleBound& own = bounds_[triangle];
+    tree_.visit_within(boxes_[triangle], limit_, [&](std::uint32_t t) {
+      const TriangleBound& other = bounds_[t];
+      std::uint32_t sides = agreeing_sides(own.normal, other.normal, cos_angle_);
+      if (t == triangle) sides |= equal_sides;
+      if (sides != 0 && proximity_.within(own, other)) neighbours.push_back(4 * t + sides);
+      return false;
+    });
     std::sort(neighbours.begin() + static_cast<std::ptrdiff_t>(first_of_list), neighbours.end());
   }
 
  private:
-  const Scene& scene_;
-  double radius_;
+  float limit_;
   double cos_angle_;
-  TriangleBvh bvh_;
+  std::vector<geometry::Box> boxes_;  ///< per triangle
+  geometry::BoxTree tree_;
   ProximityTest proximity_;
-  std::vector<TriangleBound> bounds_;  ///< in leaf order
+  std::vector<TriangleBound> bounds_;  ///< per triangle
 };
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "geometry/box_tree.hpp"
-#include "geometry/triangle_bvh.hpp"
 #include "groups/neighbour_groups.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
@@ -57,8 +56,7 @@ class PatchSearch {
               const NeighbourGroupParameters& parameters)
       : scene_(scene),
         patches_(patches),
-        // Room for the rounding of squared_distance(), a few parts in 10^7.
-        limit_(static_cast<float>(parameters.radius * parameters.radius * (1 + 1e-5))),
+        limit_(geometry::squared_reach(parameters.radius)),
         cos_angle_(std::cos(glm::radians(parameters.angle_degrees))),
         normals_(scene.triangle_count()),
         boxes_(scene.triangle_count()),

@@ -22,14 +22,14 @@ namespace {
 enum class Order { little, big };
 
 /// The number in `count` bytes. Errors: DecodeError where the file ends before them.
-std::uint32_t number_at(Encoded bytes, std::size_t place, std::size_t count,
+std::uint32_t number_at(Encoded bytes, std::size_t offset, std::size_t count,
                         Order order = Order::little) {
-  if (place > bytes.size() || count > bytes.size() - place) {
+  if (offset > bytes.size() || count > bytes.size() - offset) {
     throw DecodeError("the file ends too early");
   }
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    value = value << 8 | bytes[place + (order == Order::big ? i : count - 1 - i)];
+    value = value << 8 | bytes[offset + (order == Order::big ? i : count - 1 - i)];
   }
   return value;
 }
@@ -37,11 +37,11 @@ std::uint32_t number_at(Encoded bytes, std::size_t place, std::size_t count,
 /// libpng takes the memory that a text is said to have, up to two gigabytes.
 void check_png(Encoded bytes) {
   constexpr std::size_t frame = 12;  // length, type and checksum
-  for (std::size_t place = 8; place < bytes.size();) {
-    const std::size_t length = number_at(bytes, place, 4, Order::big);
-    if (number_at(bytes, place + 4, 4, Order::big) == 0x49454E44) return;  // IEND
-    if (length + frame > bytes.size() - place) throw DecodeError("the file ends too early");
-    place += length + frame;
+  for (std::size_t offset = 8; offset < bytes.size();) {
+    const std::size_t length = number_at(bytes, offset, 4, Order::big);
+    if (number_at(bytes, offset + 4, 4, Order::big) == 0x49454E44) return;  // IEND
+    if (length + frame > bytes.size() - offset) throw DecodeError("the file ends too early");
+    offset += length + frame;
   }
   throw DecodeError("the file ends too early");
 }
@@ -270,10 +270,10 @@ class HeaderCheck {
     for (std::string name = word(); !name.empty(); name = word(), ++attributes) {
       const std::string type = word();
       const std::uint32_t size = number();
-      const std::uint64_t place = stream_.tellg();
-      if (size > bytes_ - place) refuse();
-      check_attribute(name, type, place + size, size);
-      stream_.seekg(place + size);
+      const std::uint64_t offset = stream_.tellg();
+      if (size > bytes_ - offset) refuse();
+      check_attribute(name, type, offset + size, size);
+      stream_.seekg(offset + size);
     }
     return attributes == 0;
   }
@@ -334,14 +334,14 @@ class HeaderCheck {
 
 /// Bytes of the block at an offset, with what is before its pixels: its part where a file may have
 /// several, its row or its tile and level, its size.
-std::uint64_t block_bytes(Imf::IStream& stream, std::uint64_t place, bool several,
+std::uint64_t block_bytes(Imf::IStream& stream, std::uint64_t offset, bool several,
                           const std::vector<bool>& tiled) {
-  stream.seekg(place);
+  stream.seekg(offset);
   const std::uint64_t part = several ? little_endian(stream, 4) : 0;
   if (part >= tiled.size()) throw DecodeError("a block of pixels is damaged");
   for (int i = 0; i < (tiled[part] ? 4 : 1); ++i) little_endian(stream, 4);
   const std::uint64_t size = little_endian(stream, 4);
-  return stream.tellg() - place + size;
+  return stream.tellg() - offset + size;
 }
 
 }  // namespace
@@ -362,12 +362,12 @@ std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::ui
                 sum = 0, first = bytes;
   for (std::uint64_t entry = table; entry + entry_bytes <= end; entry += entry_bytes) {
     stream.seekg(entry);
-    const std::uint64_t place = little_endian(stream, entry_bytes);
-    if (place == 0) continue;
-    if (place >= bytes) throw DecodeError("a block of pixels is not within the file");
-    first = std::min(first, place);
-    end = std::min(end, place);
-    sum += entry_bytes + std::min(block_bytes(stream, place, several, tiled), bytes - place);
+    const std::uint64_t offset = little_endian(stream, entry_bytes);
+    if (offset == 0) continue;
+    if (offset >= bytes) throw DecodeError("a block of pixels is not within the file");
+    first = std::min(first, offset);
+    end = std::min(end, offset);
+    sum += entry_bytes + std::min(block_bytes(stream, offset, several, tiled), bytes - offset);
   }
   stream.seekg(before);
   // Of a window with fewer blocks than were written, OpenEXR would read the first as these.
@@ -418,8 +418,8 @@ void check_exr_block(Imf::IStream& stream, std::uint64_t table, const ExrBlock& 
   stream.seekg(4);
   const bool several = (little_endian(stream, 4) & several_parts) != 0;
   stream.seekg(table + entry_bytes * block.entry);
-  if (const std::uint64_t place = little_endian(stream, entry_bytes); place != 0) {
-    stream.seekg(place);
+  if (const std::uint64_t offset = little_endian(stream, entry_bytes); offset != 0) {
+    stream.seekg(offset);
     for (int i = 0; i < (several ? 1 : 0) + (tiled ? 4 : 1); ++i) little_endian(stream, 4);
     std::uint64_t found = little_endian(stream, 4);
     // Where compressing would not make it smaller, it is as it is.

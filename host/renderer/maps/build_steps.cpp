@@ -56,7 +56,7 @@ device::Launch entered_launch(const Build& build, const char* kernel, const Phot
   return launch;
 }
 
-/// With the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
+/// Counts with the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
 void try_to_count(Build& build) {
   build.context.fill(build.counts.photons, 0u);
   build.context.fill(build.counts.mixed, 0u);

@@ -22,7 +22,8 @@ struct PageExtent {
   std::uint32_t cell_count = 0;
 };
 
-/// None is larger than the device's largest allocation. Which exist depends on the scene's needs.
+/// The arrays of a page. None is larger than the device's largest allocation; which of them exist
+/// depends on the scene's needs.
 struct PageBuffers {
   // Entries: the photons of each map, cell by cell, in ascending order within a cell.
   device::Buffer<std::uint32_t> entry_photon;  ///< index into Photons

@@ -32,9 +32,9 @@ MapShapes map_shapes(const Scene& scene, const Patches& patches,
 /// that are to hold some photons each where the photons are must be smaller by this factor than
 /// those that hold as many on average over the surface, which is empty for a good part.
 ///
-/// From counts n in bins of area A (small triangles, and parts of large ones): the sum of n (n - 1)
-/// / A is an unbiased estimate of the integral of the squared density, for n (n - 1) has the
-/// expectation (density x A)^2 when n is Poisson distributed.
+/// It is found from counts n in bins of area A (small triangles, and parts of large ones): the sum
+/// of n (n - 1) / A is an unbiased estimate of the integral of the squared density, for n (n - 1)
+/// has the expectation (density x A)^2 when n is Poisson distributed.
 std::vector<float> photon_crowding(const Scene& scene, const Photons& photons,
                                    const Patches& patches);
 

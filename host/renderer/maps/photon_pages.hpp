@@ -52,7 +52,7 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
                                  PhotonRange range);
 
-/// With candidate maps, which must stay, too, but for `entered`.
+/// Uploads the lists of candidate maps as well, which must stay, too, but for `entered`.
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range);
 

@@ -147,35 +147,35 @@ Estimates Exchange::none_yet() const {
 }
 
 std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& points) const {
-  std::vector<std::vector<std::uint32_t>> places(processes_.size());
+  std::vector<std::vector<std::uint32_t>> of_owners(processes_.size());
   for (std::uint32_t point = 0; point < points.size(); ++point) {
-    places[owners_->of(points.sided_triangle[point])].push_back(point);
+    of_owners[owners_->of(points.sided_triangle[point])].push_back(point);
   }
-  return places;
+  return of_owners;
 }
 
-Estimates Exchange::in_order(std::span<const std::vector<std::uint32_t>> places,
+Estimates Exchange::in_order(std::span<const std::vector<std::uint32_t>> of_owners,
                              std::span<const std::vector<std::byte>> bytes,
                              std::size_t points) const {
   std::vector<std::uint32_t> order;
   Estimates all = none_yet();
   order.reserve(points);
-  for (std::size_t rank = 0; rank < places.size(); ++rank) {
-    order.insert(order.end(), places[rank].begin(), places[rank].end());
-    if (!places[rank].empty()) append_estimates(bytes[rank], all);
+  for (std::size_t rank = 0; rank < of_owners.size(); ++rank) {
+    order.insert(order.end(), of_owners[rank].begin(), of_owners[rank].end());
+    if (!of_owners[rank].empty()) append_estimates(bytes[rank], all);
   }
   return estimate::restored(std::move(all), order, lights_);
 }
 
 Estimates Exchange::at_own(const PrimaryHits& points, const Progress& progress) {
   const std::uint32_t ranks = processes_.size(), own = processes_.rank();
-  const std::vector<std::vector<std::uint32_t>> places = by_owner(points);
+  const std::vector<std::vector<std::uint32_t>> of_owners = by_owner(points);
   std::vector<Communicator::Bytes> asked(ranks);
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
-    if (places[rank].empty()) continue;
-    asked[rank] = bytes_of(estimate::reordered(points, 0, places[rank]));
+    if (of_owners[rank].empty()) continue;
+    asked[rank] = bytes_of(estimate::reordered(points, 0, of_owners[rank]));
     if (rank == own) continue;
-    traffic_.points += places[rank].size();
+    traffic_.points += of_owners[rank].size();
     traffic_.bytes += asked[rank].size();
   }
   asked = processes_.exchange(std::move(asked));
@@ -195,16 +195,16 @@ Estimates Exchange::at_own(const PrimaryHits& points, const Progress& progress) 
     if (rank != own) traffic_.bytes += answers[rank].size();
   }
   answers = processes_.exchange(std::move(answers));
-  return in_order(places, answers, points.size());
+  return in_order(of_owners, answers, points.size());
 }
 
 Estimates Exchange::at_common(const PrimaryHits& points, const Progress& progress) {
-  const std::vector<std::vector<std::uint32_t>> places = by_owner(points);
-  const std::vector<std::uint32_t>& own = places[processes_.rank()];
+  const std::vector<std::vector<std::uint32_t>> of_owners = by_owner(points);
+  const std::vector<std::uint32_t>& own = of_owners[processes_.rank()];
   const Communicator::Bytes bytes =
       own.empty() ? Communicator::Bytes()
                   : bytes_of(here_->at(estimate::reordered(points, 0, own), progress));
-  return in_order(places, processes_.gather(bytes), points.size());
+  return in_order(of_owners, processes_.gather(bytes), points.size());
 }
 
 void require_same(Communicator& processes, const ContentHash& work, std::string_view what) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "estimate/light_at_points.hpp"
+#include "estimate/lit_lights.hpp"
 #include "photile/scene.hpp"
 #include "trace/hit_batch.hpp"
 
@@ -25,27 +26,22 @@ namespace {
 class PixelSums {
  public:
   explicit PixelSums(std::size_t lights)
-      : radiance_(lights, glm::vec3(0.0f)), illuminance_(lights), is_lit_(lights) {}
+      : radiance_(lights, glm::vec3(0.0f)), illuminance_(lights), lit_(lights) {}
 
   void add(std::uint32_t light, const glm::vec3& radiance, float illuminance) {
-    if (!is_lit_[light]) {
-      is_lit_[light] = 1;
-      lit_.push_back(static_cast<std::uint16_t>(light));
-    }
+    lit_.add(light);
     radiance_[light] += radiance;
     illuminance_[light] += illuminance;
   }
 
   /// Appends the lights that were added to a row, and forgets them.
   void move_to(LightLayers::Row& row) {
-    std::sort(lit_.begin(), lit_.end());
-    for (const std::uint16_t light : lit_) {
+    for (const std::uint16_t light : lit_.sorted()) {
       row.light.push_back(light);
       row.radiance.push_back(radiance_[light]);
       row.illuminance.push_back(illuminance_[light]);
       radiance_[light] = glm::vec3(0.0f);
       illuminance_[light] = 0.0f;
-      is_lit_[light] = 0;
     }
     lit_.clear();
     row.first.push_back(static_cast<std::uint32_t>(row.light.size()));
@@ -54,8 +50,7 @@ class PixelSums {
  private:
   std::vector<glm::vec3> radiance_;
   std::vector<float> illuminance_;
-  std::vector<std::uint8_t> is_lit_;
-  std::vector<std::uint16_t> lit_;
+  estimate::LitLights lit_;
 };
 
 void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
@@ -79,7 +74,7 @@ void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimate
   }
 }
 
-/// For layers and estimates of many lights: work is shared by rows.
+/// Adds to layers of many lights; threads take rows of the picture.
 void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
                         const Estimates& estimates, float sample_weight) {
   std::uint32_t lowest = none, highest = 0;
@@ -94,10 +89,11 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
   const auto width = static_cast<std::size_t>(layers.width);
   const std::size_t first_row = lowest / width, end_row = highest / width + 1;
   const std::size_t first_pixel = first_row * width, pixels = (end_row - first_row) * width;
-  const trace::ByPixel hits(batch.hits.size(), first_pixel, pixels,
-                            [&](std::size_t i) { return batch.hits.pixel[i]; });
-  const trace::ByPixel emission(batch.emission.size(), first_pixel, pixels,
-                                [&](std::size_t i) { return batch.emission[i].pixel; });
+  const IndexRows hits = trace::by_pixel(batch.hits.size(), first_pixel, pixels,
+                                         [&](std::size_t i) { return batch.hits.pixel[i]; });
+  const IndexRows emission =
+      trace::by_pixel(batch.emission.size(), first_pixel, pixels,
+                      [&](std::size_t i) { return batch.emission[i].pixel; });
   tbb::enumerable_thread_specific<PixelSums> sums_of_threads(layers.layers.size());
   tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
     PixelSums& sums = sums_of_threads.local();
@@ -262,14 +258,15 @@ constexpr std::size_t hits_per_task = 1024;
 /// The sums of one hit, with room for every layer.
 struct Sums {
   std::vector<glm::vec3> irradiance, radiance;
-  std::vector<std::uint8_t> is_lit;
+  estimate::LitLights lit;
 
-  explicit Sums(std::size_t layers) : irradiance(layers), radiance(layers), is_lit(layers) {}
+  explicit Sums(std::size_t layers) : irradiance(layers), radiance(layers), lit(layers) {}
 
   void clear() {
-    std::fill(irradiance.begin(), irradiance.end(), glm::vec3(0.0f));
-    std::fill(radiance.begin(), radiance.end(), glm::vec3(0.0f));
-    std::fill(is_lit.begin(), is_lit.end(), std::uint8_t{0});
+    for (const std::uint16_t layer : lit.sorted()) {
+      irradiance[layer] = radiance[layer] = glm::vec3(0.0f);
+    }
+    lit.clear();
   }
 };
 
@@ -282,7 +279,7 @@ void sum_hit(const LightPooling& pooling, const Estimates& estimates, std::size_
                                 sums.irradiance[layer] += scale * estimates.irradiance[i];
                                 if (!estimates.radiance.empty())
                                   sums.radiance[layer] += scale * estimates.radiance[i];
-                                sums.is_lit[layer] = 1;
+                                sums.lit.add(layer);
                               });
 }
 
@@ -303,8 +300,7 @@ void place_layers(const LightPooling& pooling, const Estimates& estimates, std::
   result.first.assign(hits + 1, 0);
   for_each_hit(hits, pooling.layers.size(), [&](std::size_t hit, Sums& sums) {
     sum_hit(pooling, estimates, hit, sums);
-    result.first[hit + 1] = static_cast<std::uint64_t>(
-        std::count(sums.is_lit.begin(), sums.is_lit.end(), std::uint8_t{1}));
+    result.first[hit + 1] = sums.lit.count();
   });
   std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
   result.light.resize(result.first.back());
@@ -322,12 +318,11 @@ Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::s
   for_each_hit(hits, layers, [&](std::size_t hit, Sums& sums) {
     sum_hit(pooling, estimates, hit, sums);
     std::size_t next = sparse ? static_cast<std::size_t>(result.first[hit]) : hit * layers;
-    for (std::size_t layer = 0; layer < layers; ++layer) {
-      if (sparse && sums.is_lit[layer] == 0) continue;
-      if (sparse) result.light[next] = static_cast<std::uint16_t>(layer);
-      result.irradiance[next] = sums.irradiance[layer];
-      if (glossy) result.radiance[next] = sums.radiance[layer];
-      ++next;
+    for (const std::uint16_t layer : sums.lit.sorted()) {
+      const std::size_t to = sparse ? next++ : next + layer;  // the others stay 0
+      if (sparse) result.light[to] = layer;
+      result.irradiance[to] = sums.irradiance[layer];
+      if (glossy) result.radiance[to] = sums.radiance[layer];
     }
   });
   return result;

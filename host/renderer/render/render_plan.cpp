@@ -19,7 +19,7 @@
 namespace photile {
 namespace {
 
-/// Without those whose light rays bring.
+/// The photons that are traced: those whose light rays bring are not stored.
 PhotonTracerParameters all_photons(const RenderParameters& used) {
   return {.emitted_photons = used.photons.emitted_photons,
           .quota = used.photons.quota,

@@ -28,7 +28,7 @@ void require_device(std::span<const Device> devices);
 /// What SceneRenderer offers, of any hits that lie close together.
 class RenderSession {
  public:
-  /// Prepares all passes. References are kept, `scene` aside. As SceneRenderer.
+  /// Prepares all passes. References are kept, `scene` aside. Errors: those of SceneRenderer.
   RenderSession(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
                 const RenderParameters& parameters, PreparedPhotons* prepared,
                 const KeepPhotons& keep, Progress& progress);

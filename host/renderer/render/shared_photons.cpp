@@ -54,7 +54,7 @@ MapOwners::MapOwners(const Scene& scene, const Patches& patches,
   of_pair_.resize(boxes.size(), 0);
   std::uint64_t before = 0;
   for (const std::uint32_t pair : along_curve(boxes)) {
-    // Whose share the middle of the pair's photons is.
+    // The owner is the process in whose share the middle of the pair's photons falls.
     const double middle = static_cast<double>(before) + 0.5 * static_cast<double>(photons[pair]);
     if (all > 0) {
       of_pair_[pair] = std::min(
@@ -137,7 +137,7 @@ std::vector<glm::vec3> filled(Communicator& processes, std::span<const Placed> o
   return all;
 }
 
-/// Which processes photons go to: those of the maps that they may enter.
+/// Tells which processes a photon goes to: those of the maps that it may enter.
 class Destinations {
  public:
   Destinations(const Scene& scene, const NeighbourGroups& groups, const MapOwners& owners,

@@ -63,13 +63,11 @@ class SurfacePath {
   }
 
   void add_what_lies_beyond(const glm::vec3& direction) {
-    for (const std::uint32_t index : lights_.distant().towards(direction)) {
-      const trace::DistantLight& light = lights_.distant()[index];
-      const glm::vec3 radiance = light.radiance(direction);
-      if (radiance == glm::vec3(0.0f)) continue;
-      add(lights_.layer(light.light()),
-          weights_ * (weight_against(lights_.density(light, from_, direction)) * radiance));
-    }
+    lights_.distant().for_each_shining(
+        direction, [&](const trace::DistantLight& light, const glm::vec3& radiance) {
+          add(lights_.layer(light.light()),
+              weights_ * (weight_against(lights_.density(light, from_, direction)) * radiance));
+        });
   }
 
   /// The weight of light that the path met, where sampling lights finds it with density `other`.
@@ -113,10 +111,10 @@ class SurfacePath {
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));
     if (!lamp || !(glm::dot(lamp->direction, point.normal) > 0.0f)) return;
     const glm::vec3 origin = point.origin_towards(lamp->direction);
-    glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
+    const glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
     if (arrives == glm::vec3(0.0f)) return;
-    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density(lamp->direction));
-    add(lamp->layer, weigh(lamp->direction) * arrives);
+    const float weight = lamp->weight_beside(density(lamp->direction));
+    add(lamp->layer, weigh(lamp->direction) * (arrives * weight));
   }
 
   /// Roulette on what is left of the light, as photons play it.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -17,15 +16,6 @@ namespace {
 
 /// Rounded to float, with -0 made +0 so that equal positions have equal bits.
 glm::vec3 rounded(const glm::dvec3& position) { return glm::vec3(position) + glm::vec3(0.0f); }
-
-std::size_t hash_of(const std::array<std::uint32_t, 3>& words) {
-  std::uint64_t hash = 0;
-  for (const std::uint32_t word : words) {
-    // Multiplication by the golden ratio spreads the low entropy of float bits over the word.
-    hash = (std::rotl(hash, 29) ^ word) * 0x9E37'79B9'7F4A'7C15ull;
-  }
-  return static_cast<std::size_t>(hash ^ (hash >> 32));
-}
 
 /// `vector` as a unit vector; zero where it has no direction.
 glm::dvec3 direction_of(const glm::dvec3& vector) {
@@ -47,13 +37,8 @@ bool comes_before(const glm::vec3& a, const glm::vec3& b) {
 
 }  // namespace
 
-std::size_t MeshBuilder::PositionHash::operator()(const std::array<std::uint32_t, 3>& bits) const {
-  return hash_of(bits);
-}
-
 std::size_t MeshBuilder::TriangleHash::operator()(std::uint32_t triangle) const {
-  const glm::uvec3& corners = scene->triangles[triangle];
-  return hash_of({corners.x, corners.y, corners.z});
+  return BytesHash{}(scene->triangles[triangle]);
 }
 
 bool MeshBuilder::TriangleEqual::operator()(std::uint32_t a, std::uint32_t b) const {
@@ -65,8 +50,7 @@ MeshBuilder::MeshBuilder(Scene& scene, const CornerNeeds& needs)
 
 std::uint32_t MeshBuilder::vertex_index(const glm::vec3& position) {
   const auto next = static_cast<std::uint32_t>(scene_.vertices.size());
-  const auto [entry, inserted] =
-      index_of_position_.try_emplace(std::bit_cast<std::array<std::uint32_t, 3>>(position), next);
+  const auto [entry, inserted] = index_of_position_.try_emplace(position, next);
   if (inserted) {
     if (scene_.vertices.size() >= limits::max_vertices) {
       throw InputError(fmt::format("{}: more than {} vertices; split the scene",

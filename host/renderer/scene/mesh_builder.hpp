@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/content_hash.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::scene {
@@ -47,10 +48,6 @@ class MeshBuilder {
   void finish();
 
  private:
-  struct PositionHash {
-    std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const;
-  };
-
   /// Numbers of triangles by their corners.
   struct TriangleHash {
     const Scene* scene;
@@ -69,7 +66,7 @@ class MeshBuilder {
   Scene& scene_;
   CornerNeeds needs_;
   bool any_normal_ = false, any_tangent_ = false;
-  tsl::robin_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> index_of_position_;
+  tsl::robin_map<glm::vec3, std::uint32_t, BytesHash> index_of_position_;
   /// Triangles, with their hashes: comparing two looks them up.
   tsl::robin_set<std::uint32_t, TriangleHash, TriangleEqual, std::allocator<std::uint32_t>, true>
       distinct_;

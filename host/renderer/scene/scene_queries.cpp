@@ -3,7 +3,6 @@
 
 #include "geometry/box_tree.hpp"
 #include "geometry/radius_range.hpp"
-#include "geometry/triangle_bvh.hpp"
 #include "geometry/triangle_distance.hpp"
 #include "photile/scene.hpp"
 #include "photile/sensors.hpp"

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <glm/gtc/constants.hpp>
 
+#include "geometry/disjoint_sets.hpp"
 #include "photile/device/surface.h"
 #include "surface/sheets.hpp"
 
@@ -51,7 +52,7 @@ std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
     const double photons = expected(s);
     dark[s] = photons >= least_of_a_triangle && nearly_empty(found[s], photons) ? 1 : 0;
   }
-  DisjointSets pieces(sides);
+  geometry::DisjointSets pieces(sides);
   for_each_pair_of_sides(connections, [&](std::uint32_t a, std::uint32_t b) {
     if (dark[a] != 0 && dark[b] != 0) pieces.join(a, b);
   });
@@ -80,13 +81,13 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 /// which side of a cut photons lie cannot be foreseen: std::partition, which branches, takes four
 /// times as long.
 template <class IsFirst>
-std::size_t partition(std::span<glm::dvec2> places, const IsFirst& is_first) {
+std::size_t partition(std::span<glm::dvec2> points, const IsFirst& is_first) {
   std::size_t first = 0;
-  for (glm::dvec2& here : places) {
-    const glm::dvec2 place = here;
-    here = places[first];
-    places[first] = place;
-    first += is_first(place) ? 1 : 0;
+  for (glm::dvec2& here : points) {
+    const glm::dvec2 point = here;
+    here = points[first];
+    points[first] = point;
+    first += is_first(point) ? 1 : 0;
   }
   return first;
 }
@@ -110,11 +111,11 @@ class PartFinder {
       const glm::dvec3 offset = glm::dvec3(p) - origin;
       return glm::dvec2(glm::dot(offset, u), glm::dot(offset, v));
     };
-    std::vector<glm::dvec2> places;
-    places.reserve(last - first);
-    for (std::uint32_t i = first; i < last; ++i) places.push_back(in_plane(photons_.position[i]));
+    std::vector<glm::dvec2> points;
+    points.reserve(last - first);
+    for (std::uint32_t i = first; i < last; ++i) points.push_back(in_plane(photons_.position[i]));
     std::vector<FlatCorners> found;
-    halve({in_plane(corners[0]), in_plane(corners[1]), in_plane(corners[2])}, places,
+    halve({in_plane(corners[0]), in_plane(corners[1]), in_plane(corners[2])}, points,
           (last - first) / area, found);
     for (const FlatCorners& part : found) {
       const auto at = [&](const glm::dvec2& p) { return glm::vec3(origin + p.x * u + p.y * v); };
@@ -125,12 +126,12 @@ class PartFinder {
  private:
   /// Looks for dark parts of a triangle.
   ///   density   of photons where light falls, to a square metre
-  void halve(FlatCorners corner, std::span<glm::dvec2> places, double density,
+  void halve(FlatCorners corner, std::span<glm::dvec2> points, double density,
              std::vector<FlatCorners>& found) const {
     const double area =
         std::abs(cross(corner[1] - corner[0], corner[2] - corner[0])) / 4;  // a half
     const double expected = density * area;
-    if (expected < least_on_a_half || places.size() < least_found || area < least_area_) return;
+    if (expected < least_on_a_half || points.size() < least_found || area < least_area_) return;
     const auto length = [&](int i) { return glm::distance(corner[i], corner[(i + 1) % 3]); };
     int longest = 0;
     for (const int i : {1, 2}) {
@@ -141,11 +142,11 @@ class PartFinder {
     const glm::dvec2 middle = 0.5 * (a + b), cut = middle - c;
     const double side_of_a = cross(cut, a - c);
     const glm::dvec2 apex = c;  // of its own: what is written to positions cannot change it
-    const std::size_t split = partition(places, [cut, apex, side_of_a](const glm::dvec2& p) {
+    const std::size_t split = partition(points, [cut, apex, side_of_a](const glm::dvec2& p) {
       return cross(cut, p - apex) * side_of_a >= 0;
     });
     const std::array<FlatCorners, 2> halves{{{c, a, middle}, {b, c, middle}}};
-    const std::array<std::span<glm::dvec2>, 2> parts{places.first(split), places.subspan(split)};
+    const std::array<std::span<glm::dvec2>, 2> parts{points.first(split), points.subspan(split)};
     const double denser = static_cast<double>(std::max(parts[0].size(), parts[1].size())) / area;
     for (int i = 0; i < 2; ++i) {
       if (static_cast<double>(parts[i].size()) <= most_found_in_the_dark * expected) {
@@ -234,7 +235,7 @@ std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& fac
                                       const PlaneTree& planes, std::span<const DarkPart> dark_parts,
                                       double radius, double angle_degrees) {
   const NearbyPlanes nearby(mesh, planes, radius, angle_degrees);
-  std::vector<std::uint8_t> is_piece(mesh.corner.size(), 0);
+  std::vector<std::uint8_t> is_piece(mesh.normal.size(), 0);
   tbb::parallel_for(std::size_t{0}, is_piece.size(), [&](std::size_t i) {
     const auto triangle = static_cast<std::uint32_t>(i);
     if (!mesh.counts(triangle)) return;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/triangle_bvh.hpp"
+#include "geometry/box_tree.hpp"
 #include "photile/photons.hpp"
 #include "photile/surface_index.hpp"
 #include "surface/facets.hpp"

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "geometry/box_tree.hpp"
-#include "geometry/triangle_bvh.hpp"
 #include "geometry/triangle_distance.hpp"
 #include "groups/neighbour_groups.hpp"
 #include "photile/device/surface.h"
@@ -139,7 +138,7 @@ class ExposureFinder {
         lit_(lit),
         radius_(radius),
         cos_angle_(std::cos(glm::radians(angle_degrees))) {
-    for (std::uint32_t t = 0; t < mesh.corner.size(); ++t) {
+    for (std::uint32_t t = 0; t < mesh.normal.size(); ++t) {
       const bool front = is_dark(sided(t, 0)), back = is_dark(sided(t, 1));
       if (!mesh.counts(t) || (!front && !back)) continue;
       dark_.push_back(

@@ -45,7 +45,7 @@ bool equally_dark(std::span<const std::uint8_t> dark, const MeshEdge& a, const M
 }
 
 std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const std::uint8_t> dark) {
-  std::vector<Beyond> beyond(mesh.corner.size(), Beyond{none, none, none});
+  std::vector<Beyond> beyond(mesh.normal.size(), Beyond{none, none, none});
   tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
     mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
       if (edges.size() > most_triangles_of_edge) return;
@@ -125,7 +125,7 @@ void add_borders(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, std
 }  // namespace
 
 Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark) {
-  const std::size_t count = mesh.corner.size();
+  const std::size_t count = mesh.normal.size();
   std::vector<std::uint32_t> seeds;
   for (std::uint32_t t = 0; t < count; ++t) {
     if (mesh.counts(t)) seeds.push_back(t);
@@ -166,21 +166,13 @@ Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::
 }
 
 PlaneTree::PlaneTree(const SurfaceMesh& mesh, const Facets& facets)
-    : mesh_(mesh), facets_(facets), tree_(mesh.scene) {
-  const auto join = [](std::uint32_t a, std::uint32_t b) {
-    if (a == nothing || a == b) return b;
-    return b == nothing ? a : several;
-  };
-  const std::size_t leaves = tree_.leaf_count();
-  plane_.assign(2 * leaves, nothing);
-  for (std::size_t i = 0; i < tree_.order().size(); ++i) {
-    const std::uint32_t triangle = tree_.order()[i];
-    std::uint32_t& leaf = plane_[leaves + i / geometry::TriangleBvh::leaf_size];
-    if (mesh.counts(triangle)) leaf = join(leaf, facets.plane[triangle]);
-  }
-  for (std::size_t node = leaves; node-- > 1;) {
-    plane_[node] = join(plane_[2 * node], plane_[2 * node + 1]);
-  }
+    : mesh_(mesh), facets_(facets), tree_(geometry::triangle_boxes(mesh.scene)) {
+  plane_ = tree_.folded(
+      nothing, [&](std::uint32_t t) { return mesh.counts(t) ? facets.plane[t] : nothing; },
+      [](std::uint32_t a, std::uint32_t b) {
+        if (a == nothing || a == b) return b;
+        return b == nothing ? a : several;
+      });
 }
 
 }  // namespace photile::surface

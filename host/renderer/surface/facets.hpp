@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/triangle_bvh.hpp"
+#include "geometry/box_tree.hpp"
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
@@ -45,14 +45,10 @@ class PlaneTree {
                     Visit&& visit) const {
     const std::uint32_t own = mesh_.counts(triangle) ? facets_.plane[triangle] : nothing;
     tree_.visit_within(
-        box, radius,
-        [&](std::uint32_t node) { return plane_[node] != own && plane_[node] != nothing; },
-        [&](std::size_t first, std::size_t last) {
-          for (std::size_t i = first; i < last; ++i) {
-            const std::uint32_t other = tree_.order()[i];
-            if (mesh_.counts(other) && facets_.plane[other] != own && visit(other)) return true;
-          }
-          return false;
+        box, geometry::squared_reach(radius),
+        [&](std::size_t node) { return plane_[node] != own && plane_[node] != nothing; },
+        [&](std::uint32_t other) {
+          return mesh_.counts(other) && facets_.plane[other] != own && visit(other);
         });
   }
 
@@ -62,7 +58,7 @@ class PlaneTree {
 
   const SurfaceMesh& mesh_;
   const Facets& facets_;
-  geometry::TriangleBvh tree_;
+  geometry::BoxTree tree_;
   std::vector<std::uint32_t> plane_;  ///< per node: as Facets::plane, or one of the above
 };
 

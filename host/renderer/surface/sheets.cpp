@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "geometry/disjoint_sets.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "surface/boundary_edges.hpp"
 
@@ -29,7 +30,8 @@ void join_along_edges(const SurfaceMesh& mesh, const BoundaryEdges& edges, doubl
       if (mesh.stores(a) != mesh.stores(b)) return;
       const std::uint32_t flip = glm::dot(edge.to - edge.from, other.to - other.from) > 0 ? 1 : 0;
       const glm::dvec3 normal = flip == 0 ? mesh.normal[b] : -mesh.normal[b];
-      if (normals_agree(mesh.normal[a], normal, cos_angle)) found[task].push_back({a, b, flip});
+      if (normals_agree(mesh.normal[a], normal, cos_angle))
+        found[task].push_back({a, b, flip, false});
     };
     const std::size_t last = std::min(edges.size(), (task + 1) * edges_per_task);
     for (std::size_t i = task * edges_per_task; i < last; ++i)
@@ -75,9 +77,9 @@ void for_each_likely_pair(const SurfaceMesh& mesh, std::span<const MeshEdge> edg
       const auto above =
           std::lower_bound(all.begin(), all.end(), opposite,
                            [](const Turned& a, double turn) { return a.turn < turn; });
-      const std::size_t place =
+      const std::size_t middle =
           static_cast<std::size_t>(above - all.begin()) + on_either_side * all.size();
-      for (std::size_t i = place - on_either_side; i < place + on_either_side; ++i) {
+      for (std::size_t i = middle - on_either_side; i < middle + on_either_side; ++i) {
         const MeshEdge* const other = all[i % all.size()].edge;
         if (other != own.edge) visit(*own.edge, *other);
       }
@@ -101,7 +103,7 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
       }
       const auto connect = [&](const MeshEdge& a, const MeshEdge& b) {
         if (!(fold_cosine(mesh, a, b) >= cos_angle - cosine_slack)) return;
-        connected[share].push_back({a.triangle, b.triangle, flip_between(a, b)});
+        connected[share].push_back({a.triangle, b.triangle, flip_between(a, b), true});
       };
       if (edges.size() > most_triangles_in_pairs) {
         for_each_likely_pair(mesh, edges, connect);
@@ -122,7 +124,7 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
 
 Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connections,
                    std::span<const std::uint8_t> dark) {
-  DisjointSets joined(mesh.original.size());
+  geometry::DisjointSets joined(mesh.original.size());
   for_each_pair_of_sides(connections, [&](std::uint32_t a, std::uint32_t b) {
     if (dark.empty() || dark[a] == dark[b]) joined.join(a, b);
   });
@@ -130,11 +132,7 @@ Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connecti
   sheets.of.assign(mesh.original.size(), none);
   for (std::uint32_t s = 0; s < mesh.original.size(); ++s) {
     const std::uint32_t first = joined.find(mesh.original[s]);
-    if (first == s) {
-      sheets.of[s] = sheets.count++;
-    } else {
-      sheets.of[s] = sheets.of[first];
-    }
+    sheets.of[s] = first == s ? sheets.count++ : sheets.of[first];
   }
   return sheets;
 }

@@ -1,37 +1,13 @@
 // Sheets: sided triangles that connect over edges which fold by no more than an angle.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
-
-/// The smallest number of a set stands for it, whatever the order in which sets were joined.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Sheets {
   std::vector<std::uint32_t> of;  ///< per sided triangle
@@ -41,12 +17,13 @@ struct Sheets {
 /// Two triangles that go on across an edge: side i of the one as side i ^ flip of the other.
 struct Connection {
   std::uint32_t a, b, flip;
+  bool shared;  ///< the edge is one of both; else theirs run along each other
 };
 
 /// Calls visit(a, b) for the sided triangles that connect, each pair of a connection once.
 template <class Visit>
 void for_each_pair_of_sides(std::span<const Connection> connections, const Visit& visit) {
-  for (const auto& [a, b, flip] : connections) {
+  for (const auto& [a, b, flip, shared] : connections) {
     for (const std::uint32_t side : {0u, 1u}) visit(sided(a, side), sided(b, side ^ flip));
   }
 }

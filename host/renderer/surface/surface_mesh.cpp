@@ -5,30 +5,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <tuple>
 
 #include "geometry/radix_sort.hpp"
+#include "geometry/welded_vertices.hpp"
 
 namespace photile::surface {
 namespace {
-
-std::tuple<float, float, float> tuple_of(const glm::vec3& p) { return {p.x, p.y, p.z}; }
-
-/// Per vertex: the smallest index of those at the same position.
-std::vector<std::uint32_t> welded_vertices(const std::vector<glm::vec3>& vertices) {
-  std::vector<std::uint32_t> order(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(tuple_of(vertices[a]), a) < std::tuple(tuple_of(vertices[b]), b);
-  });
-  std::vector<std::uint32_t> welded(vertices.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
-    welded[order[i]] = same ? welded[order[i - 1]] : order[i];
-  }
-  return welded;
-}
 
 struct SortedCorners {
   std::array<std::uint32_t, 3> corner;
@@ -77,7 +60,7 @@ std::vector<std::uint32_t> originals(const SurfaceMesh& mesh) {
 
 SurfaceMesh::SurfaceMesh(const Scene& from)
     : scene(from), corner(from.triangle_count()), normal(from.triangle_count()) {
-  const std::vector<std::uint32_t> welded = welded_vertices(scene.vertices);
+  const std::vector<std::uint32_t> welded = geometry::welded_vertices(from.vertices);
   tbb::parallel_for(std::size_t{0}, corner.size(), [&](std::size_t t) {
     const glm::uvec3& vertices = scene.triangles[t];
     corner[t] = {welded[vertices.x], welded[vertices.y], welded[vertices.z]};

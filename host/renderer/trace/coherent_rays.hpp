@@ -23,7 +23,7 @@ struct CoherentHits {
   std::array<float, coherent_rays> distance;          ///< metres
 };
 
-/// The nearest hit of each ray. As robust as a ray alone: none slips between two triangles.
+/// The nearest hit of each ray. It is as robust as a ray alone: none slips between two triangles.
 /// Thread-safe; the caller's thread must flush denormals (ray_query.hpp). Directions must be
 /// finite.
 void intersect(const RayScene& rays, const glm::vec3& origin, const CoherentDirections& directions,

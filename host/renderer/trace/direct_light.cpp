@@ -30,13 +30,11 @@ class DirectLight {
   void look_at_lamp(const LightSampleNumbers::Look& look) {
     const auto lamp = lamps_.sample(point_.position, look.lamp, look.place);
     if (!lamp || !(glm::dot(lamp->direction, point_.normal) > 0.0f)) return;
-    glm::vec3 arrives =
+    const glm::vec3 arrives =
         lamp->received * transmittance(rays_, point_.origin_towards(lamp->direction), lamp->target);
     if (arrives == glm::vec3(0.0f)) return;
-    if (lamp->density > 0.0f) {
-      arrives *= power_heuristic(lamp->density, receiver_.density(lamp->direction));
-    }
-    add(lamp->layer, receiver_.weights(lamp->direction) * arrives);
+    const float weight = lamp->weight_beside(receiver_.density(lamp->direction));
+    add(lamp->layer, receiver_.weights(lamp->direction) * (arrives * weight));
   }
 
   /// Follows a direction through panes and holes until it meets a light, or what bends or stops it.
@@ -69,14 +67,12 @@ class DirectLight {
  private:
   void add_what_lies_beyond(const glm::vec3& direction, float density,
                             const LightWeights& weights) {
-    for (const std::uint32_t index : lamps_.distant().towards(direction)) {
-      const DistantLight& light = lamps_.distant()[index];
-      const glm::vec3 radiance = light.radiance(direction);
-      if (radiance == glm::vec3(0.0f)) continue;
-      const float weight =
-          power_heuristic(density, lamps_.density(light, point_.position, direction));
-      add(lamps_.layer(light.light()), weights * (weight * radiance));
-    }
+    lamps_.distant().for_each_shining(
+        direction, [&](const DistantLight& light, const glm::vec3& radiance) {
+          const float weight =
+              power_heuristic(density, lamps_.density(light, point_.position, direction));
+          add(lamps_.layer(light.light()), weights * (weight * radiance));
+        });
   }
 
   void add(std::uint32_t layer, const LightWeights& light) {
@@ -145,10 +141,8 @@ void ShadowRays::add(const LightSampler& lamps, const SurfacePoint& point,
   if (!lamp) return;
   const float cosine = glm::dot(lamp->direction, point.normal);
   if (!(cosine > 0.0f)) return;
-  glm::vec3 arrives = cosine * weight * lamp->received;
-  if (lamp->density > 0.0f) {
-    arrives *= power_heuristic(lamp->density, directions * cosine * glm::one_over_pi<float>());
-  }
+  const glm::vec3 arrives = cosine * weight * lamp->received *
+                            lamp->weight_beside(directions * cosine * glm::one_over_pi<float>());
   if (arrives == glm::vec3(0.0f)) return;
   lines_.push_back({point.origin_towards(lamp->direction), lamp->target});
   found_.push_back({tag, lamp->layer, arrives, lamp->direction});

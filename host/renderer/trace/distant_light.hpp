@@ -80,6 +80,15 @@ class DistantLights {
     return cells_.size() == 1 ? cells_.front() : cells_[cell_towards(direction)];
   }
 
+  /// Calls visit(light, radiance) for those that shine from a unit direction.
+  template <class Visit>
+  void for_each_shining(const glm::vec3& direction, const Visit& visit) const {
+    for (const std::uint32_t index : towards(direction)) {
+      const glm::vec3 radiance = lights_[index].radiance(direction);
+      if (radiance != glm::vec3(0.0f)) visit(lights_[index], radiance);
+    }
+  }
+
  private:
   static std::size_t cell_towards(const glm::vec3& direction);
 

@@ -95,16 +95,14 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
         next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, ray.holes);
     if (!met) {
       if (!sees_lamps) return std::nullopt;
-      for (const std::uint32_t index : setup.distant->towards(ray.direction)) {
-        const DistantLight& light = (*setup.distant)[index];
-        const glm::vec3 radiance = light.radiance(ray.direction);
-        if (radiance == glm::vec3(0.0f)) continue;
-        const float weight = other ? weight_against(other->lamps.density(
-                                         light, start, ray.direction, other->probabilities))
-                                   : 1.0f;
-        record.emission.push_back(
-            {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
-      }
+      setup.distant->for_each_shining(
+          ray.direction, [&](const DistantLight& light, const glm::vec3& radiance) {
+            const float weight = other ? weight_against(other->lamps.density(
+                                             light, start, ray.direction, other->probabilities))
+                                       : 1.0f;
+            record.emission.push_back(
+                {ray.pixel, light.light(), weight * ray.radiance_weight() * radiance});
+          });
       return std::nullopt;
     }
     const SurfacePoint& point = *met;
@@ -199,10 +197,8 @@ void look_at_lamp(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& wh
                   const OpaqueBsdf& lobe, const LightSampleNumbers::Look& look, EyeRecord& record) {
   const auto lamp = setup.lobes->lamps.sample(end.point.position, look.lamp, look.place);
   if (!lamp) return;
-  glm::vec3 reflected = lobe.reflected(lamp->direction);
-  if (lamp->density > 0.0f) {
-    reflected *= power_heuristic(lamp->density, lobe.density(lamp->direction));
-  }
+  glm::vec3 reflected =
+      lobe.reflected(lamp->direction) * lamp->weight_beside(lobe.density(lamp->direction));
   // Looks that bring the base all of its direct light know where it comes from.
   if (!setup.direct) reflected += whole.base_deviation(lamp->direction);
   glm::vec3 radiance = reflected * lamp->received;

@@ -28,7 +28,7 @@ struct EyeHit {
   float share;
 };
 
-/// And what more in scenes with a glossy surface.
+/// What a hit has more in scenes with a glossy surface.
 struct GlossyEyeHit {
   glm::vec3 outgoing;
   HitLobe lobe;

@@ -46,7 +46,7 @@ struct HemisphereRays {
   /// Per point: sum of the inverse distances to the surfaces that rays met first, 1/m.
   std::vector<float> inverse_distances;
 
-  /// Nothing where directions are not kept.
+  /// The direction of a ray, or 0 where directions are not kept.
   glm::vec3 direction_of(std::uint32_t ray) const {
     return direction.empty() ? glm::vec3(0.0f) : direction[ray];
   }

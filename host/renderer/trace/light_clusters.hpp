@@ -49,12 +49,12 @@ class LightClusters {
     std::uint32_t cluster;
     std::uint32_t triangle;  ///< into Light::triangles, where the light can be cut; else `none`
   };
-  /// By probabilities that are not empty.
+  /// Chooses a cluster by probabilities that are not empty.
   ///   choice, place   blocks as LightSampler::sample takes them
   Choice choose(const SelectionProbabilities& probabilities, const RandomBlock& choice,
                 const RandomBlock& place) const;
 
-  /// That a light is, if it cannot be cut; else `none`.
+  /// The cluster that a light is as a whole, if it cannot be cut; else `none`.
   std::uint32_t whole(std::uint32_t light) const { return whole_[light]; }
   /// The cluster of a triangle of a light that can be cut.
   std::uint32_t cluster_of(std::uint32_t triangle) const { return of_triangle_[triangle]; }

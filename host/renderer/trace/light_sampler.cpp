@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "photile/defaults.hpp"
 #include "photile/ray_scene.hpp"
@@ -163,22 +165,22 @@ std::optional<LightSample> LightSampler::through_portal(
                                           double{place.uniform(0)}, double{place.uniform(2)},
                                           double{place.uniform(3)}));
   // One of the lights there, each as likely.
-  const auto there = distant_.towards(direction);
-  const auto shines = [&](std::uint32_t index) {
-    return distant_[index].radiance(direction) != glm::vec3(0.0f);
-  };
-  const auto count = std::count_if(there.begin(), there.end(), shines);
-  if (count == 0) return std::nullopt;
-  auto skipped = static_cast<std::ptrdiff_t>(number * static_cast<double>(count));
-  for (const std::uint32_t index : there) {
-    if (!shines(index) || skipped-- > 0) continue;
-    const DistantLight& light = distant_[index];
-    const float all = density(light, position, direction, probabilities);
-    if (!(all > 0.0f)) return std::nullopt;
-    return LightSample{groups_.group_of[light.light()], direction, beyond(position, direction),
-                       light.radiance(direction) / all, all,       true};
-  }
-  return std::nullopt;
+  thread_local std::vector<std::pair<const DistantLight*, glm::vec3>> there;
+  there.clear();
+  distant_.for_each_shining(direction, [](const DistantLight& light, const glm::vec3& radiance) {
+    there.emplace_back(&light, radiance);
+  });
+  if (there.empty()) return std::nullopt;
+  const auto count = static_cast<double>(there.size());
+  const auto& [light, radiance] = there[static_cast<std::size_t>(number * count)];
+  const float all = density(*light, position, direction, probabilities);
+  if (!(all > 0.0f)) return std::nullopt;
+  return LightSample{groups_.group_of[light->light()],
+                     direction,
+                     beyond(position, direction),
+                     radiance / all,
+                     all,
+                     true};
 }
 
 float LightSampler::density(const DistantLight& light, const glm::vec3& position,
@@ -193,12 +195,9 @@ float LightSampler::density(const DistantLight& light, const glm::vec3& position
   const double through =
       portals_.density(glm::dvec3(position), glm::dvec3(direction), weights, sum);
   if (!(through > 0)) return alone;
-  const auto there = distant_.towards(direction);
-  const auto count = std::count_if(there.begin(), there.end(), [&](std::uint32_t index) {
-    return distant_[index].radiance(direction) != glm::vec3(0.0f);
-  });
-  return alone + static_cast<float>(portal_share_ * through /
-                                    static_cast<double>(std::max<std::ptrdiff_t>(1, count)));
+  double count = 0;
+  distant_.for_each_shining(direction, [&](const DistantLight&, const glm::vec3&) { ++count; });
+  return alone + static_cast<float>(portal_share_ * through / std::max(1.0, count));
 }
 
 float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting,

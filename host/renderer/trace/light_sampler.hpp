@@ -13,6 +13,7 @@
 #include "trace/light_clusters.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/sampling.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
@@ -29,6 +30,12 @@ struct LightSample {
   /// without size, which no other technique can find.
   float density;
   bool distant = false;  ///< from beyond the scene
+
+  /// How it counts beside a technique that finds its direction with density `other`, per steradian:
+  /// in full where no other technique can.
+  float weight_beside(float other) const {
+    return density > 0.0f ? power_heuristic(density, other) : 1.0f;
+  }
 };
 
 /// Chooses one light of all, half by power and half equally as PhotonQuota::balanced does, and on

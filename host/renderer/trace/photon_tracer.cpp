@@ -38,8 +38,8 @@ void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& d
 
 /// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
 /// with the share of its largest channel that is left, and keeps that channel's flux: photons of a
-/// light all weigh the same, which is what keeps the noise of the estimate low. Those of long paths
-/// weigh more.
+/// light all weigh the same, which is what keeps the noise of the estimate low. Photons of
+/// long paths weigh more.
 glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& before,
                         const glm::vec3& after, float u) {
   if (bounce < setup.parameters->roulette_start) return after;

@@ -133,12 +133,12 @@ std::vector<std::uint32_t> find_places(std::span<const LayerRun> runs,
     }
   });
   std::vector<std::uint32_t> first_of(sided_triangle_count + 1);
-  std::uint32_t place = 0;
+  std::uint32_t index = 0;
   for (std::size_t s = 0; s < sided_triangle_count; ++s) {
-    first_of[s] = place;
-    for (Share& share : shares) place += std::exchange(share.next[s], place);
+    first_of[s] = index;
+    for (Share& share : shares) index += std::exchange(share.next[s], index);
   }
-  first_of.back() = place;
+  first_of.back() = index;
   tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
     for (const LayerRun& run : shares[i].runs) {
       for (std::uint32_t& s : run.photons->sided_triangle) s = shares[i].next[s]++;
@@ -153,9 +153,9 @@ std::vector<T> in_places(std::span<const LayerRun> runs, std::vector<T> PhotonRu
                          std::size_t count) {
   std::vector<T> all = touched_vector<T>(count);
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
-    const std::vector<std::uint32_t>& place = runs[r].photons->sided_triangle;
+    const std::vector<std::uint32_t>& index = runs[r].photons->sided_triangle;
     const std::vector<T> own = std::move(runs[r].photons->*array);
-    for (std::size_t i = 0; i < own.size(); ++i) all[place[i]] = own[i];
+    for (std::size_t i = 0; i < own.size(); ++i) all[index[i]] = own[i];
   });
   return all;
 }
@@ -175,8 +175,8 @@ Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
   if (tell_layers) {
     photons.light = touched_vector<std::uint16_t>(count);
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
-      for (const std::uint32_t place : runs[r].photons->sided_triangle) {
-        photons.light[place] = runs[r].layer;
+      for (const std::uint32_t index : runs[r].photons->sided_triangle) {
+        photons.light[index] = runs[r].layer;
       }
     });
   }

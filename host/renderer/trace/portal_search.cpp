@@ -14,6 +14,8 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/disjoint_sets.hpp"
+#include "geometry/welded_vertices.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
@@ -305,36 +307,27 @@ Portal facing_in(const RayScene& rays, Portal portal) {
 /// The triangles of some materials, by plane and where they hang together.
 std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
                                                  const std::vector<bool>& chosen) {
-  std::map<std::tuple<float, float, float>, std::uint32_t> number_of_place;
-  std::vector<std::uint32_t> parent;
-  const auto root = [&](std::uint32_t place) {
-    while (parent[place] != place) place = parent[place] = parent[parent[place]];
-    return place;
-  };
-  std::map<PlaneKey, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_triangle;  // and a point of it
+  const std::vector<std::uint32_t> welded = geometry::welded_vertices(scene.vertices);
+  geometry::DisjointSets joined(welded.size());
+  std::vector<std::uint32_t> triangles;
   for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
     if (!chosen[scene.triangle_material[triangle]]) continue;
-    std::array<std::uint32_t, 3> places{};
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const glm::vec3 p = scene.corners(triangle)[corner];
-      const auto [entry, fresh] =
-          number_of_place.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(parent.size()));
-      if (fresh) parent.push_back(entry->second);
-      places[corner] = entry->second;
-    }
-    parent[root(places[1])] = root(places[0]);
-    parent[root(places[2])] = root(places[0]);
-    of_triangle.emplace_back(triangle, places[0]);
+    const glm::uvec3& corners = scene.triangles[triangle];
+    joined.join(welded[corners.x], welded[corners.y]);
+    joined.join(welded[corners.x], welded[corners.z]);
+    triangles.push_back(triangle);
   }
-  for (const auto& [triangle, place] : of_triangle) {
+  std::map<PlaneKey, std::map<std::uint32_t, std::vector<std::uint32_t>>> panes;
+  for (const std::uint32_t triangle : triangles) {
     const glm::dvec3 normal = plane_normal(scene, triangle);
     const double offset = glm::dot(normal, glm::dvec3(scene.corners(triangle)[0]));
-    if (std::isfinite(offset)) panes[plane_key(normal, offset)][root(place)].push_back(triangle);
+    if (!std::isfinite(offset)) continue;
+    panes[plane_key(normal, offset)][joined.find(welded[scene.triangles[triangle].x])].push_back(
+        triangle);
   }
   std::vector<std::vector<std::uint32_t>> found;
   for (const auto& [plane, parts] : panes) {
-    for (const auto& [place, triangles] : parts) found.push_back(triangles);
+    for (const auto& [first, members] : parts) found.push_back(members);
   }
   return found;
 }

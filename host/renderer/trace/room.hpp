@@ -30,8 +30,8 @@ class Room {
  public:
   static constexpr double most_height = 20;  ///< metres from a floor to its ceiling
 
-  /// None where no surface is above the point or none below it, each less than most_height away, or
-  /// where the room has no end. The rays are kept.
+  /// The room around a point; nothing where no surface is above it or none below it, each less than
+  /// most_height away, or where the room has no end. The rays are kept.
   static std::optional<Room> around(const RayScene& rays, const PlanAxes& axes,
                                     const glm::dvec3& point);
   /// The room in which a camera stands, or the first that its middle ray comes to.

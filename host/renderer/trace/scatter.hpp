@@ -35,8 +35,8 @@ struct SplitLight {
   Scattered reflected, transmitted;
 };
 
-/// Nothing where there is one way alone: mirrors, total internal reflection, and shading normals
-/// that would send one of the rays to the wrong side.
+/// Both ways that light takes at a surface. Nothing where there is one alone: at mirrors, where
+/// reflection is total, and where the shading normal would send one of the rays to the wrong side.
 std::optional<SplitLight> both_parts(const Scene& scene, const SurfacePoint& point,
                                      const glm::vec3& direction);
 

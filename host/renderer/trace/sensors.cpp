@@ -89,11 +89,10 @@ class Gatherer {
     if (!lamp || !(photometer_.sees_lamps() || lamp->distant)) return;
     const float density = photometer_.density(lamp->direction);
     if (!(density > 0.0f)) return;
-    glm::vec3 arrives = density * weight() * lamp->received *
-                        transmittance(rays_, photometer_.origin(), lamp->target);
+    const glm::vec3 arrives = density * weight() * lamp->received *
+                              transmittance(rays_, photometer_.origin(), lamp->target);
     if (arrives == glm::vec3(0.0f)) return;
-    if (lamp->density > 0.0f) arrives *= power_heuristic(lamp->density, density);
-    lamps.push_back({pixel_, lamp->layer, arrives});
+    lamps.push_back({pixel_, lamp->layer, arrives * lamp->weight_beside(density)});
   }
 
   const RayScene& rays_;
