@@ -29,7 +29,7 @@ class SurfacePath {
 
   void trace(const SurfacePoint& start, const OpaqueBsdf& bsdf) {
     const trace::Receiver receiver(start, bsdf);
-    look_at_lamp(
+    sample_light(
         start, [&](const glm::vec3& to) { return receiver.weights(to); },
         [&](const glm::vec3& to) { return receiver.density(to); });
     const RandomBlock numbers = random_.block(Purpose::path_scattering, 1);
@@ -91,7 +91,7 @@ class SurfacePath {
       return survives(scattered.weight, numbers);
     }
     const OpaqueBsdf bsdf(scene_, point, direction);
-    look_at_lamp(
+    sample_light(
         point, [&](const glm::vec3& to) { return weights_ * bsdf.reflected(to); },
         [&](const glm::vec3& to) { return bsdf.density(to); });
     const auto scattered = bsdf.sample(numbers);
@@ -105,7 +105,7 @@ class SurfacePath {
 
   /// Light of one light, chosen at random, at a point: `weigh` and `density` of directions there.
   template <class Weigh, class Density>
-  void look_at_lamp(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
+  void sample_light(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
     const auto lamp =
         lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));

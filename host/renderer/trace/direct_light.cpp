@@ -27,7 +27,7 @@ class DirectLight {
         share_(share),
         found_(found) {}
 
-  void look_at_lamp(const LightSampleNumbers::Look& look) {
+  void sample_light(const LightSampleNumbers::Look& look) {
     const auto lamp = lamps_.sample(point_.position, look.lamp, look.place);
     if (!lamp || !(glm::dot(lamp->direction, point_.normal) > 0.0f)) return;
     const glm::vec3 arrives =
@@ -38,7 +38,7 @@ class DirectLight {
   }
 
   /// Follows a direction through panes and holes until it meets a light, or what bends or stops it.
-  void look_around(const LightSampleNumbers::Look& look) {
+  void follow_direction(const LightSampleNumbers::Look& look) {
     const auto direction = receiver_.sample(look.lobe, look.direction);
     if (!direction) return;
     const float density = receiver_.density(*direction);
@@ -124,8 +124,8 @@ void find_direct_light(const RayScene& rays, const LightSampler& lamps, const Su
   DirectLight light(rays, lamps, point, receiver, 1.0f / static_cast<float>(count), found);
   for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
     const LightSampleNumbers::Look look = samples.look(number);
-    light.look_at_lamp(look);
-    light.look_around(look);
+    light.sample_light(look);
+    light.follow_direction(look);
   }
 }
 

@@ -193,7 +193,7 @@ namespace {
 
 /// A light as the lobe reflects it; also by how much the base reflects more or less of it than of
 /// light from all sides, for hits say no more of the base.
-void look_at_lamp(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& whole,
+void sample_light(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& whole,
                   const OpaqueBsdf& lobe, const LightSampleNumbers::Look& look, EyeRecord& record) {
   const auto lamp = setup.lobes->lamps.sample(end.point.position, look.lamp, look.place);
   if (!lamp) return;
@@ -225,7 +225,7 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     lobe.keep_lobe();
     const LightSampleNumbers::Look look =
         LightSampleNumbers(sample.of_pixel, sample.index, surface - 1).look(0);
-    look_at_lamp(setup, end, whole, lobe, look, record);
+    sample_light(setup, end, whole, lobe, look, record);
     const auto direction = lobe.sample(look.direction);
     if (!direction) return;
     const float density = lobe.density(*direction);

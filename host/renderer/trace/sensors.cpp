@@ -63,7 +63,7 @@ class Gatherer {
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       const RandomStream random(film.seed, number(sample), 0);
       follow(random, sobol_point(static_cast<std::uint32_t>(sample), scramble), record);
-      look_at_lamp(random, (sample + shift) / film.samples_per_pixel, lamps);
+      sample_light(random, (sample + shift) / film.samples_per_pixel, lamps);
     }
   }
 
@@ -82,7 +82,7 @@ class Gatherer {
                    &looking);
   }
 
-  void look_at_lamp(const RandomStream& random, double choice,
+  void sample_light(const RandomStream& random, double choice,
                     std::vector<SeenEmission>& lamps) const {
     const auto lamp = lamps_.sample(photometer_.origin(), RandomBlock::of(choice),
                                     random.block(Purpose::sensor_light, 1));
