@@ -106,6 +106,11 @@ FURTHER_TESTS = {
               ("loading", "bad_input")),
     "gltf": (("fuzz", "corpus"),), "obj": (("fuzz", "corpus"),),
     "image": (("loading", "textures"),),
+    "measuring": (("command", "measure"),), "daylight": (("command", "daylight"),), "glare": (("command", "glare"),),
+    "report": (("measuring", "plan_drawing"), ("measuring", "plan_surroundings"), ("measuring", "isolines"),
+               ("measuring", "false_colour_picture"), ("measuring", "sensor_files"), ("image", "colours"),
+               ("command", "pictures"), ("command", "measure"), ("command", "glare"), ("command", "daylight")),
+    "saved_maps": (("command", "saved_maps"),), "cloud": (), "view": (), "denoise": (("render", "denoiser"),),
     "bake": (("command", "trade"),), "walk": (("command", "walk"),), "command": ()}
 
 # Folders of host/ whose tests are in a folder of another name.
@@ -185,6 +190,7 @@ class Host:
         self.folder_steps = {
             folder: steps_of_folder(self.schemata.program(tests_of(home_of(folder))), home_of(folder),
                                     work / f"{home_of(folder)}.json", order)
+            if (ROOT / "tests" / home_of(folder)).is_dir() else []
             for folder in folders}
 
     def steps(self, folder):

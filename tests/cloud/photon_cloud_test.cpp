@@ -270,6 +270,10 @@ TEST_CASE("what is wrong with photons or points is said in one line") {
   refuse([&](Cloud& c) { c.position[3].y = nan; }, "photon 3 lies at");
   refuse([&](Cloud& c) { c.position[4].x = 1e13f; }, "photon 4 lies at");
   refuse([&](Cloud& c) { c.normal[5] *= 2; }, "photon 5 has a normal of length 2");
+  refuse([&](Cloud& c) { c.normal[5] *= 1.002f; }, "photon 5 has a normal of length 1.002");
+  Cloud rounded = whole;
+  rounded.normal[5] *= 1.0005f;  // as normals of half precision are
+  CHECK_NOTHROW(PhotonCloud(device(), rounded.photons(), {.radius = 0.1}));
   refuse([&](Cloud& c) { c.normal[5].z = nan; }, "photon 5 has a normal of length nan");
   refuse([&](Cloud& c) { c.normal.pop_back(); }, "9 normals for 10 photons");
   refuse([&](Cloud& c) { c.light.resize(3); }, "3 lights for 10 photons");

@@ -50,6 +50,25 @@ TEST_CASE("a year of daylight fills its files") {
   REQUIRE(grid["sensors"].size() == points);
   CHECK(grid["mean_lux"].get<double>() > 10);
   CHECK(grid["lamps"].size() == 2);
+  // The table has the figures of the JSON, rounded.
+  std::istringstream table(folder.read("a.csv"));
+  std::string line;
+  std::getline(table, line);
+  CHECK_THAT(line, Contains("relative_error,da,cda,udi_below_100,udi_100_300,udi_300_3000,udi"));
+  for (const auto& sensor : grid["sensors"]) {
+    REQUIRE(std::getline(table, line));
+    std::istringstream fields(line);
+    std::vector<std::string> values;
+    for (std::string field; std::getline(fields, field, ',');) values.push_back(field);
+    REQUIRE(values.size() >= 18);
+    const auto& useful = sensor["UDI"];
+    const std::vector<double> expected{sensor["DA"],          sensor["cDA"],
+                                       useful["below 100"],   useful["100 to 300"],
+                                       useful["300 to 3000"], useful["above 3000"]};
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      CHECK(std::stod(values[10 + i]) == Approx(expected[i]).margin(6e-5));
+    }
+  }
   std::istringstream ill(folder.read("bee/working_plane.ill")),
       up(folder.read("bee/sun-up-hours.txt"));
   std::size_t hours = 0, lines = 0;

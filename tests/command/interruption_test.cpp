@@ -52,6 +52,19 @@ TEST_CASE("a signal during a render, or the making of a page, gives 130 and keep
   CHECK(folder.file_count() == 3);  // the scene's two files and the earlier output
 }
 
+TEST_CASE("a picture that takes gigabytes is told before anything is traced") {
+  const FileFolder folder;
+  Run run;
+  run.arguments = typed("render", write_box(folder), "-o", folder / "a.exr", "--photons 2G",
+                        "--size 16384x16384");
+  run.signal_when = "GB of memory";
+  run.signal = SIGTERM;
+  const Outcome outcome = run_photile(run);
+  CHECK(last_error(outcome, 130) == "interrupted");
+  CHECK_THAT(outcome.errors, Contains("16384 x 16384 pixels with 2 lights takes"));
+  CHECK_THAT(outcome.errors, !Contains("photons:"));
+}
+
 /// Runs a line of shell text in which $photile is the command.
 Outcome run_in_shell(const FileFolder& folder, const std::string& text) {
   const std::string file = folder.write("line.sh", "photile='" + command() + "'\n" + text);

@@ -301,6 +301,23 @@ TEST_CASE("bake refuses what it cannot do in one line") {
   CHECK_THAT(last_error(run_photile(bake(folder, {"--texel", "0.00001"})), 2),
              Contains("do not fit"));
   CHECK_THAT(only_error(run_photile(bake(folder, {"--texel", "0"})), 2), Contains("--texel"));
+  // More surfaces than 64 x 64 texels can show: as many plates of a centimetre in the air.
+  std::string text = folder.read("box.obj") + "\nusemtl wall\n";
+  const auto corner = [&](double x, double y) {
+    text += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+  };
+  for (int i = 0; i < 64 * 64; ++i) {
+    const double x = 0.025 * (i % 64) - 0.8, y = 0.025 * (i / 64) - 0.8;
+    corner(x, y);
+    corner(x + 0.01, y);
+    corner(x, y + 0.01);
+    text += "f -3 -2 -1\n";
+  }
+  folder.write("box.obj", text);
+  CHECK_THAT(last_error(run_photile({"bake", folder / "box.obj", "-o", folder / "a.gltf", "-q",
+                                     "--photons", "5k", "--most-texels", "64"}),
+                        2),
+             Contains("a picture of 64 x 64 has no room for "));
 }
 
 }  // namespace

@@ -130,6 +130,15 @@ TEST_CASE("a render whose 1st, 2nd, 4th, 8th ... OpenCL call of a kind fails say
   }
 }
 
+TEST_CASE("a compiler without memory ends the command in one line, and not in a lock or a signal") {
+  const FileFolder folder;
+  auto layer = failing({"clBuildProgram", 0, ""}, 1, false, folder);
+  layer["PHOTILE_FAIL_BY"] = GENERATE("new", "thread");
+  CAPTURE(layer["PHOTILE_FAIL_BY"]);
+  const Outcome outcome = run_photile(small_render(folder, layer, {"-q"}));
+  CHECK_THAT(only_error(outcome, device_error), Catch::Contains("ulimit -v"));
+}
+
 TEST_CASE("a device that is lost in the middle of a render is reported once") {
   const Failure failure = out_of_memory();
   const Light light = GENERATE(Light::estimated, Light::gathered);

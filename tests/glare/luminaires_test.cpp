@@ -243,6 +243,26 @@ TEST_CASE("an opening of more than 1.5 m2 has a GGR by its light and the sky's a
   REQUIRE(seen.ggr);
   CHECK(*seen.ggr - seen.ugr->value ==
         Approx(8 * std::log10(2.55 * (1 + direct / 220) / (1 + direct / indirect))).margin(0.05));
+  // By what was measured itself, to the last digits.
+  const double at_eye = seen.luminaires.front().illuminance;
+  CHECK(*seen.ggr ==
+        Approx(ggr(seen.ugr->value, at_eye, glm::pi<double>() * seen.background.value, 1))
+            .margin(1e-6));
+}
+
+TEST_CASE("large are openings of more than 1.5 m2, by what of them faces down") {
+  SceneBuilder builder("panels");
+  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto panel = [&](const char* name, float x, const glm::vec3& u, const glm::vec3& v) {
+    builder.grid({x, 3, 3}, u, v, 1, black, builder.add(area_light(name, 100)));
+  };
+  panel("large", -8, {0, 2, 0}, {1, 0, 0});
+  panel("leaning", -4, {0, 2, 0}, {0.8f, 0, 0.6f});
+  panel("small", 0, {0, 1, 0}, {1, 0, 0});
+  panel("to the ceiling", 4, {2, 0, 0}, {0, 2, 0});
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  CHECK(Luminaires(rays, 64).large_area({0, 0, 1}) == Approx(2 + 2 * 0.8).epsilon(1e-5));
 }
 
 }  // namespace photile::test

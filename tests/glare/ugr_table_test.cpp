@@ -119,6 +119,16 @@ TEST_CASE("a long lamp that shines to its sides alone glares crosswise, not endw
   CHECK(along.endwise[10][0] > along.crosswise[10][0] + 3);
 }
 
+TEST_CASE("luminaires seen beyond 85 degrees from below do not count") {
+  const std::vector<float> candela{0, 0, 1000, 1000, 0, 0, 1000, 1000};
+  IntensityDistribution lamp("lamp", {}, {0, 85, 85.05, 90}, {0, 360}, candela);
+  lamp.set_opening({.along_zero = 0.3, .along_quarter = 0.3, .height = 0, .round = true});
+  const UgrTable table = ugr_table(lamp);
+  for (const auto* rows : {&table.crosswise, &table.endwise}) {
+    for (const UgrTable::Row& row : *rows) CHECK(std::isnan(row[0]));
+  }
+}
+
 TEST_CASE("without an opening nothing is rated") {
   IntensityDistribution lamp("lamp", {}, {0, 90}, {0, 360}, {100, 100, 100, 100});
   CHECK(std::isnan(ugr_table(lamp).crosswise[0][0]));

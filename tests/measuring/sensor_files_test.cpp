@@ -88,6 +88,10 @@ TEST_CASE("a list of planes, with columns and rows or the spacing of the standar
   CHECK(grids[1].sensors.size() == 6);
 }
 
+TEST_CASE("a right angle is one to a millionth, however long its sides are") {
+  CHECK(planes_in(R"({"origin": [0,0,0], "u": [10,0,0], "v": [5e-6,10,0]})").size() == 1);
+}
+
 TEST_CASE("what is no plane is refused by file, plane and key") {
   const auto [text, expected] = GENERATE(table<std::string, std::string>({
       {"{", "no JSON"},
@@ -98,6 +102,7 @@ TEST_CASE("what is no plane is refused by file, plane and key") {
       {R"({"origin": [0,0,"a"], "u": [1,0,0], "v": [0,1,0]})", "'origin'"},
       {R"({"origin": [0,0,1e300], "u": [1,0,0], "v": [0,1,0]})", "'origin'"},
       {R"({"origin": [0,0,0], "u": [1,0,0], "v": [1,1,0]})", "right angle"},
+      {R"({"origin": [0,0,0], "u": [0.1,0,0], "v": [1e-5,0.1,0]})", "right angle"},
       {R"({"origin": [0,0,0], "u": [0,0,0], "v": [0,1,0]})", "no length"},
       {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 0})", "'spacing'"},
       {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1e-9})", "'spacing'"},

@@ -196,6 +196,26 @@ TEST_CASE("points beyond the floor's border, or in the band along it, are left o
   CHECK(grid.sensors.size() == 14 * 14 - 8 * 8);
 }
 
+TEST_CASE("a floor of three corners ends at each of its sides, whichever comes first") {
+  const std::array<glm::vec3, 3> corners{glm::vec3(0, 0, 0), glm::vec3(0, 0, 4),
+                                         glm::vec3(4, 0, 0)};
+  for (std::size_t first = 0; first < 3; ++first) {
+    CAPTURE(first);
+    test::SceneBuilder builder("triangle");
+    builder.triangle(corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3],
+                     builder.add(test::diffuse(glm::vec3(0.5f))));
+    builder.add(test::point_light("lamp", {1, 2, 1}));
+    WorkingPlane plane = plane_of("floor+0.75", 0);
+    plane.spacing = 0.25;
+    const SensorGrid grid = working_plane_grid(builder.build(), plane);
+    for (const Sensor& sensor : grid.sensors) {
+      CHECK(sensor.position.x + sensor.position.z < 4.02);
+    }
+    // Of 16 x 16 cells the half, and those on the border.
+    CHECK(grid.sensors.size() == 8 * 17);
+  }
+}
+
 TEST_CASE("no floor, and a band that leaves nothing, are refused with a remedy") {
   test::SceneBuilder builder("wall");
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));

@@ -278,6 +278,7 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   SECTION("offsets") { bad.groups.offsets[1] = ~std::uint64_t{0}; }
   SECTION("NaN") { bad.photons.position[0].x = std::nanf(""); }
   SECTION("radius") { bad.radius = 0; }
+  SECTION("radius below 0") { bad.radius = -1; }
   SECTION("lights") { bad.photons.emitted_per_light.push_back(1); }
   SECTION("caustics") { bad.caustics.emplace(); }
   refused(bad);

@@ -100,6 +100,13 @@ TEST_CASE("what an estimate's noise depends on follows from k, the kernel and th
   CHECK(EstimateNoise::of(scene, parameters).photons == Approx(50 / 1.5));
 }
 
+TEST_CASE("the paths of pooled lights are those of their powers together, of dark ones none") {
+  EstimateNoise noise;
+  noise.paths = {100, 300, 50};
+  const LightPooling pooling{{"on", "off"}, {0, 0, 1}, {2, 3, 0}};
+  CHECK(noise.pooled(pooling).paths == std::vector<double>{400.0 / 5, 0});
+}
+
 TEST_CASE("a number has as many digits as its error leaves meaning") {
   using report::text_with_error;
   CHECK(text_with_error(229.3, 32.4) == "230 +-30");

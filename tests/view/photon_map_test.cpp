@@ -155,4 +155,27 @@ TEST_CASE("a picked triangle is tinted where it is seen, and its photons are dot
   CHECK(yellow <= inspector.map()->own_photons.size());
 }
 
+TEST_CASE("photons beside the picture are not drawn into its next row") {
+  const Scene scene = corner();
+  Frame frame;
+  frame.layers = LightLayers(320, 240, std::vector<std::string>{"lamp"});
+  frame.camera = Camera::look_at({2, 1.5, 4}, {2, 0.2, 1.5}, {0, 1, 0}, glm::radians(45.0));
+  frame.photons = std::make_shared<InspectablePhotons>(
+      InspectablePhotons::of(prepared(scene, MapMode::triangle)));
+  PhotonInspector inspector(scene);
+  DisplayedFrame shown{320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)};
+  for (const double down : {0.55, 0.65, 0.75, 0.85, 0.95}) {  // triangles that the border cuts
+    inspector.pick(frame, 0.99, down);
+    inspector.draw(frame, shown);
+    REQUIRE(inspector.map());
+  }
+  std::array<int, 2> yellow{};  // in the left half, and in the right one
+  for (std::size_t pixel = 0; pixel < 320 * 240; ++pixel) {
+    const std::uint8_t* rgb = &shown.rgb[3 * pixel];
+    if (rgb[0] == 255 && rgb[2] == 0) ++yellow[pixel % 320 / 160];
+  }
+  CHECK(yellow[0] == 0);
+  CHECK(yellow[1] > 10);
+}
+
 }  // namespace photile::test

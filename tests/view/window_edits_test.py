@@ -67,7 +67,7 @@ def moves_the_sun(photile, scene, folder):
         window.finish()
         return window.keep("ctrl+s", "view-*.exr").rgb.max() == 0
     until(is_night, "the night")
-    window.close()
+    window.stop()
 
 
 def places_lamps(photile, scene, folder):
@@ -124,7 +124,7 @@ def places_lamps(photile, scene, folder):
     if len(entries()) >= count:
         fail("saved without being asked to")
     save()
-    window.close()
+    window.stop()
     subprocess.run([photile, "info", scene, "--luminaires", lamps], check=True,
                    stdout=subprocess.DEVNULL)
 

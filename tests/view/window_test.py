@@ -90,6 +90,12 @@ class Window:
         if self.process.wait(PATIENCE) != 0:
             fail(f"closing ended with {self.process.returncode}: {self.process.stderr.read()}")
 
+    def stop(self):
+        """Ends it as a system does that shuts down."""
+        self.process.terminate()
+        if self.process.wait(PATIENCE) != 130:
+            fail(f"a signal ended with {self.process.returncode}: {self.process.stderr.read()}")
+
     def running(self):
         if self.process.poll() is not None:
             fail(f"photile view ended with {self.process.returncode}: {self.process.stderr.read()}")

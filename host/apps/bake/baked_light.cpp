@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -99,10 +100,12 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
   };
   while (!fits()) {
     if (texel_ > widest_texel) {
-      throw UsageError(
-          fmt::format("a picture of {} x {} and {} texels has no room for {} surfaces; "
-                      "give more by --most-texels",
-                      most_side, most_side, parameters.most_texels, maps.charts().size()));
+      const bool bounded = parameters.most_texels != std::numeric_limits<std::uint64_t>::max();
+      throw UsageError(fmt::format(
+          "a picture of {} x {}{} has no room for {} surfaces; give more by --most-texels",
+          most_side, most_side,
+          bounded ? fmt::format(" and {} texels", parameters.most_texels) : "",
+          maps.charts().size()));
     }
     if (parameters.texel > 0 && parameters.exact) {
       throw UsageError(fmt::format("texels {} m apart do not fit a picture of {} x {}; give more",

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -22,6 +23,7 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "device/program.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::app {
@@ -140,10 +142,42 @@ int conclude(ExitCode code, const std::string& problem) {
 
 }  // namespace
 
+namespace {
+
+/// Without memory, which a line made of texts would ask for.
+[[noreturn]] void end_in_compiler() {
+  constexpr std::string_view line =
+      "photile: error: out of memory in the compiler of a device; raise the limit of its address "
+      "space (ulimit -v)\n";
+  static_cast<void>(::write(STDERR_FILENO, line.data(), line.size()) == 0);
+  ::_exit(static_cast<int>(ExitCode::device));
+}
+
+/// No exception passes through PoCL: in a thread of ours it would leave locks held for which all
+/// wait for good, in one of its own it ends the process by a signal.
+void end_where_a_compiler_lacks_memory() {
+  std::set_new_handler([] {
+    if (device::in_compiler()) end_in_compiler();
+    throw std::bad_alloc();
+  });
+  std::set_terminate([] {
+    try {
+      if (std::current_exception()) std::rethrow_exception(std::current_exception());
+    } catch (const std::bad_alloc&) {
+      end_in_compiler();
+    } catch (...) {
+    }
+    std::abort();
+  });
+}
+
+}  // namespace
+
 int run_command_line(int argument_count, const char* const* arguments) {
   ExitCode code = ExitCode::failure;
   std::string problem;
   const TerminalText names_command_nothing(std::cout);
+  end_where_a_compiler_lacks_memory();
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads no more of what is told loses no picture
   try {
     join_processes({arguments, static_cast<std::size_t>(argument_count)});

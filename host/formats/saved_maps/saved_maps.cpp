@@ -478,9 +478,8 @@ std::string problem_of(const PreparedPhotons& prepared, const Scene& scene) {
     return "groups that do not fit the scene";
   }
   // Naive groups have an infinite radius.
-  if (!(prepared.radius > 0) || !std::isfinite(prepared.radius) ||
-      !(groups.radius >= prepared.radius) || !(groups.angle_degrees >= 0) ||
-      !(groups.angle_degrees <= 180)) {
+  if (!std::isfinite(prepared.radius) || !(groups.radius >= prepared.radius) ||
+      !(groups.angle_degrees >= 0) || !(groups.angle_degrees <= 180)) {
     return "no sensible radius or angle";
   }
   return {};

@@ -130,6 +130,22 @@ std::string base_options(cl_device_id device) {
   return options;
 }
 
+namespace {
+
+thread_local bool compiling = false;
+
+cl_int build(cl_program program, const BuildTarget& target, const std::string& options) {
+  compiling = true;
+  const cl_int status =
+      clBuildProgram(program, 1, &target.device, options.c_str(), nullptr, nullptr);
+  compiling = false;
+  return status;
+}
+
+}  // namespace
+
+bool in_compiler() { return compiling; }
+
 ProgramHandle build_from_source(const BuildTarget& target, const std::string& file,
                                 const std::string& source, const std::string& options) {
   const char* text = source.c_str();
@@ -137,7 +153,7 @@ ProgramHandle build_from_source(const BuildTarget& target, const std::string& fi
   cl_int status = CL_SUCCESS;
   ProgramHandle program(clCreateProgramWithSource(target.context, 1, &text, &length, &status));
   check(status, "clCreateProgramWithSource", file);
-  status = clBuildProgram(program.get(), 1, &target.device, options.c_str(), nullptr, nullptr);
+  status = build(program.get(), target, options);
   if (status != CL_SUCCESS) {
     const auto log = build_log(program.get(), target.device);
     throw KernelBuildError(
@@ -157,7 +173,7 @@ ProgramHandle build_from_binary(const BuildTarget& target, const std::string& bi
   ProgramHandle program(clCreateProgramWithBinary(target.context, 1, &target.device, &length,
                                                   &bytes, &binary_status, &status));
   if (status != CL_SUCCESS || binary_status != CL_SUCCESS) return {};
-  status = clBuildProgram(program.get(), 1, &target.device, options.c_str(), nullptr, nullptr);
+  status = build(program.get(), target, options);
   return status == CL_SUCCESS ? std::move(program) : ProgramHandle{};
 }
 

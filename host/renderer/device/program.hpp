@@ -31,6 +31,10 @@ std::string joined(const NamedBinary& program);
 /// What `joined` made; none of any other text.
 std::optional<NamedBinary> split(std::string_view text);
 
+/// Whether this thread is in a device's compiler, through which no exception may pass: its locks
+/// would stay held.
+bool in_compiler();
+
 /// Where programs are built.
 struct BuildTarget {
   cl_context context = nullptr;

@@ -6,14 +6,20 @@
 //   PHOTILE_FAIL_STATUS=-4             with this status code
 //   PHOTILE_FAIL_ON=1                  and so do all later ones ("device lost")
 //   PHOTILE_FAIL_ABOVE=4096            instead, clCreateBuffer fails for more bytes than this
+//   PHOTILE_FAIL_BY=new                it asks for more memory than there is, in the thread that
+//   calls PHOTILE_FAIL_BY=thread             the same in a thread of its own, as runtimes have them
 //   PHOTILE_FAIL_COUNT_FILE=path       at exit the number of calls is written there
 //
 // A sweep first counts (PHOTILE_FAIL_AT=0), then lets each call fail in turn: the program must end
 // with one message and exit code 4, or with the right result; never by a signal, never hanging.
 #include <atomic>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
+#include <string_view>
+#include <thread>
 
 #include "layer.hpp"
 
@@ -34,12 +40,21 @@ void write_count() {
   std::fclose(file);
 }
 
+/// As the compiler of a runtime does; where PHOTILE_FAIL_BY asks for it.
+void lack_memory() {
+  const std::string_view by = text_variable("PHOTILE_FAIL_BY");
+  const auto ask = [] { ::operator delete(::operator new(PTRDIFF_MAX)); };
+  if (by == "new") ask();
+  if (by == "thread") std::thread(ask).join();
+}
+
 /// The status with which this call of the chosen function must fail, or CL_SUCCESS.
 cl_int failure() {
   static const long at = number_variable("PHOTILE_FAIL_AT");
   static const bool on = number_variable("PHOTILE_FAIL_ON") != 0;
   static const auto status = static_cast<cl_int>(number_variable("PHOTILE_FAIL_STATUS"));
   const long call = ++calls;
+  if (call == at) lack_memory();
   return at != 0 && (call == at || (on && call > at)) ? status : CL_SUCCESS;
 }
 
