@@ -88,12 +88,12 @@ class Subject {
       const double area = glm::length(glm::cross(facet.u, facet.v));
       const auto count = static_cast<std::size_t>(area * per_square_metre);
       for (std::size_t n = 0; n < count; ++n) {
-        add_point(i, 1.0f, random, photons.position, photons.sided_triangle);
+        add_point(i, 1.0f, random, photons.position, photons.oriented_face);
         photons.flux.emplace_back(static_cast<float>(area / static_cast<double>(count)));
       }
     }
     photons.emitted_per_light = {photons.size()};
-    return sort_by_sided_triangle(std::move(photons), 2 * scene_.triangle_count());
+    return sort_by_oriented_face(std::move(photons), 2 * scene_.triangle_count());
   }
 
   /// `reach`: largest distance from the edge, where hits are near one.
@@ -106,7 +106,7 @@ class Subject {
     }
     for (std::size_t n = 0; n < count; ++n) {
       add_point(asked[n % asked.size()], shape_.near_edge ? static_cast<float>(reach) : 1.0f,
-                random, hits.position, hits.sided_triangle);
+                random, hits.position, hits.oriented_face);
       hits.pixel.push_back(static_cast<std::uint32_t>(n));
     }
     hits.throughput.assign(count, glm::vec3(1.0f));
@@ -133,9 +133,9 @@ class Subject {
     positions.push_back(f.origin + u * f.u + v * f.v);
     // A quad's triangles are those below its diagonal and above it.
     const auto triangle = static_cast<std::uint32_t>(2 * facet + (v <= u ? 0 : 1));
-    const std::uint32_t front = sided(triangle, 0);
-    const bool faces = glm::dot(sided_normal(scene_, front), glm::dvec3(normal_of(f))) > 0;
-    sides.push_back(faces ? front : sided(triangle, 1));
+    const std::uint32_t front = oriented(triangle, 0);
+    const bool faces = glm::dot(face_normal(scene_, front), glm::dvec3(normal_of(f))) > 0;
+    sides.push_back(faces ? front : oriented(triangle, 1));
   }
 
   const Shape& shape_;

@@ -51,7 +51,7 @@ def estimate_cost(k):
 BUILD_BYTES = {
     "find_entered": (24, 0, 0, 0),   # position, triangle, list; bits
     "count_photons": (12, 4, 0, 0),  # triangle, list, bits
-    "size_grids": (0, 0, 0, 130),    # half a shape, count, crowding; grid, cells
+    "size_grids": (0, 0, 0, 130),    # half a shape, count, density_ratio; grid, cells
     "place_grids": (0, 0, 0, 8),
     "count_cells": (24, 8, 0, 0),
     "sum_blocks": (0, 0, 4, 0),

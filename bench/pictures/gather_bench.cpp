@@ -54,7 +54,7 @@ PrimaryHits seen_points(const RayScene& rays, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t hit = i * all.size() / count;
     chosen.position.push_back(all.position[hit]);
-    chosen.sided_triangle.push_back(all.sided_triangle[hit]);
+    chosen.oriented_face.push_back(all.oriented_face[hit]);
     chosen.pixel.push_back(all.pixel[hit]);
     chosen.throughput.push_back(all.throughput[hit]);
     chosen.diffuse_albedo.push_back(all.diffuse_albedo[hit]);

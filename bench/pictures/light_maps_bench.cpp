@@ -79,8 +79,8 @@ void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camer
       if (!hit) continue;
       const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, direction);
       NodeBlend blend{};
-      if (maps.charts().chart_of()[point.sided_triangle()] == none ||
-          !maps.find(point.sided_triangle(), point.position, blend)) {
+      if (maps.charts().chart_of()[point.oriented_face()] == none ||
+          !maps.find(point.oriented_face(), point.position, blend)) {
         continue;
       }
       const glm::vec2 within(blend.weight[1] + blend.weight[3], blend.weight[2] + blend.weight[3]);

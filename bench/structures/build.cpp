@@ -192,7 +192,7 @@ PhotonMaps build(const Structure& structure, Device& device, const Scene& scene,
   store->angle_degrees = groups.angle_degrees;
   store->cos_angle = std::cos(glm::radians(groups.angle_degrees));
   store->landed = landed_on(scene, photons);
-  store->normals = maps::sided_normals(scene);
+  store->normals = maps::face_normals(scene);
   return build_global(structure, std::move(store), photons, stopwatch);
 }
 

@@ -78,10 +78,10 @@ PhotonMaps build(const Structure& structure, Device& device, const Scene& scene,
                  const Photons& photons, const NeighbourGroups& groups,
                  const PhotonMapParameters& parameters);
 
-/// Photons and points without a scene, each on a sided triangle of its own.
+/// Photons and points without a scene, each on an oriented face of its own.
 struct Points {
   const Photons& photons;
-  std::span<const glm::vec3> normals;  ///< per sided triangle: of photons and of points
+  std::span<const glm::vec3> normals;  ///< per oriented face: of photons and of points
   double angle_degrees;                ///< largest between the normals of neighbours
 };
 

@@ -19,7 +19,7 @@ struct Visit {
   BoundedHeap& heap;
   glm::vec3 position;
   float squared_radius;
-  std::uint32_t sided_triangle;
+  std::uint32_t oriented_face;
 };
 
 /// Box of a photon: the point itself.
@@ -36,7 +36,7 @@ bool offer_photon(RTCPointQueryFunctionArguments* arguments) {
   const glm::vec3 d = visit.input.photons.position[photon] - visit.position;
   const float squared_distance = d.x * d.x + d.y * d.y + d.z * d.z;
   if (squared_distance >= visit.squared_radius) return false;
-  if (!visit.input.filter.agree(visit.input.photons.sided_triangle[photon], visit.sided_triangle)) {
+  if (!visit.input.filter.agree(visit.input.photons.oriented_face[photon], visit.oriented_face)) {
     return false;
   }
   visit.heap.add({squared_distance, photon});
@@ -88,7 +88,7 @@ class EmbreeSearch final : public HostSearch {
              BoundedHeap& heap, DensityAnswers& answers) const {
     heap.clear();
     const glm::vec3& p = hits.position[hit];
-    Visit visit{input_, heap, p, parameters.radius * parameters.radius, hits.sided_triangle[hit]};
+    Visit visit{input_, heap, p, parameters.radius * parameters.radius, hits.oriented_face[hit]};
     RTCPointQuery point_query{p.x, p.y, p.z, 0.0f, parameters.radius};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);

@@ -57,13 +57,13 @@ EstimateCheck::EstimateCheck(const reference::DensityOracle& oracle, std::size_t
     : index_(some_of(index, photons)), truths_(index_.size()) {
   for (const std::uint32_t i : index_) {
     hits_.position.push_back(hits.position[i]);
-    hits_.sided_triangle.push_back(hits.sided_triangle[i]);
+    hits_.oriented_face.push_back(hits.oriented_face[i]);
   }
   const double radius = static_cast<float>(estimate.radius);  // as kernels have it
   const DensityKernel kernel = kernel_used(estimate.kernel, estimate.k);
   tbb::parallel_for(std::size_t{0}, index_.size(), [&](std::size_t i) {
     const glm::dvec3 hit(hits.position[index_[i]]);
-    const std::uint32_t on = hits.sided_triangle[index_[i]];
+    const std::uint32_t on = hits.oriented_face[index_[i]];
     const auto irradiance = [&](DensityKernel of) {
       return estimate.surface
                  ? oracle.irradiance(*estimate.surface, hit, on, estimate.k, radius, of)

@@ -8,7 +8,7 @@ HitSample hits_at(const PrimaryHits& hits, std::vector<std::uint32_t> index) {
   HitSample sample;
   for (const std::uint32_t i : index) {
     sample.hits.position.push_back(hits.position[i]);
-    sample.hits.sided_triangle.push_back(hits.sided_triangle[i]);
+    sample.hits.oriented_face.push_back(hits.oriented_face[i]);
     sample.hits.pixel.push_back(hits.pixel[i]);
     sample.hits.throughput.push_back(hits.throughput[i]);
     sample.hits.diffuse_albedo.push_back(hits.diffuse_albedo[i]);

@@ -20,7 +20,7 @@ namespace photile::bench {
 class NormalFilter {
  public:
   NormalFilter(const Scene& scene, double angle_degrees);
-  /// A filter of given unit normals, one per sided triangle.
+  /// A filter of given unit normals, one per oriented face.
   NormalFilter(std::vector<glm::vec3> normals, double angle_degrees);
   std::span<const glm::vec3> normals() const { return normals_; }
   bool agree(std::uint32_t a, std::uint32_t b) const {
@@ -28,7 +28,7 @@ class NormalFilter {
   }
 
  private:
-  std::vector<glm::vec3> normals_;  ///< per sided triangle
+  std::vector<glm::vec3> normals_;  ///< per oriented face
   float least_cosine_;
 };
 

@@ -56,11 +56,11 @@ NaiveBuild time_naive_build(const Scene& scene, const Photons& photons, double r
   const auto squared_reach = static_cast<float>(radius * radius);
   const auto references_of = [&](std::size_t photon) {
     const glm::vec3& p = photons.position[photon];
-    const std::uint32_t own = photons.sided_triangle[photon];
+    const std::uint32_t own = photons.oriented_face[photon];
     std::uint64_t references = 0;
     for (std::uint32_t t = 0; t < triangles; ++t) {
       if (!within(p, corners[t], squared_reach)) continue;
-      references += filter.agree(own, sided(t, 0)) + filter.agree(own, sided(t, 1));
+      references += filter.agree(own, oriented(t, 0)) + filter.agree(own, oriented(t, 1));
     }
     return references;
   };

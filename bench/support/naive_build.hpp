@@ -10,7 +10,7 @@ namespace photile::bench {
 struct NaiveBuild {
   Timing timing;           ///< of all photons: those of the tested ones times what they stand for
   std::size_t tested = 0;  ///< photons, evenly among all
-  double references = 0;   ///< a photon: sided triangles whose map it enters
+  double references = 0;   ///< a photon: oriented faces whose map it enters
 };
 
 /// On all hardware threads of the host, nothing written. A photon enters the map of a sided

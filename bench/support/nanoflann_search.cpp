@@ -55,15 +55,15 @@ class FilteredList {
         distances_(parameters.k),
         list_(parameters.k) {}
 
-  void begin(std::uint32_t sided_triangle) {
-    sided_triangle_ = sided_triangle;
+  void begin(std::uint32_t oriented_face) {
+    oriented_face_ = oriented_face;
     list_.init(indices_.data(), distances_.data());
     distances_.back() = parameters_.radius * parameters_.radius;
   }
   bool full() const { return list_.full(); }
   float worstDist() const { return list_.worstDist(); }
   bool addPoint(float squared_distance, std::uint32_t photon) {
-    if (!input_.filter.agree(input_.photons.sided_triangle[photon], sided_triangle_)) return true;
+    if (!input_.filter.agree(input_.photons.oriented_face[photon], oriented_face_)) return true;
     return list_.addPoint(squared_distance, photon);
   }
   void end(std::size_t hit, DensityAnswers& answers) const {
@@ -79,7 +79,7 @@ class FilteredList {
   std::vector<std::uint32_t> indices_;
   std::vector<float> distances_;
   nanoflann::KNNResultSet<float, std::uint32_t> list_;
-  std::uint32_t sided_triangle_ = 0;
+  std::uint32_t oriented_face_ = 0;
 };
 
 /// The filtered candidates, kept in a heap.
@@ -90,8 +90,8 @@ class FilteredHeap {
   FilteredHeap(const SearchInput& input, const SearchParameters& parameters)
       : input_(input), parameters_(parameters), heap_(parameters.k) {}
 
-  void begin(std::uint32_t sided_triangle) {
-    sided_triangle_ = sided_triangle;
+  void begin(std::uint32_t oriented_face) {
+    oriented_face_ = oriented_face;
     heap_.clear();
   }
   bool full() const { return heap_.full(); }
@@ -101,7 +101,7 @@ class FilteredHeap {
   bool addPoint(float squared_distance, std::uint32_t photon) {
     // nanoflann looks at worstDist once a leaf; the heap needs it for each point.
     if (squared_distance >= worstDist()) return true;
-    if (!input_.filter.agree(input_.photons.sided_triangle[photon], sided_triangle_)) return true;
+    if (!input_.filter.agree(input_.photons.oriented_face[photon], oriented_face_)) return true;
     heap_.add({squared_distance, photon});
     return true;
   }
@@ -116,7 +116,7 @@ class FilteredHeap {
   const SearchInput& input_;
   const SearchParameters& parameters_;
   BoundedHeap heap_;
-  std::uint32_t sided_triangle_ = 0;
+  std::uint32_t oriented_face_ = 0;
 };
 
 template <class ResultSet>
@@ -134,7 +134,7 @@ class NanoflannSearch final : public HostSearch {
           ResultSet results(input_, parameters);
           for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const std::uint32_t hit = order[i];
-            results.begin(hits.sided_triangle[hit]);
+            results.begin(hits.oriented_face[hit]);
             index_->tree().findNeighbors(results, &hits.position[hit].x, nanoflann::SearchParams());
             results.end(hit, answers);
           }

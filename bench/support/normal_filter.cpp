@@ -7,7 +7,7 @@
 namespace photile::bench {
 
 NormalFilter::NormalFilter(const Scene& scene, double angle_degrees)
-    : NormalFilter(maps::sided_normals(scene), angle_degrees) {}
+    : NormalFilter(maps::face_normals(scene), angle_degrees) {}
 
 NormalFilter::NormalFilter(std::vector<glm::vec3> normals, double angle_degrees)
     : normals_(std::move(normals)),

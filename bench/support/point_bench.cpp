@@ -53,11 +53,11 @@ class PointBench {
     record_.set_version("embree", embree_version());
     stored_.position = photons_.position;
     stored_.flux.assign(photons_.position.size(), glm::vec3(1.0f));
-    stored_.sided_triangle.resize(photons_.position.size());
-    std::iota(stored_.sided_triangle.begin(), stored_.sided_triangle.end(), 0u);
+    stored_.oriented_face.resize(photons_.position.size());
+    std::iota(stored_.oriented_face.begin(), stored_.oriented_face.end(), 0u);
     hits_.position = queries_.position;
-    hits_.sided_triangle.resize(queries_.position.size());
-    std::iota(hits_.sided_triangle.begin(), hits_.sided_triangle.end(),
+    hits_.oriented_face.resize(queries_.position.size());
+    std::iota(hits_.oriented_face.begin(), hits_.oriented_face.end(),
               static_cast<std::uint32_t>(stored_.size()));
   }
 

@@ -13,7 +13,8 @@ namespace {
 
 /// Side of the plane's triangle that looks up.
 std::uint32_t upper_side(const Scene& scene, std::uint32_t triangle) {
-  return sided_normal(scene, sided(triangle, 0)).z > 0 ? sided(triangle, 0) : sided(triangle, 1);
+  return face_normal(scene, oriented(triangle, 0)).z > 0 ? oriented(triangle, 0)
+                                                         : oriented(triangle, 1);
 }
 
 /// The plane's first triangle holds the points below the diagonal.
@@ -43,12 +44,12 @@ Photons plane_photons(const Scene& scene, std::uint64_t count) {
   Photons photons;
   photons.position = uniform_points(count, 1);
   for (const glm::vec3& position : photons.position) {
-    photons.sided_triangle.push_back(upper_side(scene, plane_triangle(position)));
+    photons.oriented_face.push_back(upper_side(scene, plane_triangle(position)));
     const float flux = uniform(generator) / static_cast<float>(count);
     photons.flux.emplace_back(flux, 0.8f * flux, 0.6f * flux);
   }
   photons.emitted_per_light = {count};
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 PrimaryHits plane_hits(const Scene& scene, std::size_t count) {
@@ -60,7 +61,7 @@ PrimaryHits plane_hits(const Scene& scene, std::size_t count) {
     for (const std::uint32_t i : order) {
       if (plane_triangle(points[i]) != triangle) continue;
       hits.position.push_back(points[i]);
-      hits.sided_triangle.push_back(upper_side(scene, triangle));
+      hits.oriented_face.push_back(upper_side(scene, triangle));
       hits.pixel.push_back(i);
     }
   }
@@ -123,7 +124,7 @@ NeighbourGroups default_groups(const Scene& scene, const Photons& photons, doubl
 }
 
 PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups) {
-  std::vector<std::uint32_t> maps = hits.sided_triangle;
+  std::vector<std::uint32_t> maps = hits.oriented_face;
   if (!groups.patches.empty()) {
     for (std::uint32_t& map : maps) map = groups.patches.map_of[map];
   }

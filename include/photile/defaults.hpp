@@ -87,10 +87,10 @@ inline constexpr double weight_of_parents = 3;
 /// Shadow rays between points of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
-inline constexpr float sight_lift = 0x1p-9f, sight_left_out = 0x1p-5f;
+inline constexpr float sight_lift = 0x1p-9f, visibility_left_out = 0x1p-5f;
 /// Rays from a hit to the photons of its estimate are offset from the surface by this part of the
 /// radius.
-inline constexpr float photon_sight_lift = 0x1p-4f;
+inline constexpr float photon_ray_offset = 0x1p-4f;
 
 // Glass
 /// Share of a pixel's sample from which on reflection and refraction are both followed. Glass seen
@@ -142,7 +142,8 @@ inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that n
 /// Bytes that a process sends in one round of an exchange, at most: buffers for more would lie
 /// beside the photons.
 inline constexpr std::uint64_t exchange_round_bytes = std::uint64_t{1} << 24;
-inline constexpr int rank_patience = 120;  ///< seconds without a sign of a rank, after which all end
+inline constexpr int rank_patience =
+    120;  ///< seconds without a sign of a rank, after which all end
 
 // Validation: readings whose noise leaves room for the tolerance of 1%
 inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds

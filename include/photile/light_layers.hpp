@@ -66,7 +66,7 @@ struct LightLayers {
 
 /// What becomes of the lights' layers: each is multiplied by a number and added to another. Of
 /// hundreds of patches of a sky one layer is left, which costs a film as much as one light.
-struct LightPooling {
+struct LayerMixdown {
   std::vector<std::string> layers;      ///< of the film
   std::vector<std::uint32_t> layer_of;  ///< per layer of the scene: into `layers`
   std::vector<float> scale;             ///< per layer of the scene

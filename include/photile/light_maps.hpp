@@ -160,7 +160,7 @@ class LightMaps {
   /// The nodes around a point of an opaque surface. Thread-safe between fills. Where nodes are not
   /// valued yet it returns false, and the nodes of the finest level that is there; the first is
   /// `none` where no level is.
-  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend,
+  bool find(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend,
             int levels = all_rounds) const;
 
   /// Standard error of the light of all lights between nodes, relative; 0 where the source does not
@@ -174,7 +174,7 @@ class LightMaps {
   /// The point of the surface that a node stands for.
   struct NodePoint {
     glm::vec3 position;  ///< metres
-    std::uint32_t sided_triangle;
+    std::uint32_t oriented_face;
   };
   const NodePoint& point(std::uint32_t node) const;
 

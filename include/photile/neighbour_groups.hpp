@@ -1,4 +1,4 @@
-// Neighbour groups: which sided triangles share photons (Graglia et al. 2012, section 2.1), and
+// Neighbour groups: which oriented faces share photons (Graglia et al. 2012, section 2.1), and
 // patches of them that share one map, so that a photon on fine triangles does not enter dozens of
 // maps.
 #pragma once
@@ -30,19 +30,19 @@ inline constexpr std::array all_map_modes = {MapMode::naive, MapMode::triangle, 
                                              MapMode::automatic};
 
 /// Triangles in disjoint sets. Patch p owns two maps: map 2 p holds the photons of its members,
-/// map 2 p + 1 those of the members' other sides. Without patches each sided triangle s owns map s.
+/// map 2 p + 1 those of the members' other sides. Without patches each oriented face s owns map s.
 struct Patches {
-  std::vector<std::uint32_t> map_of;    ///< per sided triangle; empty: every triangle for itself
+  std::vector<std::uint32_t> map_of;    ///< per oriented face; empty: every triangle for itself
   std::vector<std::uint32_t> first_of;  ///< members of patch p: members[first_of[p] ..)
-  std::vector<std::uint32_t> members;   ///< sided triangles, ascending within a patch
+  std::vector<std::uint32_t> members;   ///< oriented faces, ascending within a patch
 
   bool empty() const { return map_of.empty(); }
   std::size_t count() const { return first_of.empty() ? 0 : first_of.size() - 1; }
   std::span<const std::uint32_t> of(std::size_t patch) const {
     return {members.data() + first_of[patch], members.data() + first_of[patch + 1]};
   }
-  std::uint32_t map(std::uint32_t sided_triangle) const {
-    return empty() ? sided_triangle : map_of[sided_triangle];
+  std::uint32_t map(std::uint32_t oriented_face) const {
+    return empty() ? oriented_face : map_of[oriented_face];
   }
   std::uint64_t bytes() const {
     return (map_of.size() + first_of.size() + members.size()) * sizeof(std::uint32_t);
@@ -61,9 +61,9 @@ struct NeighbourGroupParameters {
   double angle_degrees = defaults::group_angle_degrees;  ///< largest angle between their normals
 };
 
-/// Groups in compressed sparse rows: the maps that photons of sided triangle s may have to enter
+/// Groups in compressed sparse rows: the maps that photons of oriented face s may have to enter
 /// are members[offsets[s] .. offsets[s + 1]), ascending, its own map among them. Without patches a
-/// map is a sided triangle, and the relation is symmetric.
+/// map is an oriented face, and the relation is symmetric.
 struct NeighbourGroups {
   std::vector<std::uint64_t> offsets;  ///< size 2 * triangles + 1
   std::vector<std::uint32_t> members;
@@ -71,8 +71,8 @@ struct NeighbourGroups {
   double radius = 0;
   double angle_degrees = 0;
 
-  std::span<const std::uint32_t> of(std::uint32_t sided_triangle) const {
-    return {members.data() + offsets[sided_triangle], members.data() + offsets[sided_triangle + 1]};
+  std::span<const std::uint32_t> of(std::uint32_t oriented_face) const {
+    return {members.data() + offsets[oriented_face], members.data() + offsets[oriented_face + 1]};
   }
   std::uint64_t bytes() const {
     return offsets.size() * sizeof(offsets[0]) + members.size() * sizeof(members[0]) +
@@ -80,11 +80,11 @@ struct NeighbourGroups {
   }
 };
 
-/// For each sided triangle all sided triangles at most `radius` away (exact triangle-triangle
+/// For each oriented face all oriented faces at most `radius` away (exact triangle-triangle
 /// distance, Eberly) whose normals differ by at most the angle. A bounding volume hierarchy finds
 /// the candidates; work is shared by TBB. The result does not depend on the number of threads.
 /// Errors: UsageError when the radius is not positive and finite or the angle is outside [0, 180].
-///   landed   per sided triangle: 1 where photons are that need a group; others get an empty one.
+///   landed   per oriented face: 1 where photons are that need a group; others get an empty one.
 ///            Empty: all get theirs
 NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
@@ -108,7 +108,7 @@ NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const 
 
 /// Which photons will be entered in maps by groups.
 enum class MapUsers {
-  these_photons,  ///< those the groups are made for: sided triangles without any get empty groups
+  these_photons,  ///< those the groups are made for: oriented faces without any get empty groups
   any_photons     ///< others besides, wherever they land
 };
 
@@ -119,7 +119,7 @@ NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapM
                                 Progress& progress = Progress::none(),
                                 MapUsers users = MapUsers::these_photons);
 
-/// Groups of one: every map holds the photons of its own sided triangle only (figure 1 of the
+/// Groups of one: every map holds the photons of its own oriented face only (figure 1 of the
 /// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.
 NeighbourGroups naive_groups(const Scene& scene);
 

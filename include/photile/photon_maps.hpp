@@ -1,4 +1,4 @@
-// Photon maps on the device: one 2D uniform grid per sided triangle (Graglia et al. 2012,
+// Photon maps on the device: one 2D uniform grid per oriented face (Graglia et al. 2012,
 // section 2.2) or patch.
 #pragma once
 
@@ -45,7 +45,7 @@ const MapStore& store_of(const PhotonMaps& maps);
 PhotonMaps maps_in(std::unique_ptr<MapStore> store);
 }  // namespace maps
 
-/// Photon maps of every sided triangle, or of patches of them (NeighbourGroups::patches). A photon
+/// Photon maps of every oriented face, or of patches of them (NeighbourGroups::patches). A photon
 /// is entered in the maps of its group that lie within the radius of the photon itself. Build is
 /// deterministic: the same input gives the same bits on every run, device thread count and CPU
 /// runtime.
@@ -70,8 +70,8 @@ class PhotonMaps {
   const PhotonMapStatistics& statistics() const;
   const PhotonMapParameters& parameters() const;
   Device& device() const;
-  /// Per sided triangle: the map that serves it, `none` where no photon comes near. Empty where
-  /// that is the sided triangle itself.
+  /// Per oriented face: the map that serves it, `none` where no photon comes near. Empty where
+  /// that is the oriented face itself.
   std::span<const std::uint32_t> map_of() const;
 
  private:

@@ -20,18 +20,18 @@ namespace photile {
 struct PhotonsOfAll {
   Communicator* processes = nullptr;  ///< that hold them
   std::uint64_t count = 0;
-  std::vector<std::uint32_t> landed;  ///< per sided triangle: photons there
+  std::vector<std::uint32_t> landed;  ///< per oriented face: photons there
   /// Positions of as many as groups::max_subsample, spread evenly, or of all where they are fewer.
   std::vector<glm::vec3> spread;
-  /// Every n-th, by which groups::PhotonSample judges patches, and their sided triangles.
+  /// Every n-th, by which groups::PhotonSample judges patches, and their oriented faces.
   std::vector<glm::vec3> sample;
   std::vector<std::uint32_t> sample_triangle;
-  /// Per sided triangle: 1 where its photons are all here, and no other process answers for them.
+  /// Per oriented face: 1 where its photons are all here, and no other process answers for them.
   /// Empty before photons are where their maps are.
   std::vector<std::uint8_t> own;
 };
 
-/// Photons in the order of their sided triangles (stable: within one in the order light, path,
+/// Photons in the order of their oriented faces (stable: within one in the order light, path,
 /// bounce). Which arrays are filled depends on SceneNeeds.
 struct Photons {
   std::vector<glm::vec3> position;  ///< metres, on the triangle
@@ -40,9 +40,9 @@ struct Photons {
   std::vector<glm::vec3> flux;
   std::vector<glm::vec3> incoming;   ///< unit, towards where it came from; empty unless glossy
   std::vector<std::uint16_t> light;  ///< layer, into LightGroups::groups; empty for one alone
-  std::vector<std::uint32_t> sided_triangle;
+  std::vector<std::uint32_t> oriented_face;
 
-  /// Photons of sided triangle s are [first_of[s], first_of[s + 1]). Size 2 * triangles + 1.
+  /// Photons of oriented face s are [first_of[s], first_of[s + 1]). Size 2 * triangles + 1.
   std::vector<std::uint32_t> first_of;
   std::vector<std::uint64_t> emitted_per_light;  ///< paths started
 
@@ -56,9 +56,9 @@ struct Photons {
   std::uint64_t bytes() const;
 };
 
-/// Photons in any order (`first_of` ignored) brought into the order of their sided triangles by a
+/// Photons in any order (`first_of` ignored) brought into the order of their oriented faces by a
 /// stable counting sort; fills `first_of`.
-Photons sort_by_sided_triangle(Photons photons, std::size_t sided_triangle_count);
+Photons sort_by_oriented_face(Photons photons, std::size_t oriented_face_count);
 
 /// The photons of several runs of paths as if one process had traced them: those of each sided
 /// triangle in the order of the runs. All arrays that one run has, all have.

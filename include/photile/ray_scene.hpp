@@ -48,7 +48,7 @@ struct HitLobe {
 /// photon map, then along a space-filling curve, so that neighbours in memory share a map.
 struct PrimaryHits {
   std::vector<glm::vec3> position;  ///< metres
-  std::vector<std::uint32_t> sided_triangle;
+  std::vector<std::uint32_t> oriented_face;
   std::vector<std::uint32_t> pixel;       ///< y * width + x
   std::vector<glm::vec3> throughput;      ///< what the hit's radiance counts in its pixel
   std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
@@ -107,8 +107,8 @@ struct PrimaryHitBatch {
 /// carries weight 1 / samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel
 /// means. Depends on the scene, camera, parameters and seed only, not on how rows are split or on
 /// threads.
-///   map_of   map of each sided triangle (PhotonMaps::map_of), for the order of hits; empty
-///            where a sided triangle is the map itself
+///   map_of   map of each oriented face (PhotonMaps::map_of), for the order of hits; empty
+///            where an oriented face is the map itself
 PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    const PrimaryHitParameters& parameters, int first_row,
                                    int last_row, std::span<const std::uint32_t> map_of = {});

@@ -229,9 +229,9 @@ class SceneRenderer {
 
   /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
   /// the maps each time.
-  ///   pooling   of its layers, before they take memory; null = each for itself
+  ///   mixdown   of its layers, before they take memory; null = each for itself
   RenderResult render(const Camera& camera, const Film& film, Progress& progress = Progress::none(),
-                      const LightPooling* pooling = nullptr);
+                      const LayerMixdown* mixdown = nullptr);
 
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
   /// glossy surfaces as if they were matt (host/renderer/cache/light_map_frames.hpp). For
@@ -262,7 +262,7 @@ class SceneRenderer {
   /// glossy lobe.
   RenderResult render_reflections(const Camera& camera, const Film& film,
                                   Progress& progress = Progress::none(),
-                                  const LightPooling* pooling = nullptr);
+                                  const LayerMixdown* mixdown = nullptr);
 
  private:
   struct Impl;

@@ -226,7 +226,7 @@ struct Material {
   float normal_scale = 1.0f;  ///< of red and green
 
   bool glossy() const { return interaction == Interaction::opaque && specular != glm::vec3(0.0f); }
-  bool has_holes() const { return opacity < 1.0f || opacity_texture != none; }
+  bool has_cutouts() const { return opacity < 1.0f || opacity_texture != none; }
   bool textured() const {
     return diffuse_texture != none || metallic_roughness != none || opacity_texture != none ||
            normal_texture != none;
@@ -373,14 +373,14 @@ struct Scene {
   }
 };
 
-/// A sided triangle is the unit of photon maps: 2 * triangle + side.
-inline constexpr std::uint32_t sided(std::uint32_t triangle, std::uint32_t side) {
+/// An oriented face is the unit of photon maps: 2 * triangle + side.
+inline constexpr std::uint32_t oriented(std::uint32_t triangle, std::uint32_t side) {
   return 2 * triangle + side;
 }
-inline constexpr std::uint32_t triangle_of(std::uint32_t sided_triangle) {
-  return sided_triangle >> 1;
+inline constexpr std::uint32_t triangle_of(std::uint32_t oriented_face) {
+  return oriented_face >> 1;
 }
-inline constexpr std::uint32_t side_of(std::uint32_t sided_triangle) { return sided_triangle & 1; }
+inline constexpr std::uint32_t side_of(std::uint32_t oriented_face) { return oriented_face & 1; }
 
 /// A point, and a direction, of the file's world in the scene's own coordinates, and back.
 glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world);
@@ -392,8 +392,8 @@ glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction);
 Camera in_world(const Scene& scene, Camera camera);
 Camera in_scene(const Scene& scene, Camera camera);
 
-/// Unit geometric normal of a sided triangle, computed in double precision.
-glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle);
+/// Unit geometric normal of an oriented face, computed in double precision.
+glm::dvec3 face_normal(const Scene& scene, std::uint32_t oriented_face);
 
 /// Area of a triangle in square metres, in double precision.
 double triangle_area(const Scene& scene, std::uint32_t triangle);
@@ -460,7 +460,7 @@ struct SceneNeeds {
   bool smooth_shading = false;
   bool textures = false;        ///< some material has a texture
   bool specular_paths = false;  ///< some material is a mirror or glass
-  bool see_through = false;  ///< some material is thin glass or has holes, which shadow rays pass
+  bool see_through = false;  ///< some material is thin glass or has cutouts, which shadow rays pass
   std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
 
   /// Whether photons and estimates tell lights apart.

@@ -15,12 +15,12 @@ namespace photile {
 /// A part of a lit triangle that no photon reaches.
 struct DarkPart {
   std::array<glm::vec3, 3> corner;
-  std::uint32_t sided_triangle;
+  std::uint32_t oriented_face;
 };
 
 /// What the area of a disc clipped to the surface needs to know of a scene.
 ///
-/// A *sheet* is a set of sided triangles that connect over edges which fold by no more than the
+/// A *sheet* is a set of oriented faces that connect over edges which fold by no more than the
 /// angle of the neighbour groups; coplanar pieces that touch connect, too. Light reaches a sheet as
 /// a whole or not at all: the inside of a thin plate is a sheet on which no photon lands. So where
 /// photons are to be expected and next to none landed (behind a cabinet, above a ceiling),
@@ -36,25 +36,25 @@ struct DarkPart {
 /// A lit sheet may lie under others for the most part: the wall behind tiles is lit in the joints.
 /// Its triangles count with the fraction of their area that lies open, but for hits on that sheet.
 ///
-/// *Dark parts* of lit triangles count as holes in them, but for hits that lie in a dark part:
-/// those are seen, and dark.
+/// *Unlit regions* of lit triangles count as holes in them, but for hits that lie in an unlit
+/// region: those are seen, and dark.
 struct SurfaceIndex {
   double radius = 0;         ///< metres: no disc is larger
   double angle_degrees = 0;  ///< largest angle between the normals of neighbours
 
-  std::vector<std::uint32_t> original;  ///< per sided triangle: the first that coincides with it
+  std::vector<std::uint32_t> original;  ///< per oriented face: the first that coincides with it
   /// Per triangle: its facet where hits look at the facet's border, else PHOTILE_NO_FACET.
   std::vector<std::uint32_t> facet;
-  std::vector<std::uint32_t> sheet;  ///< per sided triangle
-  std::vector<glm::vec3> normal;     ///< per sided triangle, unit
-  std::vector<std::uint8_t> dark;    ///< per sided triangle: 1 where next to no photon lands
-  std::vector<float> exposure;       ///< per sided triangle, in [0, 1]
+  std::vector<std::uint32_t> sheet;  ///< per oriented face
+  std::vector<glm::vec3> normal;     ///< per oriented face, unit
+  std::vector<std::uint8_t> dark;    ///< per oriented face: 1 where next to no photon lands
+  std::vector<float> exposure;       ///< per oriented face, in [0, 1]
   std::uint32_t sheets = 0;
-  std::vector<DarkPart> dark_parts;            ///< in the order of their sided triangles
-  std::vector<std::uint32_t> first_dark_part;  ///< per sided triangle, and their number; or empty
+  std::vector<DarkPart> unlit_regions;            ///< in the order of their oriented faces
+  std::vector<std::uint32_t> first_unlit_region;  ///< per oriented face, and their number; or empty
 
-  /// The sheet of a hit: of its triangle, or `sheets`, which stands for all dark parts.
-  std::uint32_t sheet_at(std::uint32_t sided_triangle, const glm::vec3& position) const;
+  /// The sheet of a hit: of its triangle, or `sheets`, which stands for all unlit regions.
+  std::uint32_t sheet_at(std::uint32_t oriented_face, const glm::vec3& position) const;
 
   /// Border edges of facets, and triangles near other facets of similar normal, in a tree whose
   /// root is node 0; no node where there are none.
@@ -67,24 +67,24 @@ struct SurfaceIndex {
 /// Finds sheets and facets and builds the tree. The result does not depend on the number of
 /// threads.
 ///   radius          metres, > 0: of the largest disc
-///   landed          per sided triangle: photons that landed there; what faces lit surface unlit
+///   landed          per oriented face: photons that landed there; what faces lit surface unlit
 ///                   covers it
 ///   angle_degrees   largest angle between normals of neighbours, in [0, 180]
 SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint32_t>& landed,
                            double radius, double angle_degrees);
 
 /// Indexes the surface and finds its unlit regions.
-///   photons   sorted by sided triangle; where several processes hold them, those of the maps that
+///   photons   sorted by oriented face; where several processes hold them, those of the maps that
 ///             are theirs, and all call this
 SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double radius,
                            double angle_degrees);
 
-/// Photons on each sided triangle, those of other processes among them (Photons::of_all).
+/// Photons on each oriented face, those of other processes among them (Photons::of_all).
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons);
 
 /// Per sheet: 1 where a photon landed that is not one of the few on dark triangles, else 0; and 1
-/// for the dark parts.
-///   landed   per sided triangle: photons that landed there
+/// for the unlit regions.
+///   landed   per oriented face: photons that landed there
 std::vector<std::uint8_t> lit_sheets(const SurfaceIndex& surface,
                                      const std::vector<std::uint32_t>& landed);
 

@@ -6,12 +6,12 @@
 // One work-item per photon of a page; arguments as members of EnteringPhotons.
 // After: bit m of entered[i] says whether photon i enters its m-th candidate.
 __kernel void find_entered(const PhotilePhotonPage page, __global const float* position,
-                           __global const uint* sided_triangle, __global const uint* map_of,
+                           __global const uint* oriented_face, __global const uint* map_of,
                            __global const uint* list, __global const uint* list_offsets,
                            __global const uint* list_members,
                            __global const PhotileMapShape* shapes, __global const float* corners,
                            __global uint* entered) {
-  const EnteringPhotons photons = {position,        sided_triangle,    map_of,       list,
+  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
@@ -28,18 +28,18 @@ __kernel void find_entered(const PhotilePhotonPage page, __global const float* p
 
 // One work-item per photon of a page.
 //   map_count           per map; zero before the first page
-//   normal, map_mixed   with PATCHES: 3 floats per sided triangle; per map, zero before the first
+//   normal, map_mixed   with PATCHES: 3 floats per oriented face; per map, zero before the first
 //   page
 // After: map_count holds the photons of this page, too; map_mixed is 1 for maps with a photon that
 // need not agree with every triangle of the map.
 __kernel void count_photons(const PhotilePhotonPage page, __global const float* position,
-                            __global const uint* sided_triangle, __global const uint* map_of,
+                            __global const uint* oriented_face, __global const uint* map_of,
                             __global const uint* list, __global const uint* list_offsets,
                             __global const uint* list_members,
                             __global const PhotileMapShape* shapes, __global const float* corners,
                             __global const uint* entered, __global uint* map_count,
                             __global const float* normal, __global uint* map_mixed) {
-  const EnteringPhotons photons = {position,        sided_triangle,    map_of,       list,
+  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
@@ -52,7 +52,7 @@ __kernel void count_photons(const PhotilePhotonPage page, __global const float* 
       if (PATCHES) {
         __global const PhotileMapShape* shape = &shapes[map >> 1];
         const float3 axis = (float3)(shape->axis_x, shape->axis_y, shape->axis_z);
-        const float cosine = dot3(vload3(sided_triangle[i], normal), axis);
+        const float cosine = dot3(vload3(oriented_face[i], normal), axis);
         if ((map & 1u ? -cosine : cosine) < shape->certain_cosine) atomic_or(&map_mixed[map], 1u);
       }
     }

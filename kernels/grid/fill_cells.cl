@@ -13,13 +13,13 @@
 
 // One work-item per photon. Before: cell_start is zero. After: photons per cell.
 __kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange maps,
-                          __global const float* position, __global const uint* sided_triangle,
+                          __global const float* position, __global const uint* oriented_face,
                           __global const uint* map_of, __global const uint* list,
                           __global const uint* list_offsets, __global const uint* list_members,
                           __global const PhotileMapShape* shapes, __global const float* corners,
                           __global const uint* entered, __global const PhotileGrid* grids,
                           __global uint* cell_start) {
-  const EnteringPhotons photons = {position,        sided_triangle,    map_of,       list,
+  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
@@ -40,13 +40,13 @@ __kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange ma
 // After: entry_photon holds the photons of each cell in the order in which work-items came
 // (sort_cells makes it stable); once all pages are scattered, cell_start[c] is where cell c starts.
 __kernel void scatter(const PhotilePhotonPage page, const PhotileMapRange maps,
-                      __global const float* position, __global const uint* sided_triangle,
+                      __global const float* position, __global const uint* oriented_face,
                       __global const uint* map_of, __global const uint* list,
                       __global const uint* list_offsets, __global const uint* list_members,
                       __global const PhotileMapShape* shapes, __global const float* corners,
                       __global const uint* entered, __global const PhotileGrid* grids,
                       __global uint* cell_start, __global uint* entry_photon) {
-  const EnteringPhotons photons = {position,        sided_triangle,    map_of,       list,
+  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {

@@ -30,15 +30,15 @@ __kernel void gather_entries(const PhotilePhotonPage page, uint entry_count, uin
 }
 
 // For pages with a map whose queries compare normals.
-//   sided_triangle   per photon
-//   normal           3 floats per sided triangle
+//   oriented_face   per photon
+//   normal           3 floats per oriented face
 __kernel void gather_normals(const PhotilePhotonPage page, uint entry_count, uint entry_stride,
-                             __global const uint* entry_photon, __global const uint* sided_triangle,
+                             __global const uint* entry_photon, __global const uint* oriented_face,
                              __global const float* normal, __global float* entry_normal) {
   for (uint i = get_global_id(0); i < entry_count; i += get_global_size(0)) {
     const uint photon = entry_photon[i] - page.first_photon;
     if (photon >= page.photon_count) continue;
-    const uint s = sided_triangle[photon];
+    const uint s = oriented_face[photon];
     for (uint c = 0; c < 3; ++c) entry_normal[c * entry_stride + i] = normal[3 * s + c];
   }
 }

@@ -11,7 +11,7 @@
 //   first_map        the page's first map
 //   shapes           one per pair of maps
 //   map_count        photons per map, from count_photons
-//   map_crowding     per map: density around a photon over the mean density of the surface
+//   map_density_ratio     per map: density around a photon over the mean density of the surface
 //   map_mixed        per map, from count_photons; with PATCHES
 //   radius           metres
 //   photons_per_cell aimed at
@@ -21,7 +21,7 @@
 // The cell size aims at photons_per_cell where photons are, on the surface grown by the radius (its
 // Minkowski sum with a disc), which is where photons of the map can be.
 __kernel void size_grids(uint map_total, uint first_map, __global const PhotileMapShape* shapes,
-                         __global const uint* map_count, __global const float* map_crowding,
+                         __global const uint* map_count, __global const float* map_density_ratio,
                          __global const uint* map_mixed, float radius, float photons_per_cell,
                          __global PhotileGrid* grids, __global uint* cell_total) {
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
@@ -40,7 +40,7 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     // Infinite where the radius is near the root of what a float holds; a map of photons must not
     // be without cells.
     const float cell_area =
-        fmin(area * photons_per_cell / ((float)count * map_crowding[map]), FLT_MAX);
+        fmin(area * photons_per_cell / ((float)count * map_density_ratio[map]), FLT_MAX);
     const float cell_width = fmax(sqrt(cell_area / (float)PHOTILE_CELL_ASPECT),
                                   fmax(width_u, width_v) / (float)(MAX_CELLS_PER_SIDE - 1));
     const float cell_height = (float)PHOTILE_CELL_ASPECT * cell_width;

@@ -68,12 +68,12 @@ class Photons:
     @property
     def triangle(self) -> NDArray[np.uint32]:
         """(n,) rows of ``scene.triangles``."""
-        return self._core.sided_triangle >> np.uint32(1)
+        return self._core.oriented_face >> np.uint32(1)
 
     @property
     def side(self) -> NDArray[np.uint8]:
         """(n,) 0 or 1: the side of the triangle; 0 is that of the stored corners' normal."""
-        return (self._core.sided_triangle & np.uint32(1)).astype(np.uint8)
+        return (self._core.oriented_face & np.uint32(1)).astype(np.uint8)
 
     @property
     def normal(self) -> NDArray[np.float32]:

@@ -46,7 +46,7 @@ py::object normals_of(const PhotonTracerResult& traced, const Scene& scene) {
     for (std::uint32_t s = 0; s + 1 < photons.first_of.size(); ++s) {
       if (photons.first_of[s] == photons.first_of[s + 1]) continue;
       std::fill(normals.begin() + photons.first_of[s], normals.begin() + photons.first_of[s + 1],
-                glm::vec3(sided_normal(scene, s)));
+                glm::vec3(face_normal(scene, s)));
     }
   }
   const auto count = static_cast<py::ssize_t>(normals.size());
@@ -197,9 +197,9 @@ void define_photons(py::module_& module) {
                              [photons_of](const py::object& o) {
                                return view_rows<std::uint16_t>(o, photons_of(o).light);
                              })
-      .def_property_readonly("sided_triangle",
+      .def_property_readonly("oriented_face",
                              [photons_of](const py::object& o) {
-                               return view_rows<std::uint32_t>(o, photons_of(o).sided_triangle);
+                               return view_rows<std::uint32_t>(o, photons_of(o).oriented_face);
                              })
       .def("normals", &normals_of)
       .def_property_readonly("emitted_per_light",

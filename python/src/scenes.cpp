@@ -242,7 +242,7 @@ py::object triangle_normals(const Scene& scene) {
   {
     const Unlocked unlocked;
     for (std::uint32_t t = 0; t < normals.size(); ++t) {
-      normals[t] = sided_normal(scene, sided(t, scene.front_side[t]));
+      normals[t] = face_normal(scene, oriented(t, scene.front_side[t]));
     }
   }
   const auto count = static_cast<py::ssize_t>(normals.size());

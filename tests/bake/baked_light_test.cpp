@@ -66,7 +66,7 @@ struct BakedRoom {
   }
 
   RayScene rays;
-  cache::NodeSight sight;
+  cache::NodeVisibility sight;
   bake::BakedLight baked;
   std::vector<glm::vec3> texels;
 };
@@ -84,7 +84,7 @@ TEST_CASE("Baked textures hold the irradiance of both sides at points of the sur
   const double bound = 2 * 2 * 3 * 4.25 * 0.04 * 0.04 / 8;
   const PrimaryHits points = points_on(scene, 5);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t side = points.sided_triangle[i];
+    const std::uint32_t side = points.oriented_face[i];
     REQUIRE(std::abs(room.read(scene, points.position[i], side) -
                      gentle(points.position[i], side)) < bound + 1e-3);
   }
@@ -105,10 +105,9 @@ TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it"
   const PrimaryHits points = points_on(scene, 60);
   std::size_t beside = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t side = points.sided_triangle[i];
+    const std::uint32_t side = points.oriented_face[i];
     const glm::vec3& p = points.position[i];
-    if (triangle_of(side) > 1 || sided_normal(scene, side).z < 0)
-      continue;  // the floor, from above
+    if (triangle_of(side) > 1 || face_normal(scene, side).z < 0) continue;  // the floor, from above
     const float away =
         std::max(std::max(0.313f - p.x, p.x - 0.687f), std::max(0.313f - p.y, p.y - 0.687f));
     if (away < 1e-4f) continue;
@@ -151,9 +150,9 @@ TEST_CASE("Lookups beside a plate a little above the floor take nothing of the s
   const PrimaryHits points = points_on(scene, 60);
   std::size_t beside = 0, deep = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t side = points.sided_triangle[i];
+    const std::uint32_t side = points.oriented_face[i];
     const glm::vec3& p = points.position[i];
-    if (triangle_of(side) > 1 || sided_normal(scene, side).z < 0) continue;
+    if (triangle_of(side) > 1 || face_normal(scene, side).z < 0) continue;
     const float away =
         std::max(std::max(0.313f - p.x, p.x - 0.687f), std::max(0.313f - p.y, p.y - 0.687f));
     CAPTURE(p.x, p.y);
@@ -180,7 +179,7 @@ TEST_CASE("The brighter side of a triangle is baked, and the other where any lig
   const auto backs =
       sides_under([](const glm::vec3&, std::uint32_t s) { return side_of(s) == 1 ? 1.0f : 0.0f; });
   REQUIRE(backs.size() == scene.triangle_count());
-  for (std::uint32_t t = 0; t < backs.size(); ++t) CHECK(backs[t] == sided(t, 1));
+  for (std::uint32_t t = 0; t < backs.size(); ++t) CHECK(backs[t] == oriented(t, 1));
   CHECK(sides_under(gentle).size() == 2 * std::size_t{scene.triangle_count()});
 }
 
@@ -199,7 +198,7 @@ TEST_CASE("Sides that neither light nor an eye comes to are not open") {
     for (std::uint32_t side = 4; side < open.size(); ++side) {
       const glm::dvec3 corner(scene.corners(triangle_of(side))[0]);
       const bool inwards =
-          glm::dot(sided_normal(scene, side), glm::dvec3(0.5, 0.5, 0.25) - corner) > 0;
+          glm::dot(face_normal(scene, side), glm::dvec3(0.5, 0.5, 0.25) - corner) > 0;
       count[inwards] += open[side];
     }
     return count;
@@ -224,7 +223,7 @@ TEST_CASE("A side that nothing comes to is open where it goes on from one that s
   scene.cameras.clear();
   const std::vector<std::uint8_t> open = bake::open_sides(RayScene(scene));
   for (std::uint32_t side = 0; side < 4; ++side) {
-    CHECK(open[side] == (sided_normal(scene, side).z > 0 ? 1 : 0));
+    CHECK(open[side] == (face_normal(scene, side).z > 0 ? 1 : 0));
   }
 }
 

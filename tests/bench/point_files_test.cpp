@@ -200,7 +200,7 @@ TEST_CASE("block samples hold every n-th block, and those of every multiple of n
   std::size_t different = 0;
   for (std::size_t i = 0; i < half.index.size(); ++i) {
     different += half.hits.position[i] != hits.position[half.index[i]];
-    different += half.hits.sided_triangle[i] != hits.sided_triangle[half.index[i]];
+    different += half.hits.oriented_face[i] != hits.oriented_face[half.index[i]];
   }
   CHECK(different == 0);
 }
@@ -227,7 +227,7 @@ double area(const Scene& scene) {
 }
 
 glm::dvec3 front_normal(const Scene& scene, std::uint32_t triangle) {
-  return sided_normal(scene, sided(triangle, scene.front_side[triangle]));
+  return face_normal(scene, oriented(triangle, scene.front_side[triangle]));
 }
 
 TEST_CASE("subdividing keeps area, fronts, materials, lights and textures") {

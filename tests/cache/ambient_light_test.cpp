@@ -49,8 +49,8 @@ TEST_CASE("Light that is the same on all surfaces is the same in all space") {
 
 TEST_CASE("Surface that faces up gets the light of surface that does") {
   const Scene scene = with_one_lamp(furnished_room(2));
-  const LitSpace space([&](const glm::vec3&, std::uint32_t sided_triangle) {
-    return sided_normal(scene, sided_triangle).z > 0.5 ? 5.0f : 1.0f;
+  const LitSpace space([&](const glm::vec3&, std::uint32_t oriented_face) {
+    return face_normal(scene, oriented_face).z > 0.5 ? 5.0f : 1.0f;
   });
   CHECK(space.ambient.irradiance({2, 2, 0.5f}, upwards).y == Approx(5.0f).epsilon(0.1));
   CHECK(space.ambient.irradiance({2, 2, 0.5f}, -upwards).y == Approx(1.0f).epsilon(0.1));

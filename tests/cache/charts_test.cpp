@@ -30,7 +30,7 @@ TEST_CASE("A wall is one chart a side, however finely it is cut") {
     const Charts charts(box, 0.04, 60);
     CHECK(charts.size() == 12);  // six walls, inside and outside
     for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
-      CHECK(charts.chart_of()[sided(t, 0)] != charts.chart_of()[sided(t, 1)]);
+      CHECK(charts.chart_of()[oriented(t, 0)] != charts.chart_of()[oriented(t, 1)]);
     }
   }
 }
@@ -96,7 +96,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
     const glm::dvec3 place = chart.origin + 101.0 / 8 * chart.spacing.x * chart.across +
                              40.0 / 8 * chart.spacing.y * chart.along;
     CHECK(glm::length(point_of(scene, owner) - place) < 1e-6);
-    CHECK(charts.chart_of()[sided(owner.where.triangle, owner.side)] == i);
+    CHECK(charts.chart_of()[oriented(owner.where.triangle, owner.side)] == i);
   }
 }
 

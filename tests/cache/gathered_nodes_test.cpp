@@ -43,7 +43,7 @@ struct GatheredMaps {
   /// Illuminance of all lights at a hit.
   double lux(const PrimaryHits& hits, std::size_t hit) const {
     NodeBlend blend;
-    REQUIRE(maps.find(hits.sided_triangle[hit], hits.position[hit], blend));
+    REQUIRE(maps.find(hits.oriented_face[hit], hits.position[hit], blend));
     double sum = 0;
     for (std::size_t i = 0; i < blend.node.size(); ++i) {
       estimate::for_each_estimate(maps.values(), blend.node[i], parameters.powers.size(),
@@ -73,7 +73,7 @@ constexpr cache::GatheredNodesParameters few_rays{{32, 32}, {16, 16}, 1e-4};
 std::array<PrimaryHits, 2> halves(const PrimaryHits& hits) {
   std::array<PrimaryHits, 2> parts;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    add_hit(parts[hits.position[i].x < 2.0f ? 0 : 1], hits.position[i], hits.sided_triangle[i]);
+    add_hit(parts[hits.position[i].x < 2.0f ? 0 : 1], hits.position[i], hits.oriented_face[i]);
   }
   return parts;
 }
@@ -107,8 +107,8 @@ TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges amo
   PrimaryHits inside;
   const PrimaryHits all = points_on(box, 12);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (side_of(all.sided_triangle[i]) == box.front_side[triangle_of(all.sided_triangle[i])]) {
-      add_hit(inside, all.position[i], all.sided_triangle[i]);
+    if (side_of(all.oriented_face[i]) == box.front_side[triangle_of(all.oriented_face[i])]) {
+      add_hit(inside, all.position[i], all.oriented_face[i]);
     }
   }
   maps.fill(inside);
@@ -128,9 +128,9 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   PrimaryHits floor;
   const PrimaryHits all = points_on(plain.scene, 14);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::uint32_t triangle = triangle_of(all.sided_triangle[i]);
-    if (triangle < 8 && side_of(all.sided_triangle[i]) == plain.scene.front_side[triangle]) {
-      add_hit(floor, all.position[i], all.sided_triangle[i]);
+    const std::uint32_t triangle = triangle_of(all.oriented_face[i]);
+    if (triangle < 8 && side_of(all.oriented_face[i]) == plain.scene.front_side[triangle]) {
+      add_hit(floor, all.position[i], all.oriented_face[i]);
     }
   }
   const auto truth = [](const glm::vec3& position) {
@@ -173,9 +173,9 @@ TEST_CASE("gathered nodes: a wall is dark below the horizon of a bright lamp bes
   const PrimaryHits all = points_on(plain.scene, 60);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const glm::vec3& at = all.position[i];
-    if (triangle_of(all.sided_triangle[i]) < 2 && at.z < -0.015f && at.z > -0.2f &&
-        sided_normal(plain.scene, all.sided_triangle[i]).y < 0 && std::abs(at.x) < 0.3f) {
-      add_hit(below, at, all.sided_triangle[i]);
+    if (triangle_of(all.oriented_face[i]) < 2 && at.z < -0.015f && at.z > -0.2f &&
+        face_normal(plain.scene, all.oriented_face[i]).y < 0 && std::abs(at.x) < 0.3f) {
+      add_hit(below, at, all.oriented_face[i]);
     }
   }
   REQUIRE(below.size() > 100);

@@ -58,7 +58,7 @@ std::vector<std::uint32_t> charts_seen(const DrawnRoom& room, const Camera& came
     const auto hit = trace::intersect(room.rays, glm::vec3(camera.position), direction);
     if (!hit) return none;
     const std::uint32_t side = trace::surface_hit(room.scene, *hit, direction).side;
-    return room.maps.charts().chart_of()[sided(hit->triangle, side)];
+    return room.maps.charts().chart_of()[oriented(hit->triangle, side)];
   };
   std::vector<std::uint32_t> charts;
   for (int y = 0; y < height; ++y) {

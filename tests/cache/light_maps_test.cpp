@@ -40,7 +40,7 @@ TEST_CASE("Light maps give back light that varies linearly over a wall") {
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const double expected = light(hits.position[i], 0);
-    REQUIRE(read(maps, hits.position[i], hits.sided_triangle[i]) == Approx(expected).epsilon(1e-5));
+    REQUIRE(read(maps, hits.position[i], hits.oriented_face[i]) == Approx(expected).epsilon(1e-5));
   }
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("Between nodes curved light is off by an eighth of its second differen
   maps.fill(hits, source, Progress::none());
   const double bound = 2 * 36 * 0.04 * 0.04 / 8;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    REQUIRE(std::abs(read(maps, hits.position[i], hits.sided_triangle[i]) -
+    REQUIRE(std::abs(read(maps, hits.position[i], hits.oriented_face[i]) -
                      light(hits.position[i], 0)) <= bound + 1e-4);
   }
 }
@@ -69,7 +69,7 @@ TEST_CASE("Cells are split where light varies, down to the finest level") {
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const float x = hits.position[i].x;
-    const float value = read(maps, hits.position[i], hits.sided_triangle[i]);
+    const float value = read(maps, hits.position[i], hits.oriented_face[i]);
     if (x < 0.4099f) REQUIRE(value == Approx(1.0).epsilon(1e-5));
     if (x > 0.4201f) REQUIRE(value == Approx(10.0).epsilon(1e-5));
     REQUIRE(value >= 1.0f - 1e-5f);
@@ -99,7 +99,7 @@ TEST_CASE("What is read does not depend on what was looked at before, or on thre
   LightMaps one_by_one(room, quiet_parameters());
   for (std::size_t i = hits.size(); i-- > 0;) {
     PrimaryHits single;
-    add_hit(single, hits.position[i], hits.sided_triangle[i]);
+    add_hit(single, hits.position[i], hits.oriented_face[i]);
     one_by_one.fill(single, source, Progress::none());
   }
   CHECK(read_all(one_by_one, hits) == expected);
@@ -125,8 +125,8 @@ TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
   const PrimaryHits hits = points_on(scene, 7);
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    REQUIRE(read(maps, hits.position[i], hits.sided_triangle[i]) ==
-            Approx(light({}, hits.sided_triangle[i])).epsilon(1e-6));
+    REQUIRE(read(maps, hits.position[i], hits.oriented_face[i]) ==
+            Approx(light({}, hits.oriented_face[i])).epsilon(1e-6));
   }
 }
 
@@ -150,7 +150,7 @@ TEST_CASE("Light maps are taken in whole, and filled on as if they had never bee
   const PrimaryHits hits = points_on(floor, 60);
   PrimaryHits some;
   for (std::size_t i = 0; i < hits.size(); i += 7) {
-    if (hits.position[i].x < 0.5f) add_hit(some, hits.position[i], hits.sided_triangle[i]);
+    if (hits.position[i].x < 0.5f) add_hit(some, hits.position[i], hits.oriented_face[i]);
   }
   FormulaSource source(shadow);
   LightMaps before(floor, quiet_parameters());
@@ -254,7 +254,7 @@ TEST_CASE(
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const auto read_coarse = [&](const LightMaps& maps) {
       NodeBlend blend;
-      REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend, 1));
+      REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend, 1));
       float sum = 0;
       for (std::size_t corner = 0; corner < 4; ++corner) {
         sum += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;

@@ -15,14 +15,14 @@ namespace photile::test {
 /// One light, whose irradiance is a function of the place; counts what it was asked.
 class FormulaSource : public NodeSource {
  public:
-  using Formula = std::function<float(const glm::vec3& position, std::uint32_t sided_triangle)>;
+  using Formula = std::function<float(const glm::vec3& position, std::uint32_t oriented_face)>;
   explicit FormulaSource(Formula formula) : formula_(std::move(formula)) {}
 
   NodeValues value(const NodeBatch& batch, const Progress&) override {
     NodeValues values;
     for (std::size_t i = 0; i < batch.points.size(); ++i) {
       values.irradiance.irradiance.emplace_back(
-          formula_(batch.points.position[i], batch.points.sided_triangle[i]));
+          formula_(batch.points.position[i], batch.points.oriented_face[i]));
     }
     asked += batch.points.size();
     return values;
@@ -51,15 +51,15 @@ inline LightMapParameters quiet_parameters(double spacing = 0.04, int levels = 4
   return parameters;
 }
 
-inline void add_hit(PrimaryHits& hits, const glm::vec3& position, std::uint32_t sided_triangle) {
+inline void add_hit(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_face) {
   hits.position.push_back(position);
-  hits.sided_triangle.push_back(sided_triangle);
+  hits.oriented_face.push_back(oriented_face);
   hits.pixel.push_back(0);
   hits.throughput.emplace_back(1.0f);
   hits.diffuse_albedo.emplace_back(1.0f);
 }
 
-/// count^2 points on each sided triangle, away from its corners and edges by half a step.
+/// count^2 points on each oriented face, away from its corners and edges by half a step.
 inline PrimaryHits points_on(const Scene& scene, int count) {
   PrimaryHits hits;
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
@@ -76,9 +76,9 @@ inline PrimaryHits points_on(const Scene& scene, int count) {
 }
 
 /// What light maps say of a point; all of its nodes are valued.
-inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_t sided_triangle) {
+inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_t oriented_face) {
   NodeBlend blend;
-  if (!maps.find(sided_triangle, position, blend)) return -1.0f;
+  if (!maps.find(oriented_face, position, blend)) return -1.0f;
   float sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     sum += blend.weight[i] * maps.values().irradiance[blend.node[i]].x;
@@ -89,7 +89,7 @@ inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_
 inline std::vector<float> read_all(const LightMaps& maps, const PrimaryHits& hits) {
   std::vector<float> values;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    values.push_back(read(maps, hits.position[i], hits.sided_triangle[i]));
+    values.push_back(read(maps, hits.position[i], hits.oriented_face[i]));
   }
   return values;
 }

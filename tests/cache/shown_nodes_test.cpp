@@ -50,7 +50,7 @@ struct Floor {
   void fill(float from, float to, int levels) {
     PrimaryHits hits;
     for_points([&](float x, float y) {
-      if (x >= from && x <= to) add_hit(hits, {x, y, 0}, sided(0, 0));
+      if (x >= from && x <= to) add_hit(hits, {x, y, 0}, oriented(0, 0));
     });
     maps.fill(hits, source, Progress::none(), levels);
   }
@@ -68,7 +68,7 @@ struct Floor {
 
   NodeBlend at(float x, float y, std::vector<cache::MissingCell>* lacking = nullptr) const {
     NodeBlend blend;
-    const std::uint32_t chart = maps.charts().chart_of()[sided(0, 0)];
+    const std::uint32_t chart = maps.charts().chart_of()[oriented(0, 0)];
     const auto missing = maps.tiles().find(chart, {x, y, 0}, blend);
     if (missing && lacking) lacking->push_back(*missing);
     return blend;

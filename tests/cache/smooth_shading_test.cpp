@@ -236,7 +236,7 @@ TEST_CASE("Light by the normal is kept, taken in again and refused where it is n
     for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
       const auto corners = scene.corners(t);
       hits.position.push_back((corners[0] + corners[1] + corners[2]) / 3.0f);
-      hits.sided_triangle.push_back(sided(t, scene.front_side[t]));
+      hits.oriented_face.push_back(oriented(t, scene.front_side[t]));
     }
     return hits;
   };

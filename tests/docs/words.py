@@ -20,6 +20,8 @@ WORDS = {
     r"blotch(?:es)?": "low-frequency noise",
     r"parted glass": "path splitting",
     r"octets?": "eight-wide vectors",
+    r"sided triangles?": "oriented faces",
+    r"dark sides?": "unlit sides",
     r"node sight": "visibility",
 }
 PRIVATE = re.compile(r"\b(" + "|".join(f"(?:{word})" for word in WORDS) + r")\b", re.IGNORECASE)

@@ -14,9 +14,9 @@
 namespace photile::test {
 namespace {
 
-using Chosen = std::function<bool(const Scene&, std::uint32_t sided_triangle)>;
+using Chosen = std::function<bool(const Scene&, std::uint32_t oriented_face)>;
 
-/// Uniform points on the sided triangles chosen, together 1 lm/m2.
+/// Uniform points on the oriented faces chosen, together 1 lm/m2.
 Photons photons_on(const Scene& scene, const Chosen& chosen, std::size_t count,
                    std::uint64_t seed) {
   std::vector<std::uint32_t> sides;
@@ -35,7 +35,7 @@ Photons photons_on(const Scene& scene, const Chosen& chosen, std::size_t count,
     test::add_photon(photons, scene, test::random_point(scene, triangle_of(s), random), s, random);
   }
   photons.flux.assign(count, glm::vec3(static_cast<float>(total / static_cast<double>(count))));
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 struct Reading {
@@ -70,7 +70,7 @@ std::vector<double> readings(Reading reading) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!reading.where(points.position[i])) continue;
       hits.position.push_back(points.position[i]);
-      hits.sided_triangle.push_back(points.sided_triangle[i]);
+      hits.oriented_face.push_back(points.oriented_face[i]);
       hits.diffuse_albedo.emplace_back(0.5f);
     }
     REQUIRE(hits.position.size() > 100);
@@ -89,12 +89,12 @@ std::vector<double> readings(Reading reading) {
   return means;
 }
 
-bool upwards(const Scene& scene, std::uint32_t s) { return sided_normal(scene, s).z > 0.9; }
+bool upwards(const Scene& scene, std::uint32_t s) { return face_normal(scene, s).z > 0.9; }
 
 /// The sides of a convex body round the origin that look outwards.
 bool outwards(const Scene& scene, std::uint32_t s) {
   const auto corners = scene.corners(triangle_of(s));
-  return glm::dot(sided_normal(scene, s), glm::dvec3(corners[0] + corners[1] + corners[2])) > 0;
+  return glm::dot(face_normal(scene, s), glm::dvec3(corners[0] + corners[1] + corners[2])) > 0;
 }
 
 bool top(const Scene& scene, std::uint32_t s) { return upwards(scene, s) && outwards(scene, s); }
@@ -191,7 +191,7 @@ TEST_CASE("tiles on a floor read 1, in their middle and at the border of the flo
     const auto lands = [&](const std::array<std::uint32_t, 2>& pair, const glm::vec3& p) {
       const auto c = scene.corners(triangle_of(pair[0]));
       bool inside = true;
-      const glm::vec3 n(sided_normal(scene, sided(triangle_of(pair[0]), 0)));
+      const glm::vec3 n(face_normal(scene, oriented(triangle_of(pair[0]), 0)));
       for (int i = 0; i < 3; ++i) {
         inside &= glm::dot(glm::cross(n, c[(i + 1) % 3] - c[i]), p - c[i]) >= 0;
       }
@@ -211,12 +211,12 @@ TEST_CASE("tiles on a floor read 1, in their middle and at the border of the flo
         test::add_photon(photons, scene, p, s, random);
       } else if (!joint) {
         hits.position.push_back(p);
-        hits.sided_triangle.push_back(s);
+        hits.oriented_face.push_back(s);
         hits.diffuse_albedo.emplace_back(0.5f);
       }
     }
     photons.flux.assign(count, glm::vec3(1.0f / count));
-    photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+    photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
     const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.06, 60}),
                           {.radius = 0.06});
     const Estimates estimates = Estimator(maps, scene, {}).estimate(hits);

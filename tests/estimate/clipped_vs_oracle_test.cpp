@@ -24,7 +24,7 @@ test::ExpectedEstimates expected_clipped(const Scene& scene, const Photons& phot
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   test::ExpectedEstimates expected;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    expected.push_back(oracle.irradiance(area, hits.position[i], hits.sided_triangle[i], k,
+    expected.push_back(oracle.irradiance(area, hits.position[i], hits.oriented_face[i], k,
                                          static_cast<float>(radius), kernel));
   }
   return expected;
@@ -103,7 +103,7 @@ void add_hits_on_junctions(PrimaryHits& hits, const Scene& scene) {
         const double along = glm::dot(p - a, b - a) / glm::dot(b - a, b - a);
         if (beside > 1e-5 || along < 0.01 || along > 0.99) continue;
         hits.position.push_back(vertex);
-        hits.sided_triangle.push_back(sided(t, 0));
+        hits.oriented_face.push_back(oriented(t, 0));
         hits.diffuse_albedo.emplace_back(0.5f);
       }
     }
@@ -115,10 +115,10 @@ void add_hits_nearby(PrimaryHits& hits, const Scene& scene) {
   const std::size_t count = hits.position.size();
   for (const double length : {1e-6, 1e-5, 1e-4, 1e-3}) {
     for (std::size_t i = 0; i < count; ++i) {
-      const auto [a, b, c] = scene.corners(triangle_of(hits.sided_triangle[i]));
+      const auto [a, b, c] = scene.corners(triangle_of(hits.oriented_face[i]));
       const glm::vec3 way = (a + b + c) / 3.0f - hits.position[i];
       hits.position.push_back(hits.position[i] + static_cast<float>(length) * glm::normalize(way));
-      hits.sided_triangle.push_back(hits.sided_triangle[i]);
+      hits.oriented_face.push_back(hits.oriented_face[i]);
       hits.diffuse_albedo.emplace_back(0.5f);
     }
   }
@@ -133,7 +133,7 @@ PrimaryHits hits_on_vertices_and_edges(const Scene& scene) {
       const glm::vec3& corner = corners[i];
       for (const glm::vec3& position : {corner, 0.5f * (corner + corners[(i + 1) % 3])}) {
         hits.position.push_back(position);
-        hits.sided_triangle.push_back(sided(t, 0));
+        hits.oriented_face.push_back(oriented(t, 0));
         hits.diffuse_albedo.emplace_back(0.5f);
       }
     }
@@ -203,13 +203,14 @@ TEST_CASE("a panel all under a plate counts whole for hits on it, and as nothing
   const Photons photons = test::uniform_photons(scene, 1500, 61, false);
   const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), 0.2, 60);
   REQUIRE(surface.facet[0] == PHOTILE_NO_FACET);
-  REQUIRE(surface.exposure[sided(0, 0)] == 0.0f);
+  REQUIRE(surface.exposure[oriented(0, 0)] == 0.0f);
   check_clipped(scene, photons, test::uniform_hits(scene, 100, 62, false), 0.2, 50,
                 DensityKernel::constant);
 }
 
 TEST_CASE(
-    "dark parts of a floor are holes in it for hits on it and on a panel above, as by the oracle") {
+    "unlit regions of a floor are holes in it for hits on it and on a panel above, as by the "
+    "oracle") {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 1);
   test::add_plate(scene, {0.5f, 0.5f, 0.02f}, {1, 0, 0}, {0.1f, 0.8f, 0}, 1);
@@ -219,15 +220,15 @@ TEST_CASE(
   for (std::size_t i = 0; i < everywhere.size(); ++i) {
     const glm::vec3& p = everywhere.position[i];
     const bool is_covered = p.z == 0 && p.x > 0.5f && p.x < 1.6f && p.y > 0.5f && p.y < 1.3f;
-    if (!is_covered) test::add_photon(photons, scene, p, everywhere.sided_triangle[i], random);
+    if (!is_covered) test::add_photon(photons, scene, p, everywhere.oriented_face[i], random);
   }
-  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
   const PrimaryHits hits = test::uniform_hits(scene, 300, 66, false);
   const auto surface =
       std::make_shared<const SurfaceIndex>(index_surface(scene, photons, 0.15, 60));
-  REQUIRE(surface->dark_parts.size() >= 10);
+  REQUIRE(surface->unlit_regions.size() >= 10);
   const auto is_dark = [&](std::size_t i) {
-    return surface->sheet_at(hits.sided_triangle[i], hits.position[i]) == surface->sheets;
+    return surface->sheet_at(hits.oriented_face[i], hits.position[i]) == surface->sheets;
   };
   std::size_t dark = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) dark += is_dark(i) ? 1 : 0;

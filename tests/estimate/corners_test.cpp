@@ -27,7 +27,7 @@ constexpr std::array steps = {0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 /// A point of a triangle, approached from within.
 struct Place {
   glm::vec3 position;
-  std::uint32_t sided_triangle;
+  std::uint32_t oriented_face;
   const char* kind;
 };
 
@@ -80,7 +80,7 @@ std::vector<Place> places_of(const Scene& scene, std::span<const std::uint32_t> 
   for (const std::uint32_t t : triangles) {
     if (!has_inside(scene, t)) continue;
     const auto corners = scene.corners(t);
-    const std::uint32_t own = sided(t, static_cast<std::uint32_t>(random() & 1));
+    const std::uint32_t own = oriented(t, static_cast<std::uint32_t>(random() & 1));
     for (int c = 0; c < 3; ++c) {
       const glm::vec3 a = corners[c], b = corners[(c + 1) % 3];
       places.push_back({a, own, "corner"});
@@ -143,7 +143,7 @@ class Shares {
   }
 
   double expected(const Place& place, const glm::vec3& position, double radius) const {
-    return oracle_->area(position, place.sided_triangle, radius) /
+    return oracle_->area(position, place.oriented_face, radius) /
            (glm::pi<double>() * radius * radius);
   }
 
@@ -151,7 +151,7 @@ class Shares {
   /// Photons that count; 0 where rounding may tell.
   int in_slab(const PrimaryHits& hits, std::size_t i, const NeighbourLists& lists,
               double radius) const {
-    const glm::dvec3 normal = sided_normal(scene_, hits.sided_triangle[i]);
+    const glm::dvec3 normal = face_normal(scene_, hits.oriented_face[i]);
     int counted = 0;
     double farthest = 0;
     bool farthest_counted = false;
@@ -193,14 +193,14 @@ Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uin
   const std::vector<Place> places = places_of(shares.scene(), triangles);
   PrimaryHits hits;
   for (const Place& place : places) {
-    const auto corners = shares.scene().corners(triangle_of(place.sided_triangle));
+    const auto corners = shares.scene().corners(triangle_of(place.oriented_face));
     const glm::dvec3 middle =
         (glm::dvec3(corners[0]) + glm::dvec3(corners[1]) + glm::dvec3(corners[2])) / 3.0;
     const glm::dvec3 way = middle - glm::dvec3(place.position);
     for (const double step : steps) {
       const double part = std::min(step / glm::length(way), 1.0);
       hits.position.emplace_back(glm::dvec3(place.position) + way * part);
-      hits.sided_triangle.push_back(place.sided_triangle);
+      hits.oriented_face.push_back(place.oriented_face);
       hits.diffuse_albedo.emplace_back(0.5f);
     }
   }
@@ -214,7 +214,7 @@ Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uin
     ++counted;
     const double step = steps[i % steps.size()];
     const glm::vec3 p = hits.position[i];
-    CAPTURE(place.kind, triangle_of(place.sided_triangle), p.x, p.y, p.z, step, radius, share);
+    CAPTURE(place.kind, triangle_of(place.oriented_face), p.x, p.y, p.z, step, radius, share);
     // Sharper corners than of 9 degrees are rare, and then they are the oracle's.
     const bool usual = share > 1 / 40.0 && share < 1.001;
     const double size = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
@@ -273,7 +273,7 @@ TEST_CASE("hits a rounding beyond an edge or a corner count as on it, far off al
   const auto add_hit = [&](float at, float beside, std::uint32_t triangle, double share) {
     hits.position.push_back(beside * across);
     hits.position.back()[axis] = at;
-    hits.sided_triangle.push_back(sided(triangle, 0));
+    hits.oriented_face.push_back(oriented(triangle, 0));
     hits.diffuse_albedo.emplace_back(0.5f);
     expected.push_back(share);
   };

@@ -53,7 +53,7 @@ class UpperSides {
         left += turn >= 0, right += turn <= 0;
       }
       if (left == 3 || right == 3) {
-        return sided(t, sided_normal(scene_, sided(t, 0)).z > 0 ? 0 : 1);
+        return oriented(t, face_normal(scene_, oriented(t, 0)).z > 0 ? 0 : 1);
       }
     }
     throw std::logic_error("no triangle of the plate there");
@@ -83,7 +83,7 @@ Photons even_light(const Scene& scene, const Where& open, int density, std::uint
     if (open(p)) add_photon(photons, scene, p, upper_sides.at(p), random);
   }
   photons.flux.assign(photons.size(), glm::vec3(1.0f / static_cast<float>(density)));
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 struct Means {
@@ -110,7 +110,7 @@ Means means(const Scene& scene, const Where& open, const Where& seen, int neighb
       const glm::vec3 p(place(random), place(random), 0.0f);
       if (!seen(p)) continue;
       hits.position.push_back(p);
-      hits.sided_triangle.push_back(upper_sides.at(p));
+      hits.oriented_face.push_back(upper_sides.at(p));
       hits.diffuse_albedo.emplace_back(0.5f);
     }
     count += hits.position.size();
@@ -193,7 +193,7 @@ TEST_CASE("even light on all of a surface leaves no part of it dark") {
     const Photons photons = even_light(
         scene, [](const glm::vec3&) { return true; }, 100'000, 3);
     const SurfaceIndex surface = index_surface(scene, photons, 0.05, 60);
-    CHECK(surface.dark_parts.empty());
+    CHECK(surface.unlit_regions.empty());
     CHECK(std::count(surface.dark.begin(), surface.dark.end(), 1) == 0);
   }
 }

@@ -71,7 +71,7 @@ TEST_CASE("photons in one point: ties share the estimate as the oracle says") {
   for (int i = 0; i < 2000; ++i) {
     test::add_photon(photons, scene, {0.5f, 0.25f, 0}, 0, random);
   }
-  photons = sort_by_sided_triangle(std::move(photons), 4);
+  photons = sort_by_oriented_face(std::move(photons), 4);
   PrimaryHits hits = test::uniform_hits(scene, 50, 58, false);
   hits.position[0] = {0.5f, 0.25f, 0};
   check_irradiance(scene, photons, hits, 0.5, 50);

@@ -69,7 +69,7 @@ Plates make_plates(float s, float t, bool half) {
       const std::uint32_t on =
           triangle + static_cast<std::uint32_t>(uniform(random) * static_cast<float>(count));
       made.photons.position.push_back(test::random_point(made.scene, on, random));
-      made.photons.sided_triangle.push_back(sided(on, 0));
+      made.photons.oriented_face.push_back(oriented(on, 0));
     }
     // The triangle that holds the point, or the nearest one.
     const glm::vec3 point = corner + s * u + t * v;
@@ -81,18 +81,18 @@ Plates make_plates(float s, float t, bool half) {
       for (int i = 0; i < 3; ++i) {
         const glm::dvec3 edge = c[(i + 1) % 3] - c[i];
         const glm::dvec3 inward =
-            glm::normalize(glm::cross(sided_normal(made.scene, sided(on, 0)), edge));
+            glm::normalize(glm::cross(face_normal(made.scene, oriented(on, 0)), edge));
         outside = std::max(outside, -glm::dot(inward, glm::dvec3(point - c[i])));
       }
       if (outside < least) least = outside, nearest = on;
     }
     made.hits.position.push_back(point);
-    made.hits.sided_triangle.push_back(sided(nearest, 0));
+    made.hits.oriented_face.push_back(oriented(nearest, 0));
     made.hits.diffuse_albedo.emplace_back(0.5f);
   }
   const std::size_t count = made.photons.size();
   made.photons.flux.assign(count, glm::vec3(1.0f));
-  made.photons = sort_by_sided_triangle(std::move(made.photons), 2 * made.scene.triangle_count());
+  made.photons = sort_by_oriented_face(std::move(made.photons), 2 * made.scene.triangle_count());
   return made;
 }
 

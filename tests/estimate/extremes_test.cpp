@@ -27,7 +27,7 @@ Photons photons_at(const Scene& scene, const std::vector<glm::vec3>& places, std
   std::mt19937_64 random(seed);
   Photons photons;
   for (const glm::vec3& place : places) test::add_photon(photons, scene, place, 0, random);
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 }  // namespace
@@ -105,14 +105,15 @@ TEST_CASE("extremes: needles a million times as long as wide, and the plates bes
   std::mt19937_64 random(108);
   for (std::uint32_t t = 0; t < 2 * needles; ++t) {
     for (int i = 0; i < 60; ++i) {
-      test::add_photon(photons, scene, test::random_point(scene, t, random), sided(t, 0), random);
+      test::add_photon(photons, scene, test::random_point(scene, t, random), oriented(t, 0),
+                       random);
     }
     for (int i = 0; i < 6; ++i) {
       hits.position.push_back(test::random_point(scene, t, random));
-      hits.sided_triangle.push_back(sided(t, 0));
+      hits.oriented_face.push_back(oriented(t, 0));
     }
   }
-  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
   hits.pixel.resize(hits.position.size());
   for (const double radius : {1e-7, 1e-3, 0.05}) {
     test::check_against_oracle(scene, photons, hits, radius, {1, 16, 200}, false);
@@ -157,7 +158,7 @@ TEST_CASE("extremes: a million photons in one point", "[slow]") {
   const Photons photons = photons_at(scene, places, 114);
   PrimaryHits hits = test::uniform_hits(scene, 3, 115, false);
   hits.position[0] = point;
-  hits.sided_triangle.assign(hits.size(), 0);
+  hits.oriented_face.assign(hits.size(), 0);
   for (std::size_t i = 1; i < hits.size(); ++i) {
     hits.position[i] = test::random_point(scene, 0, random);
   }
@@ -193,7 +194,7 @@ TEST_CASE("extremes: the second photon at a distance that selection compares wit
   const Photons photons = photons_at(scene, {{0, -first, 0}, {x, y, 0}}, 129);
   PrimaryHits hits;
   hits.position.emplace_back(0.0f);
-  hits.sided_triangle.push_back(0);
+  hits.oriented_face.push_back(0);
   hits.pixel.resize(1);
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius});
@@ -227,19 +228,19 @@ TEST_CASE("extremes: photons and hits on corners, edges and cell borders, and on
       for (int j = 0; i + j <= 16; ++j) {
         const glm::vec3 place = a + (b - a) * (static_cast<float>(i) / 16.0f) +
                                 (c - a) * (static_cast<float>(j) / 16.0f);
-        test::add_photon(photons, scene, place, sided(t, 0), random);
+        test::add_photon(photons, scene, place, oriented(t, 0), random);
         const float jitter = static_cast<float>(static_cast<int>(random() % 9) - 4) * 0x1p-24f;
-        test::add_photon(photons, scene, place + glm::vec3(jitter, -jitter, 0), sided(t, 0),
+        test::add_photon(photons, scene, place + glm::vec3(jitter, -jitter, 0), oriented(t, 0),
                          random);
         if ((i + j) % 4 == 0) {
           hits.position.push_back(place);
-          hits.sided_triangle.push_back(sided(t, 0));
+          hits.oriented_face.push_back(oriented(t, 0));
         }
       }
     }
   }
   hits.pixel.resize(hits.size());
-  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
   for (const double radius : {0x1p-5, 0.5}) {
     test::check_against_oracle(scene, photons, hits, radius, {1, 2, 16, 100}, false);
   }
@@ -282,7 +283,7 @@ TEST_CASE("extremes: photons within a rounding of the borders of cells") {
   REQUIRE(grid_of(photons, photons_per_cell).cell_width == Approx(width).epsilon(1e-6));
   PrimaryHits hits;
   for (std::size_t i = 0; i < photons.size(); i += 37) hits.position.push_back(photons.position[i]);
-  hits.sided_triangle.assign(hits.size(), 0);
+  hits.oriented_face.assign(hits.size(), 0);
   hits.pixel.resize(hits.size());
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
@@ -334,7 +335,7 @@ TEST_CASE("extremes: photons within the radius by less than rounding moves them 
     }
   }
   REQUIRE(hits.size() > 1000);
-  hits.sided_triangle.assign(hits.size(), 0);
+  hits.oriented_face.assign(hits.size(), 0);
   hits.pixel.resize(hits.size());
   const Photons photons = photons_at(scene, places, 128);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);

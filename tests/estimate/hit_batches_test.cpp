@@ -90,7 +90,7 @@ PrimaryHits repeat(const PrimaryHits& base, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t from = i * base.size() / count;
     hits.position.push_back(base.position[from]);
-    hits.sided_triangle.push_back(base.sided_triangle[from]);
+    hits.oriented_face.push_back(base.oriented_face[from]);
   }
   return hits;
 }

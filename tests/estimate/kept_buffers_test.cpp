@@ -36,7 +36,7 @@ PrimaryHits on_plate(const PrimaryHits& hits, bool second) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if ((hits.position[i].x > 5) != second) continue;
     result.position.push_back(hits.position[i]);
-    result.sided_triangle.push_back(hits.sided_triangle[i]);
+    result.oriented_face.push_back(hits.oriented_face[i]);
     result.diffuse_albedo.push_back(hits.diffuse_albedo[i]);
   }
   return result;

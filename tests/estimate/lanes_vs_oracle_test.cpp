@@ -131,7 +131,7 @@ TEST_CASE("lanes clip discs as the oracle does", "[slow]") {
   ExpectedEstimates expected;
   for (std::size_t i = 0; i < subject.hits.size(); ++i) {
     expected.push_back(oracle.irradiance(area, subject.hits.position[i],
-                                         subject.hits.sided_triangle[i], k,
+                                         subject.hits.oriented_face[i], k,
                                          static_cast<float>(radius), DensityKernel::constant));
   }
   const Estimates estimates = subject.estimate(lanes(width), k, AreaMode::clipped);

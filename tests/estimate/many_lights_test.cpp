@@ -164,7 +164,7 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
       test::ExpectedEstimates expected;
       for (std::size_t i = 0; i < hits.size(); ++i) {
         expected.push_back(
-            oracle.irradiance(hits.position[i], hits.sided_triangle[i], neighbours, radius));
+            oracle.irradiance(hits.position[i], hits.oriented_face[i], neighbours, radius));
       }
       CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, lights),
                                    expected) <= 1e-5);

@@ -115,7 +115,7 @@ TEST_CASE("crowded photons: all in one point, all on a line, one crowd and many 
   // Hits on the crowds themselves, on triangle 0.
   for (int i = 0; i < 10; ++i) hits.position[static_cast<std::size_t>(i)] = {0.3f, 0.1f, 0};
   for (Photons* photons : {&point, &line, &crowd}) {
-    const Photons sorted = sort_by_sided_triangle(std::move(*photons), 2 * scene.triangle_count());
+    const Photons sorted = sort_by_oriented_face(std::move(*photons), 2 * scene.triangle_count());
     check_neighbours(scene, sorted, hits, 0.4, {1, 16, 50, 2999, 3000, 3001});
   }
 }
@@ -132,10 +132,10 @@ TEST_CASE("the radius is that of the k-th photon, however close behind it the ne
   Photons photons;
   test::add_photon(photons, scene, {near, 0, 0}, 0, random);
   test::add_photon(photons, scene, {far, 0, 0}, 0, random);
-  photons = sort_by_sided_triangle(std::move(photons), 4);
+  photons = sort_by_oriented_face(std::move(photons), 4);
   PrimaryHits hits = test::uniform_hits(scene, 1, 46, false);
   hits.position[0] = {0, 0, 0};
-  hits.sided_triangle[0] = 0;
+  hits.oriented_face[0] = 0;
   for (const structures::Structure& structure : structures::all()) {
     const PhotonMaps maps = structures::build(structure, test::device(), scene, photons,
                                               find_neighbour_groups(scene, {0.2, 60}), {0.2, 4});
@@ -156,10 +156,10 @@ TEST_CASE("ties at the border of the neighbourhood go to the smallest photon ind
     const float dy = (i & 2) != 0 ? 0.03125f : -0.03125f;
     test::add_photon(photons, scene, centre + glm::vec3(dx, dy, 0), 0, random);
   }
-  photons = sort_by_sided_triangle(std::move(photons), 4);
+  photons = sort_by_oriented_face(std::move(photons), 4);
   PrimaryHits hits = test::uniform_hits(scene, 1, 34, false);
   hits.position[0] = centre;
-  hits.sided_triangle[0] = 0;
+  hits.oriented_face[0] = 0;
   for (const structures::Structure& structure : structures::all()) {
     const PhotonMaps maps = structures::build(structure, test::device(), scene, photons,
                                               find_neighbour_groups(scene, {0.2, 60}), {0.2, 4});
@@ -174,7 +174,7 @@ TEST_CASE("ties at the border of the neighbourhood go to the smallest photon ind
   }
 }
 
-TEST_CASE("naive maps find the oracle's neighbours on the hit's own sided triangle") {
+TEST_CASE("naive maps find the oracle's neighbours on the hit's own oriented face") {
   const Scene scene = plate(3);
   const Photons photons = test::uniform_photons(scene, 5000, 35);
   const PrimaryHits hits = test::uniform_hits(scene, 200, 36);
@@ -196,12 +196,12 @@ TEST_CASE("photons at the back and beyond the angle never count") {
   const NeighbourLists lists = estimator.nearest(hits);
   std::size_t neighbours = 0;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    const std::uint32_t own = hits.sided_triangle[hit];
+    const std::uint32_t own = hits.oriented_face[hit];
     for (std::size_t i = 0; i < 50; ++i) {
       const std::uint32_t photon = lists.photons[hit * 50 + i];
       if (photon == none) continue;
       ++neighbours;
-      const std::uint32_t other = photons.sided_triangle[photon];
+      const std::uint32_t other = photons.oriented_face[photon];
       CHECK(side_of(other) == side_of(own));
       CHECK(triangle_of(other) / 2 == triangle_of(own) / 2);  // the same plate
     }

@@ -97,7 +97,7 @@ TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle'
   PrimaryHits hits;
   for (std::size_t i = 0; i < photons.size(); i += 20) {
     hits.position.push_back(photons.position[i]);
-    hits.sided_triangle.push_back(photons.sided_triangle[i]);
+    hits.oriented_face.push_back(photons.oriented_face[i]);
     hits.diffuse_albedo.emplace_back(0.5f);
   }
   hits.pixel.resize(hits.size());
@@ -116,7 +116,7 @@ TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle'
     test::ExpectedEstimates expected;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const glm::vec3 hit = hits.position[i];
-      const std::uint32_t own = hits.sided_triangle[i];
+      const std::uint32_t own = hits.oriented_face[i];
       const double searched = static_cast<float>(radius);
       expected.push_back(mode == AreaMode::disc ? oracle.irradiance(hit, own, 50, searched)
                                                 : oracle.irradiance(area, hit, own, 50, searched));

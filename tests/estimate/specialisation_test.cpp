@@ -83,7 +83,7 @@ TEST_CASE("a plane of random photons holds what it says and is the same every ti
   REQUIRE(sample.hits.size() == 100);
   CHECK(needs_of(sample.scene).glossy);
   CHECK(needs_of(sample.scene).light_count == 5);
-  CHECK(std::is_sorted(sample.hits.sided_triangle.begin(), sample.hits.sided_triangle.end()));
+  CHECK(std::is_sorted(sample.hits.oriented_face.begin(), sample.hits.oriented_face.end()));
   CHECK(make_plane_sample(glossy, 50, {1000, 10}).photons.position == sample.photons.position);
   // The k-th of n uniform photons on the unit square lies at sqrt(k / (pi n)) on average.
   CHECK(sample.radius == Approx(2 * std::sqrt(50 / (3.14159265358979 * 1000))));

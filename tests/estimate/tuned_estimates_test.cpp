@@ -162,18 +162,18 @@ TEST_CASE("of two photons in one place at the border of the neighbourhood one co
   std::mt19937_64 random(80);
   for (std::size_t i = 0; i < data.photons.size() / 2; ++i) {
     for (int n = 0; n < 2; ++n) {
-      test::add_photon(twice, data.scene, data.photons.position[i], data.photons.sided_triangle[i],
+      test::add_photon(twice, data.scene, data.photons.position[i], data.photons.oriented_face[i],
                        random);
     }
   }
-  data.photons = sort_by_sided_triangle(std::move(twice), 2 * data.scene.triangle_count());
+  data.photons = sort_by_oriented_face(std::move(twice), 2 * data.scene.triangle_count());
   // The flux of the 19 nearest counts: of 9 pairs and one of the tenth.
   data.check({{EstimateStrategy::select, 8, 8, 16}});
 }
 
 TEST_CASE("hits that no photon comes near read nothing, next to hits that photons do") {
   const Case data = small_maps(false);
-  REQUIRE(std::any_of(data.hits.sided_triangle.begin(), data.hits.sided_triangle.end(),
+  REQUIRE(std::any_of(data.hits.oriented_face.begin(), data.hits.oriented_face.end(),
                       [](std::uint32_t s) { return side_of(s) == 1; }));
   data.check({{EstimateStrategy::select, 8, 8, 16}});
 }
@@ -187,7 +187,7 @@ TEST_CASE("selection tells photons apart at distances of ten orders of magnitude
     const glm::vec3 place(distance * std::cos(turn), distance * std::sin(turn), 0);
     test::add_photon(data.photons, data.scene, place, 0, random);
   }
-  data.photons = sort_by_sided_triangle(std::move(data.photons), 2);
+  data.photons = sort_by_oriented_face(std::move(data.photons), 2);
   data.hits = test::uniform_hits(data.scene, 8, 83, false);
   std::fill(data.hits.position.begin(), data.hits.position.end(), glm::vec3(0.0f));
   data.check({{EstimateStrategy::select, 8, 8, 16}});

@@ -16,10 +16,10 @@
 namespace photile::test {
 namespace {
 
-glm::dvec3 normal_of(const Scene& scene, std::uint32_t sided_triangle) {
-  const Corners c = corners_of(scene, triangle_of(sided_triangle));
+glm::dvec3 normal_of(const Scene& scene, std::uint32_t oriented_face) {
+  const Corners c = corners_of(scene, triangle_of(oriented_face));
   const glm::dvec3 normal = glm::normalize(glm::cross(c[1] - c[0], c[2] - c[0]));
-  return side_of(sided_triangle) == 0 ? normal : -normal;
+  return side_of(oriented_face) == 0 ? normal : -normal;
 }
 
 /// Every pair, straight from the definition.
@@ -109,12 +109,12 @@ TEST_CASE("a fold joins equal sides up to the angle and opposite sides from its 
   const double angle = GENERATE(0.0, 59.0, 60.0, 61.0, 90.0, 180.0);
   CAPTURE(fold, angle);
   const NeighbourGroups groups = find_neighbour_groups(folded_strip(fold), {0.5, angle});
-  CHECK(is_member(groups, sided(0, 0), sided(3, 0)) == (fold <= angle));
-  CHECK(is_member(groups, sided(0, 1), sided(3, 1)) == (fold <= angle));
-  CHECK(is_member(groups, sided(0, 0), sided(3, 1)) == (180 - fold <= angle));
-  CHECK(is_member(groups, sided(0, 1), sided(3, 0)) == (180 - fold <= angle));
-  CHECK(is_member(groups, sided(0, 0), sided(1, 0)));
-  CHECK(is_member(groups, sided(0, 0), sided(0, 1)) == (angle == 180));
+  CHECK(is_member(groups, oriented(0, 0), oriented(3, 0)) == (fold <= angle));
+  CHECK(is_member(groups, oriented(0, 1), oriented(3, 1)) == (fold <= angle));
+  CHECK(is_member(groups, oriented(0, 0), oriented(3, 1)) == (180 - fold <= angle));
+  CHECK(is_member(groups, oriented(0, 1), oriented(3, 0)) == (180 - fold <= angle));
+  CHECK(is_member(groups, oriented(0, 0), oriented(1, 0)));
+  CHECK(is_member(groups, oriented(0, 0), oriented(0, 1)) == (angle == 180));
 }
 
 TEST_CASE("plates are neighbours up to the radius, on the sides that face the same way") {
@@ -123,11 +123,11 @@ TEST_CASE("plates are neighbours up to the radius, on the sides that face the sa
     add_triangle(scene, {glm::dvec3(0, 0, z), glm::dvec3(1, 0, z), glm::dvec3(0, 1, z)});
   }
   const NeighbourGroups groups = find_neighbour_groups(scene, {0.25, 60});
-  const std::vector<std::uint32_t> members(groups.of(sided(0, 0)).begin(),
-                                           groups.of(sided(0, 0)).end());
-  CHECK(members == std::vector<std::uint32_t>{sided(0, 0), sided(1, 0)});
-  CHECK(is_member(groups, sided(1, 1), sided(0, 1)));
-  CHECK_FALSE(is_member(groups, sided(1, 0), sided(2, 0)));
+  const std::vector<std::uint32_t> members(groups.of(oriented(0, 0)).begin(),
+                                           groups.of(oriented(0, 0)).end());
+  CHECK(members == std::vector<std::uint32_t>{oriented(0, 0), oriented(1, 0)});
+  CHECK(is_member(groups, oriented(1, 1), oriented(0, 1)));
+  CHECK_FALSE(is_member(groups, oriented(1, 0), oriented(2, 0)));
 }
 
 TEST_CASE("neighbour groups are symmetric, ascending and hold their owner") {

@@ -55,7 +55,7 @@ double squared_gap(const Bounds& a, const Bounds& b) {
   return glm::dot(gap, gap);
 }
 
-/// The groups of patches by their definition, pair by pair: the maps of sided triangles whose boxes
+/// The groups of patches by their definition, pair by pair: the maps of oriented faces whose boxes
 /// lie within the radius and whose normals agree. Where the distance is the radius but for
 /// rounding, either is right. Members of the groups of triangles themselves are among them.
 void check_groups(const Scene& scene, const NeighbourGroups& of_patches) {
@@ -66,23 +66,23 @@ void check_groups(const Scene& scene, const NeighbourGroups& of_patches) {
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
     const auto [a, b, c] = scene.corners(t);
     bounds.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
-    normals.push_back(sided_normal(scene, sided(t, 0)));
+    normals.push_back(face_normal(scene, oriented(t, 0)));
   }
   const NeighbourGroups of_triangles =
       find_neighbour_groups(scene, {of_patches.radius, of_patches.angle_degrees});
   std::size_t wrong = 0;
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
-    const glm::dvec3 normal = sided_normal(scene, s);
+    const glm::dvec3 normal = face_normal(scene, s);
     std::set<std::uint32_t> least, most;
     for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
       const double squared = squared_gap(bounds[triangle_of(s)], bounds[t]);
       if (squared > 1.0001 * squared_radius) continue;
       for (const std::uint32_t side : {0u, 1u}) {
-        const bool own = s == sided(t, side);
+        const bool own = s == oriented(t, side);
         if (!own && !normals_agree(normal, side == 0 ? normals[t] : -normals[t], cos_angle)) {
           continue;
         }
-        const std::uint32_t map = of_patches.patches.map(sided(t, side));
+        const std::uint32_t map = of_patches.patches.map(oriented(t, side));
         most.insert(map);
         if (squared < 0.9999 * squared_radius) least.insert(map);
       }
@@ -130,7 +130,7 @@ TEST_CASE("a patch whose normals cancel has the groups of its triangles' boxes")
   Patches patches;
   patches.first_of = {0, 4, 6};
   for (std::uint32_t t = 0; t < 6; ++t) {
-    patches.members.push_back(sided(t, 0));
+    patches.members.push_back(oriented(t, 0));
     const std::uint32_t front = t < 4 ? 0 : 2;
     patches.map_of.insert(patches.map_of.end(), {front, front + 1});
   }
@@ -147,7 +147,7 @@ TEST_CASE("patches nearer than the radius by little more than rounding are neigh
   CHECK(groups.of(0).size() == 2);
 }
 
-TEST_CASE("sided triangles without photons have empty groups, and the others theirs") {
+TEST_CASE("oriented faces without photons have empty groups, and the others theirs") {
   const Scene scene = room_corner();
   std::vector<std::uint8_t> landed(2 * scene.triangle_count());
   for (std::size_t s = 0; s < landed.size(); ++s) landed[s] = s % 3 == 0 ? 1 : 0;
@@ -171,8 +171,8 @@ TEST_CASE("sided triangles without photons have empty groups, and the others the
 TEST_CASE("photons that are still to come find the groups of triangles where none has landed") {
   const Scene scene = room_corner();
   Photons photons = test::uniform_photons(scene, 20'000, 5);
-  std::fill(photons.sided_triangle.begin(), photons.sided_triangle.end(), 0u);
-  photons = sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  std::fill(photons.oriented_face.begin(), photons.oriented_face.end(), 0u);
+  photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
   const auto of_others = [&](MapUsers users) {
     const NeighbourGroups groups =
         find_map_groups(scene, photons, MapMode::automatic, {0.1, 60}, Progress::none(), users);
@@ -193,7 +193,7 @@ TEST_CASE("a flat surface is one patch, whatever its winding and the number of i
   CHECK(patches.count() == 1);
   // The map of either side holds the sides that face one way.
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
-    CHECK(patches.map(s) == (sided_normal(scene, s).z > 0 ? patches.map(1) : patches.map(0)));
+    CHECK(patches.map(s) == (face_normal(scene, s).z > 0 ? patches.map(1) : patches.map(0)));
   }
 }
 
@@ -211,9 +211,9 @@ TEST_CASE(
   Patches apart;  // each triangle by itself: the finest patches there are
   apart.first_of.push_back(0);
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    apart.members.push_back(sided(t, 0));
+    apart.members.push_back(oriented(t, 0));
     apart.first_of.push_back(t + 1);
-    apart.map_of.insert(apart.map_of.end(), {sided(t, 0), sided(t, 1)});
+    apart.map_of.insert(apart.map_of.end(), {oriented(t, 0), oriented(t, 1)});
   }
   const NeighbourGroups groups = find_patch_groups(scene, apart, {radius, 60});
   const NeighbourGroups merged =
@@ -223,8 +223,8 @@ TEST_CASE(
   // The two faces of the table top are 2 cm apart, a fifth of the radius: what faces up of either
   // shares a map.
   const auto map_above = [&](std::uint32_t triangle) {
-    const std::uint32_t up = sided_normal(scene, sided(triangle, 0)).z > 0 ? 0 : 1;
-    return merged.patches.map(sided(triangle, up));
+    const std::uint32_t up = face_normal(scene, oriented(triangle, 0)).z > 0 ? 0 : 1;
+    return merged.patches.map(oriented(triangle, up));
   };
   std::set<std::uint32_t> above, below;
   for (std::uint32_t t = 2 * (24 * 24 + 16 * 16); t < scene.triangle_count(); ++t) {
@@ -245,7 +245,7 @@ TEST_CASE("a patch joins another only where its queries would not look at most p
   Patches patches;  // the right slope, and the left one with the floor
   patches.first_of = {0, 2, 6};
   for (std::uint32_t t = 0; t < 6; ++t) {
-    patches.members.push_back(sided(t, 0));
+    patches.members.push_back(oriented(t, 0));
     const std::uint32_t front = t < 2 ? 0 : 2;
     patches.map_of.insert(patches.map_of.end(), {front, front + 1});
   }
@@ -259,10 +259,10 @@ TEST_CASE("a patch joins another only where its queries would not look at most p
       for (std::size_t i = 0; i < counts[plate]; ++i) {
         const std::uint32_t triangle = 2 * plate + i % 2;
         test::add_photon(photons, scene, test::random_point(scene, triangle, random),
-                         sided(triangle, 0), random);
+                         oriented(triangle, 0), random);
       }
     }
-    return merge_patches(scene, groups, sort_by_sided_triangle(photons, 12)).patches.count();
+    return merge_patches(scene, groups, sort_by_oriented_face(photons, 12)).patches.count();
   };
   // The patch of the left slope holds all photons of the right one's: those of both slopes agree
   // with the floor. What it holds besides are the photons on the left slope.

@@ -38,7 +38,7 @@ TEST_CASE("a mirrored node keeps the front of its triangles where the mirror put
   document["nodes"][0]["scale"] = {-1, 1, 1};  // mirrors in x: the square still faces +z
   const Scene scene = load_gltf(document);
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    CHECK(sided_normal(scene, sided(t, scene.front_side[t])).z == Approx(1.0));
+    CHECK(face_normal(scene, oriented(t, scene.front_side[t])).z == Approx(1.0));
   }
   for (const auto& normals : scene.corner_normal) CHECK(normals[0] == glm::vec3(0, 0, 1));
 }
@@ -66,7 +66,7 @@ TEST_CASE("strips and fans give the triangles of the specification") {
   CHECK(fan.triangle_count() == 2);
   CHECK(total_area(fan) == Approx(1.0));
   for (std::uint32_t t = 0; t < 2; ++t) {
-    CHECK(sided_normal(fan, sided(t, fan.front_side[t])).z == Approx(1.0));
+    CHECK(face_normal(fan, oriented(t, fan.front_side[t])).z == Approx(1.0));
   }
   // Indices 0 1 2 0 2 3 as a strip: (0,1,2), (1,0,2), (2,0,2), (0,3,2) by the rule for odd ones.
   primitive["indices"] = 2;
@@ -74,9 +74,9 @@ TEST_CASE("strips and fans give the triangles of the specification") {
   const Scene strip = load_gltf(document);
   CHECK(strip.triangle_count() == 3);
   CHECK(strip.report.degenerate_triangles == 1);
-  CHECK(sided_normal(strip, sided(0, strip.front_side[0])).z == Approx(1.0));
-  CHECK(sided_normal(strip, sided(1, strip.front_side[1])).z == Approx(-1.0));
-  CHECK(sided_normal(strip, sided(2, strip.front_side[2])).z == Approx(-1.0));
+  CHECK(face_normal(strip, oriented(0, strip.front_side[0])).z == Approx(1.0));
+  CHECK(face_normal(strip, oriented(1, strip.front_side[1])).z == Approx(-1.0));
+  CHECK(face_normal(strip, oriented(2, strip.front_side[2])).z == Approx(-1.0));
 }
 
 TEST_CASE("points and lines, morph targets, skins and vertex colours are named and left out") {

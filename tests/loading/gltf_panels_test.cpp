@@ -43,7 +43,7 @@ double area_of(const Scene& scene, const Light& light) {
 void check_place(const Scene& scene, const Light& light, const glm::dvec3& direction,
                  const glm::vec3& low, const glm::vec3& high) {
   for (const std::uint32_t triangle : light.triangles) {
-    const glm::dvec3 front = sided_normal(scene, sided(triangle, scene.front_side[triangle]));
+    const glm::dvec3 front = face_normal(scene, oriented(triangle, scene.front_side[triangle]));
     CHECK(glm::distance(front, direction) < 1e-6);
     for (const glm::vec3& corner : scene.corners(triangle)) {
       for (int axis = 0; axis < 3; ++axis) {

@@ -68,7 +68,7 @@ TEST_CASE("a placed lamp has the flux of its file, and its place, aim and size")
   double area = 0;
   for (const std::uint32_t triangle : lamp.triangles) {
     area += triangle_area(scene, triangle);
-    CHECK(sided_normal(scene, sided(triangle, scene.front_side[triangle])).z == Approx(-1));
+    CHECK(face_normal(scene, oriented(triangle, scene.front_side[triangle])).z == Approx(-1));
     for (const glm::vec3& corner : scene.corners(triangle)) {
       const glm::dvec3 place = glm::dvec3(corner) + scene.origin;
       CHECK(place.z == Approx(2));
@@ -172,7 +172,7 @@ TEST_CASE("photons of an opening follow its intensities, uplight leaves its back
   const auto result = trace_photons(RayScene(scene), {.emitted_photons = 100'000, .seed = 3});
   double down = 0;
   for (std::size_t i = 0; i < result.photons.size(); ++i) {
-    const std::uint32_t triangle = triangle_of(result.photons.sided_triangle[i]);
+    const std::uint32_t triangle = triangle_of(result.photons.oriented_face[i]);
     if (scene.triangle_light[triangle] == none)
       down += luminance(glm::dvec3(result.photons.flux[i]));
   }

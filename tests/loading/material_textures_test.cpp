@@ -71,18 +71,18 @@ TEST_CASE("alpha mode MASK cuts by the texture's alpha times the factor") {
 }
 
 TEST_CASE("what has no holes is not asked for any") {
-  const auto has_holes = [](const json& members) {
+  const auto has_cutouts = [](const json& members) {
     return square_with({{255, 255, 255, 255}},
                        [&](json& material) {
                          material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
                          material.merge_patch(members);
                        })
         .materials[0]
-        .has_holes();
+        .has_cutouts();
   };
-  CHECK_FALSE(has_holes({{"alphaMode", "MASK"}}));
-  CHECK_FALSE(has_holes({{"alphaMode", "BLEND"}}));
-  CHECK_FALSE(has_holes({{"alphaMode", "OPAQUE"}}));
+  CHECK_FALSE(has_cutouts({{"alphaMode", "MASK"}}));
+  CHECK_FALSE(has_cutouts({{"alphaMode", "BLEND"}}));
+  CHECK_FALSE(has_cutouts({{"alphaMode", "OPAQUE"}}));
 }
 
 TEST_CASE("alpha mode BLEND and alpha of lamps are approximations that are told") {
@@ -96,7 +96,7 @@ TEST_CASE("alpha mode BLEND and alpha of lamps are approximations that are told"
     material["emissiveFactor"] = {1, 1, 1};
   });
   CHECK(warns(lamp, {"'glow'", "emits"}));
-  CHECK_FALSE(lamp.materials[0].has_holes());
+  CHECK_FALSE(lamp.materials[0].has_cutouts());
 }
 
 TEST_CASE("a glTF normal map is read with its scale and turns normals") {
@@ -139,7 +139,7 @@ TEST_CASE("MTL map_d cuts by alpha, or by grey where there is none") {
     const Scene scene = load_scene(
         folder.write("scene.obj", "mtllib materials.mtl\n" + unit_square +
                                       "usemtl leaf\nf 1/1 2/2 3/3\nusemtl lamp\nf 1/1 3/3 4/4\n"));
-    CHECK(scene.materials[0].has_holes());
+    CHECK(scene.materials[0].has_cutouts());
     return trace::opacity(scene, middle(scene));
   };
   CHECK(opacity({51}, "map_d d.png\n") == Approx(0.2));

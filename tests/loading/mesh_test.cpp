@@ -84,7 +84,7 @@ TEST_CASE("the front side is the one that the winding faces, by the cross produc
     REQUIRE(builder.add({Corner{at(i), {}, {}}, Corner{at(j), {}, {}}, Corner{at(k), {}, {}}}, 0,
                         none));
     const glm::dvec3 front = glm::cross(at(j) - at(i), at(k) - at(i));
-    CHECK(glm::dot(sided_normal(scene, sided(0, scene.front_side[0])), front) > 0.0);
+    CHECK(glm::dot(face_normal(scene, oriented(0, scene.front_side[0])), front) > 0.0);
   }
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("triangles without area and with corners that are not finite are count
   CHECK(scene.report.non_finite_triangles == 2);
   CHECK(scene.triangle_count() == 1);
   CHECK(scene.front_side.size() == 1);
-  CHECK(std::isfinite(sided_normal(scene, sided(0, 1)).y));
+  CHECK(std::isfinite(face_normal(scene, oriented(0, 1)).y));
 }
 
 TEST_CASE("area and normal of a triangle are those of its closed form") {
@@ -140,8 +140,8 @@ TEST_CASE("area and normal of a triangle are those of its closed form") {
   builder.add({Corner{{0, 0, 0}, {}, {}}, Corner{{3, 0, 0}, {}, {}}, Corner{{0, 4, 0}, {}, {}}}, 0,
               none);
   CHECK(triangle_area(scene, 0) == Approx(6.0));
-  CHECK(sided_normal(scene, sided(0, 0)) == -sided_normal(scene, sided(0, 1)));
-  CHECK(std::abs(sided_normal(scene, 0).z) == Approx(1.0));
+  CHECK(face_normal(scene, oriented(0, 0)) == -face_normal(scene, oriented(0, 1)));
+  CHECK(std::abs(face_normal(scene, 0).z) == Approx(1.0));
 }
 
 TEST_CASE("the bounding sphere goes through the corners of the bounding box") {

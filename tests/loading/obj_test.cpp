@@ -22,7 +22,7 @@ TEST_CASE("an OBJ square becomes two triangles of area 1 that face its winding's
   CHECK(scene.report.polygons_triangulated == 1);
   CHECK(triangle_area(scene, 0) + triangle_area(scene, 1) == Approx(1.0));
   for (std::uint32_t t = 0; t < 2; ++t) {
-    CHECK(sided_normal(scene, sided(t, scene.front_side[t])).z == Approx(1.0));
+    CHECK(face_normal(scene, oriented(t, scene.front_side[t])).z == Approx(1.0));
   }
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("MTL transparency without Ni lets light through by chance, with a warn
   CHECK(m.interaction == Interaction::opaque);
   CHECK(m.opacity == 0.5f);
   CHECK(warns(scene, {"'m'", "chance"}));
-  CHECK_FALSE(mtl_material("Kd 1 1 1\nd 0\n", &scene).has_holes());
+  CHECK_FALSE(mtl_material("Kd 1 1 1\nd 0\n", &scene).has_cutouts());
   CHECK(warns(scene, {"'m'", "opaque"}));
 }
 

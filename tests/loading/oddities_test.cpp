@@ -91,7 +91,7 @@ TEST_CASE("absent, zero and inverted normals leave the surface as its corners sa
   REQUIRE(inverted.corner_normal.size() == 1);
   for (const glm::vec3& normal : inverted.corner_normal[0]) CHECK(normal == glm::vec3(0, 0, 1));
   for (const Scene* scene : {&absent, &zero, &inverted}) {
-    CHECK(sided_normal(*scene, sided(0, scene->front_side[0])).z == Approx(1.0));
+    CHECK(face_normal(*scene, oriented(0, scene->front_side[0])).z == Approx(1.0));
   }
   json document = square_document();
   document["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");

@@ -188,7 +188,7 @@ TEST_CASE("placed lamps have their place and aim in the file's world") {
 TEST_CASE("the root of a glTF file is turned, with all that hangs on it") {
   const Scene scene = load_gltf(square_document(), up("z"));  // it faces +z in the file
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    CHECK(sided_normal(scene, sided(t, scene.front_side[t])).y == Approx(1));
+    CHECK(face_normal(scene, oriented(t, scene.front_side[t])).y == Approx(1));
   }
 }
 
@@ -386,7 +386,7 @@ TEST_CASE("garbage OBJ files are refused in a line, or give a scene of sound tri
           REQUIRE(glm::length(scene.origin + glm::dvec3(corner)) <= 4 * limits::max_coordinate);
         }
         REQUIRE(triangle_area(scene, t) > 0);
-        REQUIRE(std::isfinite(glm::length(sided_normal(scene, sided(t, 0)))));
+        REQUIRE(std::isfinite(glm::length(face_normal(scene, oriented(t, 0)))));
       }
       for (const Light& light : scene.lights) REQUIRE(std::isfinite(light.power));
       REQUIRE(std::isfinite(glm::length(scene.cameras.at(0).position)));

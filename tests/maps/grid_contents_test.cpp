@@ -71,13 +71,13 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
     for (std::uint32_t map = page.first_map; map < page.last_map; ++map) {
       const PhotileGrid& grid = grids[map - page.first_map];
       const auto own = std::find(map_of.begin(), map_of.end(), map);  // without patches
-      const auto sided_triangle = static_cast<std::uint32_t>(own - map_of.begin());
+      const auto oriented_face = static_cast<std::uint32_t>(own - map_of.begin());
       for (std::uint32_t cell = 0; cell < grid.columns * grid.rows; ++cell) {
         const std::uint32_t start = cell_start[grid.first_cell + cell];
         const std::uint32_t end = cell_start[grid.first_cell + cell + 1];
         for (std::uint32_t entry = start; entry < end; ++entry) {
           const std::uint32_t photon = entry_photon[entry];
-          contents.photons_of_map[sided_triangle].push_back(photon);
+          contents.photons_of_map[oriented_face].push_back(photon);
           if (entry > start && entry_photon[entry - 1] >= photon) contents.cells_ascend = false;
           const glm::dvec3 local = glm::dvec3(photons.position[photon]) -
                                    glm::dvec3(grid.origin_x, grid.origin_y, grid.origin_z);
@@ -129,9 +129,9 @@ void check_against_reference(const Scene& scene, const Photons& photons, double 
     CHECK(held.size() == found.size());
     references += found.size();
     for (std::uint32_t photon = 0; photon < photons.size(); ++photon) {
-      const std::uint32_t own = photons.sided_triangle[photon];
-      const bool agrees = own == map || normals_agree(sided_normal(scene, own),
-                                                      sided_normal(scene, map), cos_angle);
+      const std::uint32_t own = photons.oriented_face[photon];
+      const bool agrees =
+          own == map || normals_agree(face_normal(scene, own), face_normal(scene, map), cos_angle);
       const double distance =
           triangle_of(own) == triangle_of(map)
               ? 0.0
@@ -199,10 +199,10 @@ TEST_CASE("a needle triangle and photons in one point are entered like any other
   for (int i = 0; i < 500; ++i) {
     test::add_photon(photons, scene, test::random_point(scene, 1, random), 2, random);
   }
-  check_against_reference(scene, sort_by_sided_triangle(std::move(photons), 6), 0.2);
+  check_against_reference(scene, sort_by_oriented_face(std::move(photons), 6), 0.2);
 }
 
-TEST_CASE("naive maps hold exactly the photons of their own sided triangle") {
+TEST_CASE("naive maps hold exactly the photons of their own oriented face") {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
   const Photons photons = test::uniform_photons(scene, 4000, 14);
@@ -213,7 +213,7 @@ TEST_CASE("naive maps hold exactly the photons of their own sided triangle") {
   for (const auto& [map, held] : contents.photons_of_map) {
     photons_held += held.size();
     CHECK(held.size() == photons.first_of[map + 1] - photons.first_of[map]);
-    for (const std::uint32_t photon : held) CHECK(photons.sided_triangle[photon] == map);
+    for (const std::uint32_t photon : held) CHECK(photons.oriented_face[photon] == map);
   }
   CHECK(photons_held == photons.size());
 }
@@ -221,7 +221,7 @@ TEST_CASE("naive maps hold exactly the photons of their own sided triangle") {
 TEST_CASE("maps without any photon are built and empty") {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
-  const Photons photons = sort_by_sided_triangle(Photons{}, 4);
+  const Photons photons = sort_by_oriented_face(Photons{}, 4);
   const PhotonMaps photon_maps(test::device(), scene, photons,
                                find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
   CHECK(photon_maps.statistics().references == 0);
@@ -303,7 +303,7 @@ TEST_CASE("the prefix sum of nothing is nothing") {
   CHECK_NOTHROW(maps::exclusive_prefix_sum(scan, buffer));
 }
 
-// The crowding of photons against densities with a closed form.
+// The density_ratio of photons against densities with a closed form.
 
 /// Photons on the front of a unit plate of two triangles (or of more), only where x < lit.
 Photons photons_on_part(const Scene& scene, float lit, std::size_t count) {
@@ -313,12 +313,12 @@ Photons photons_on_part(const Scene& scene, float lit, std::size_t count) {
   while (photons.size() < count) {
     const std::uint32_t triangle = pick(random);
     const glm::vec3 point = test::random_point(scene, triangle, random);
-    if (point.x < lit) test::add_photon(photons, scene, point, sided(triangle, 0), random);
+    if (point.x < lit) test::add_photon(photons, scene, point, oriented(triangle, 0), random);
   }
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
-TEST_CASE("crowding is one over the part of a surface that is lit evenly") {
+TEST_CASE("density_ratio is one over the part of a surface that is lit evenly") {
   const int cells = GENERATE(1, 32);  // large triangles are divided, small ones are bins themselves
   const float lit = GENERATE(1.0f, 0.5f, 0.25f);
   Scene scene = test::empty_scene();
@@ -327,17 +327,17 @@ TEST_CASE("crowding is one over the part of a surface that is lit evenly") {
   Patches patch;  // one for all
   patch.first_of = {0, static_cast<std::uint32_t>(scene.triangle_count())};
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    patch.members.push_back(sided(t, 0));
+    patch.members.push_back(oriented(t, 0));
     patch.map_of.insert(patch.map_of.end(), {0u, 1u});
   }
-  const std::vector<float> crowding = maps::photon_crowding(scene, photons, patch);
-  REQUIRE(crowding.size() == 2);
+  const std::vector<float> density_ratio = maps::photon_density_ratio(scene, photons, patch);
+  REQUIRE(density_ratio.size() == 2);
   // The squared density integrates to (1 / lit)^2 lit = 1 / lit of that of photons spread evenly.
   // Bins of 16 photons and more estimate it to within a percent; those that the border of the lit
   // part cuts, one column of at least 32, blur it by at most a thirtieth.
   CAPTURE(cells, lit);
-  CHECK(crowding[0] == Approx(1.0 / lit).epsilon(0.04));
-  CHECK(crowding[1] == 1.0f);  // no photons on the back
+  CHECK(density_ratio[0] == Approx(1.0 / lit).epsilon(0.04));
+  CHECK(density_ratio[1] == 1.0f);  // no photons on the back
 }
 
 TEST_CASE("photons one by one crowd nothing") {
@@ -345,7 +345,7 @@ TEST_CASE("photons one by one crowd nothing") {
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
   for (const std::size_t count : {0u, 1u}) {
     const Photons photons = photons_on_part(scene, 1.0f, count);
-    for (const float value : maps::photon_crowding(scene, photons, {})) CHECK(value == 1.0f);
+    for (const float value : maps::photon_density_ratio(scene, photons, {})) CHECK(value == 1.0f);
   }
 }
 

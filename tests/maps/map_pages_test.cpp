@@ -113,8 +113,8 @@ TEST_CASE("photon pages cover every photon once, in order, within the limit") {
     CHECK(page.last > page.first);
     next = page.last;
     CHECK((page.last - page.first) * 12 <= max_bytes);
-    const std::uint32_t first_map = photons.sided_triangle[page.first];
-    const std::uint32_t last_map = photons.sided_triangle[page.last - 1];
+    const std::uint32_t first_map = photons.oriented_face[page.first];
+    const std::uint32_t last_map = photons.oriented_face[page.last - 1];
     const auto first_member = [&](std::uint32_t map) {
       return candidates.offsets[candidates.first_list_of[map]];
     };
@@ -142,10 +142,11 @@ Photons photons_on(int lit, int count, const Scene& scene) {
       static_cast<std::uint32_t>(scene.triangle_count()) / static_cast<std::uint32_t>(count);
   for (std::uint32_t t = 0; t < static_cast<std::uint32_t>(lit) * per_plate; ++t) {
     for (int i = 0; i < 4; ++i) {
-      test::add_photon(photons, scene, test::random_point(scene, t, random), sided(t, 0), random);
+      test::add_photon(photons, scene, test::random_point(scene, t, random), oriented(t, 0),
+                       random);
     }
   }
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 struct Built {

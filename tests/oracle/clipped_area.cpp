@@ -78,32 +78,33 @@ ClippedArea::ClippedArea(const Scene& scene, const Photons& photons, const Surfa
       surface_(surface),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
       lit_(surface.sheets + 1, false) {
-  for (const std::uint32_t s : photons.sided_triangle) {
+  for (const std::uint32_t s : photons.oriented_face) {
     if (surface.dark[s] == 0) lit_[surface.sheet[s]] = true;
   }
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
-    normals_.push_back(sided_normal(scene, s));
+    normals_.push_back(face_normal(scene, s));
   }
   lit_.back() = true;
 }
 
-bool ClippedArea::is_in_dark_part(const glm::dvec3& hit, std::uint32_t own) const {
-  return std::any_of(surface_.dark_parts.begin(), surface_.dark_parts.end(), [&](const auto& part) {
-    if (part.sided_triangle != own) return false;
-    const glm::dvec3 a(part.corner[0]), ab = glm::dvec3(part.corner[1]) - a;
-    const glm::dvec3 ac = glm::dvec3(part.corner[2]) - a, ah = hit - a;
-    const glm::dvec3 normal = glm::cross(ab, ac);
-    const double whole = glm::dot(normal, normal);
-    const double b = glm::dot(glm::cross(ah, ac), normal) / whole;
-    const double c = glm::dot(glm::cross(ab, ah), normal) / whole;
-    return b >= 0 && c >= 0 && b + c <= 1;
-  });
+bool ClippedArea::is_in_unlit_region(const glm::dvec3& hit, std::uint32_t own) const {
+  return std::any_of(surface_.unlit_regions.begin(), surface_.unlit_regions.end(),
+                     [&](const auto& part) {
+                       if (part.oriented_face != own) return false;
+                       const glm::dvec3 a(part.corner[0]), ab = glm::dvec3(part.corner[1]) - a;
+                       const glm::dvec3 ac = glm::dvec3(part.corner[2]) - a, ah = hit - a;
+                       const glm::dvec3 normal = glm::cross(ab, ac);
+                       const double whole = glm::dot(normal, normal);
+                       const double b = glm::dot(glm::cross(ah, ac), normal) / whole;
+                       const double c = glm::dot(glm::cross(ab, ah), normal) / whole;
+                       return b >= 0 && c >= 0 && b + c <= 1;
+                     });
 }
 
 double ClippedArea::area(const glm::dvec3& hit, std::uint32_t own, double radius,
                          DensityKernel kernel) const {
   const glm::dvec3& n = normals_[own];
-  const bool in_the_dark = is_in_dark_part(hit, surface_.original[own]);
+  const bool in_the_dark = is_in_unlit_region(hit, surface_.original[own]);
   const std::uint32_t own_sheet = in_the_dark ? surface_.sheets : surface_.sheet[own];
   double sum = 0, projected = 0;
   for (std::uint32_t s = 0; s < normals_.size(); ++s) {
@@ -117,8 +118,8 @@ double ClippedArea::area(const glm::dvec3& hit, std::uint32_t own, double radius
     sum += part;
     projected += part * glm::dot(normals_[s], n);
   }
-  for (const DarkPart& dark : surface_.dark_parts) {
-    const glm::dvec3& normal = normals_[dark.sided_triangle];
+  for (const DarkPart& dark : surface_.unlit_regions) {
+    const glm::dvec3& normal = normals_[dark.oriented_face];
     if (in_the_dark || !normals_agree(normal, n, cos_angle_)) continue;
     const double hole = area_of_triangle(hit, n, dark.corner, radius, kernel);
     sum -= hole;

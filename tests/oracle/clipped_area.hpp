@@ -20,18 +20,18 @@ class ClippedArea {
   static constexpr double slab = 0.2;
 
   /// References are kept. The constructor takes from `surface` the sheets, the exposure and the
-  /// dark parts, and no more.
+  /// unlit regions, and no more.
   ClippedArea(const Scene& scene, const Photons& photons, const SurfaceIndex& surface,
               double angle_degrees);
 
   /// The integral of the kernel, square metres, over the surface within `radius` of a hit and in
   /// the slab around its plane, of agreeing normal, on sheets where photons landed or on the hit's
-  /// own, without the dark parts. A hit within a dark part counts these, too.
-  double area(const glm::dvec3& hit, std::uint32_t sided_triangle, double radius,
+  /// own, without the unlit regions. A hit within an unlit region counts these, too.
+  double area(const glm::dvec3& hit, std::uint32_t oriented_face, double radius,
               DensityKernel kernel = DensityKernel::constant) const;
 
  private:
-  bool is_in_dark_part(const glm::dvec3& hit, std::uint32_t original) const;
+  bool is_in_unlit_region(const glm::dvec3& hit, std::uint32_t original) const;
   double area_of_triangle(const glm::dvec3& hit, const glm::dvec3& normal,
                           const std::array<glm::vec3, 3>& corners, double radius,
                           DensityKernel kernel) const;
@@ -40,7 +40,7 @@ class ClippedArea {
   const SurfaceIndex& surface_;
   double cos_angle_;
   std::vector<bool> lit_;            ///< per sheet
-  std::vector<glm::dvec3> normals_;  ///< per sided triangle
+  std::vector<glm::dvec3> normals_;  ///< per oriented face
 };
 
 }  // namespace photile::reference

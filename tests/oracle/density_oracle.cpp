@@ -47,7 +47,7 @@ DensityOracle::DensityOracle(const Scene& scene, const Photons& photons, PhotonF
       diagonal_(diagonal_of(scene)) {
   normals_.reserve(2 * scene.triangle_count());
   for (std::uint32_t map = 0; map < 2 * scene.triangle_count(); ++map) {
-    normals_.push_back(sided_normal(scene, map));
+    normals_.push_back(face_normal(scene, map));
   }
 }
 
@@ -66,11 +66,11 @@ bool DensityOracle::counts(std::uint32_t photon_map, std::uint32_t hit_map) cons
          normals_agree(normals_[photon_map], normals_[hit_map], cos_angle_);
 }
 
-OracleNeighbours DensityOracle::nearest(const glm::dvec3& hit, std::uint32_t sided_triangle, int k,
+OracleNeighbours DensityOracle::nearest(const glm::dvec3& hit, std::uint32_t oriented_face, int k,
                                         double radius) const {
   std::vector<std::pair<double, std::uint32_t>> candidates;
   for (std::uint32_t i = 0; i < photons_.size(); ++i) {
-    if (!counts(photons_.sided_triangle[i], sided_triangle)) continue;
+    if (!counts(photons_.oriented_face[i], oriented_face)) continue;
     const glm::dvec3 offset = glm::dvec3(photons_.position[i]) - hit;
     const double squared_distance = glm::dot(offset, offset);
     if (squared_distance <= radius * radius) candidates.emplace_back(squared_distance, i);
@@ -91,30 +91,30 @@ OracleNeighbours DensityOracle::nearest(const glm::dvec3& hit, std::uint32_t sid
 }
 
 std::vector<glm::dvec3> DensityOracle::irradiance(const glm::dvec3& hit,
-                                                  std::uint32_t sided_triangle, int k,
-                                                  double radius, DensityKernel kernel) const {
+                                                  std::uint32_t oriented_face, int k, double radius,
+                                                  DensityKernel kernel) const {
   if (k == 1) kernel = DensityKernel::constant;
-  OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
+  OracleNeighbours near = nearest(hit, oriented_face, k, radius);
   leave_out_last(near, k);
   const double squared = squared_disc(near, radius, diagonal_);
   return sums(near, std::sqrt(squared), kernel, glm::pi<double>() * squared * mean_weight(kernel));
 }
 
 std::vector<glm::dvec3> DensityOracle::irradiance(const ClippedArea& surface, const glm::dvec3& hit,
-                                                  std::uint32_t sided_triangle, int k,
-                                                  double radius, DensityKernel kernel) const {
+                                                  std::uint32_t oriented_face, int k, double radius,
+                                                  DensityKernel kernel) const {
   if (k == 1) kernel = DensityKernel::constant;
-  OracleNeighbours near = nearest(hit, sided_triangle, k, radius);
+  OracleNeighbours near = nearest(hit, oriented_face, k, radius);
   leave_out_last(near, k);
   const double disc = std::sqrt(squared_disc(near, radius, diagonal_));
   OracleNeighbours in_slab;
   for (std::size_t i = 0; i < near.photons.size(); ++i) {
     const glm::dvec3 offset = glm::dvec3(photons_.position[near.photons[i]]) - hit;
-    if (std::abs(glm::dot(offset, normals_[sided_triangle])) > ClippedArea::slab * disc) continue;
+    if (std::abs(glm::dot(offset, normals_[oriented_face])) > ClippedArea::slab * disc) continue;
     in_slab.photons.push_back(near.photons[i]);
     in_slab.squared_distance.push_back(near.squared_distance[i]);
   }
-  return sums(in_slab, disc, kernel, surface.area(hit, sided_triangle, disc, kernel));
+  return sums(in_slab, disc, kernel, surface.area(hit, oriented_face, disc, kernel));
 }
 
 std::vector<glm::dvec3> DensityOracle::sums(const OracleNeighbours& near, double radius,

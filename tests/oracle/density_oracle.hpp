@@ -12,8 +12,8 @@
 
 namespace photile::reference {
 
-/// Photons that may be neighbours of hits on a sided triangle: those whose own sided triangle's
-/// normal agrees with it (grouped maps), or those on the very same sided triangle (naive maps).
+/// Photons that may be neighbours of hits on an oriented face: those whose own oriented face's
+/// normal agrees with it (grouped maps), or those on the very same oriented face (naive maps).
 enum class PhotonFilter { grouped, naive };
 
 struct OracleNeighbours {
@@ -27,26 +27,26 @@ class DensityOracle {
   /// References are kept. `angle_degrees`: largest angle between normals.
   DensityOracle(const Scene& scene, const Photons& photons, PhotonFilter filter,
                 double angle_degrees);
-  /// An oracle for photons of one light on surfaces of these unit normals, by sided triangle; no
+  /// An oracle for photons of one light on surfaces of these unit normals, by oriented face; no
   /// disc is smaller than a hundred-thousandth of `size`, metres.
   DensityOracle(std::vector<glm::dvec3> normals, double size, const Photons& photons,
                 double angle_degrees);
 
   /// The k nearest photons of a hit, none farther than `radius`.
-  OracleNeighbours nearest(const glm::dvec3& hit, std::uint32_t sided_triangle, int k,
+  OracleNeighbours nearest(const glm::dvec3& hit, std::uint32_t oriented_face, int k,
                            double radius) const;
 
   /// Irradiance per light at power 1: flux of the k - 1 nearest (all, where fewer than k lie within
   /// the radius; the nearest for k = 1) over the area of the disc. With a kernel and k > 1 each is
   /// weighted, and the area is the kernel's integral.
-  std::vector<glm::dvec3> irradiance(const glm::dvec3& hit, std::uint32_t sided_triangle, int k,
+  std::vector<glm::dvec3> irradiance(const glm::dvec3& hit, std::uint32_t oriented_face, int k,
                                      double radius,
                                      DensityKernel kernel = DensityKernel::constant) const;
 
   /// The irradiance where the disc is clipped to the surface: of these photons those in the slab
   /// around the hit's plane, over the clipped area.
   std::vector<glm::dvec3> irradiance(const ClippedArea& surface, const glm::dvec3& hit,
-                                     std::uint32_t sided_triangle, int k, double radius,
+                                     std::uint32_t oriented_face, int k, double radius,
                                      DensityKernel kernel = DensityKernel::constant) const;
 
  private:
@@ -59,7 +59,7 @@ class DensityOracle {
   double cos_angle_;
   std::size_t light_count_;
   double diagonal_;
-  std::vector<glm::dvec3> normals_;  ///< per sided triangle
+  std::vector<glm::dvec3> normals_;  ///< per oriented face
 };
 
 }  // namespace photile::reference

@@ -21,9 +21,9 @@ inline double estimate_tolerance(int k) { return (static_cast<double>(k) + 16.0)
 /// Whether the last photon of an estimate, the (k - 1)-th or for k = 1 the first, ties with the
 /// next or with the radius: then it is another's estimate that single precision may give.
 inline bool estimate_is_tied(const DensityOracle& oracle, const glm::dvec3& hit,
-                             std::uint32_t sided_triangle, int k, double radius) {
+                             std::uint32_t oriented_face, int k, double radius) {
   const auto last = static_cast<std::size_t>(std::max(k - 1, 1));
-  const auto near = oracle.nearest(hit, sided_triangle, k + 1, radius * (1 + tie));
+  const auto near = oracle.nearest(hit, oriented_face, k + 1, radius * (1 + tie));
   const std::vector<double>& squared = near.squared_distance;
   const auto tied = [](double a, double b) { return std::abs(a - b) <= tie * b; };
   return (squared.size() > last && tied(squared[last - 1], squared[last])) ||

@@ -289,7 +289,7 @@ PrimaryHits hits_in_a_row(std::size_t count, double apart, double weight) {
   PrimaryHits hits;
   for (std::size_t i = 0; i < count; ++i) {
     hits.position.emplace_back(static_cast<double>(i) * apart, 0.0, 0.0);
-    hits.sided_triangle.push_back(0);
+    hits.oriented_face.push_back(0);
     hits.pixel.push_back(5);
     hits.throughput.emplace_back(weight / static_cast<double>(count));
     hits.diffuse_albedo.emplace_back(1.0f);

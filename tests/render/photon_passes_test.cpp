@@ -224,14 +224,14 @@ TEST_CASE("the host's memory is known, and the same however much of it is in use
 
 constexpr std::size_t hits = 3000;  // several tasks
 
-LightPooling random_pooling(std::size_t lights, std::size_t layers, std::mt19937& random) {
-  LightPooling pooling;
-  for (std::size_t i = 0; i < layers; ++i) pooling.layers.push_back("layer" + std::to_string(i));
+LayerMixdown random_pooling(std::size_t lights, std::size_t layers, std::mt19937& random) {
+  LayerMixdown mixdown;
+  for (std::size_t i = 0; i < layers; ++i) mixdown.layers.push_back("layer" + std::to_string(i));
   for (std::size_t i = 0; i < lights; ++i) {
-    pooling.layer_of.push_back(static_cast<std::uint32_t>(random() % layers));
-    pooling.scale.push_back(static_cast<float>(random() % 100) / 10);
+    mixdown.layer_of.push_back(static_cast<std::uint32_t>(random() % layers));
+    mixdown.scale.push_back(static_cast<float>(random() % 100) / 10);
   }
-  return pooling;
+  return mixdown;
 }
 
 /// Estimates of all lights where they are few; else of some at each hit, of none at every seventh.
@@ -270,9 +270,9 @@ Values of_hit(const Estimates& estimates, const std::vector<glm::vec3>& values, 
 
 void check_pooled(std::size_t lights, std::size_t layers, bool glossy) {
   std::mt19937 random(5);
-  const LightPooling pooling = random_pooling(lights, layers, random);
+  const LayerMixdown mixdown = random_pooling(lights, layers, random);
   const Estimates estimates = random_estimates(lights, glossy, random);
-  const Estimates result = pooled(pooling, estimates, hits);
+  const Estimates result = pooled(mixdown, estimates, hits);
   REQUIRE(result.first.empty() == (layers <= max_dense_lights));
   REQUIRE(result.radiance.empty() != glossy);
   double worst = 0;
@@ -280,7 +280,7 @@ void check_pooled(std::size_t lights, std::size_t layers, bool glossy) {
     for (std::size_t hit = 0; hit < hits; ++hit) {
       Values expected;
       for (const auto& [light, value] : of_hit(estimates, estimates.*values, hit, lights)) {
-        expected[pooling.layer_of[light]] += static_cast<double>(pooling.scale[light]) * value;
+        expected[mixdown.layer_of[light]] += static_cast<double>(mixdown.scale[light]) * value;
       }
       const Values found = of_hit(result, result.*values, hit, layers);
       if (!result.first.empty()) REQUIRE(found.size() == expected.size());

@@ -14,7 +14,7 @@ namespace photile::test {
 /// In at least 16 parts of rows where there are as many: each layer is pooled into itself.
 inline LightLayers picture_in_parts(const Scene& scene, const Camera& camera,
                                     const RenderParameters& parameters) {
-  LightPooling itself;
+  LayerMixdown itself;
   for (const LightGroup& group : light_groups_of(scene).groups) {
     itself.layer_of.push_back(static_cast<std::uint32_t>(itself.layers.size()));
     itself.layers.push_back(group.name);

@@ -90,7 +90,7 @@ Photons photons_of(const Scene& scene, std::size_t count) {
   for (std::size_t i = 0; i < crowd; ++i) {
     test::add_photon(photons, scene, 0.5f * a + 0.3f * b + 0.2f * c, 0, random);
   }
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 PrimaryHits hits_of(const Scene& scene, std::size_t count) {
@@ -98,8 +98,8 @@ PrimaryHits hits_of(const Scene& scene, std::size_t count) {
   if (!needs_of(scene).glossy) return hits;
   std::mt19937_64 random(74);
   std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
-  for (const std::uint32_t map : hits.sided_triangle) {
-    const glm::vec3 normal(sided_normal(scene, map));
+  for (const std::uint32_t map : hits.oriented_face) {
+    const glm::vec3 normal(face_normal(scene, map));
     const glm::vec3 offset(uniform(random), uniform(random), uniform(random));
     hits.outgoing.push_back(glm::normalize(normal + offset));
     hits.lobe.push_back({scene.materials[0].specular, scene.materials[0].roughness, normal});

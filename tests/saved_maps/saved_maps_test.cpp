@@ -271,7 +271,7 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   CHECK_NOTHROW(saved_maps::load(file, scene, words));
   PreparedPhotons bad = good;
   SECTION("light") { bad.photons.light[0] = 7; }
-  SECTION("triangle") { bad.photons.sided_triangle[0] = 1'000'000; }
+  SECTION("triangle") { bad.photons.oriented_face[0] = 1'000'000; }
   SECTION("rows") { bad.photons.first_of[1] = 0xFFFF'FFFF; }
   SECTION("lengths") { bad.photons.flux.pop_back(); }
   SECTION("members") { bad.groups.members[0] = 1'000'000; }

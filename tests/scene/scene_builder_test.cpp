@@ -62,7 +62,7 @@ TEST_CASE("a mesh of arrays becomes a scene with every array filled") {
   CHECK(scene.lights[lamp].triangles == std::vector<std::uint32_t>{2});
   CHECK(scene.cameras.size() == 1);
   for (std::uint32_t t = 0; t < 4; ++t) {
-    const glm::dvec3 outwards = sided_normal(scene, sided(t, scene.front_side[t]));
+    const glm::dvec3 outwards = face_normal(scene, oriented(t, scene.front_side[t]));
     CHECK(glm::dot(outwards, glm::dvec3(scene.corners(t)[0]) - glm::dvec3(0.2)) > 0);
   }
 }
@@ -114,7 +114,7 @@ TEST_CASE("a triangle is the same whichever corner comes first, and its winding 
     builder.triangle(given[0], given[1], given[2], builder.add(diffuse(glm::vec3(0.5f))));
     const Scene scene = builder.build();
     CHECK(scene.corners(0) == std::array<glm::vec3, 3>{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}});
-    CHECK(sided_normal(scene, sided(0, scene.front_side[0])).z ==
+    CHECK(face_normal(scene, oriented(0, scene.front_side[0])).z ==
           glm::cross(given[1] - given[0], given[2] - given[0]).z);
   } while (std::next_permutation(order.begin(), order.end()));
 }
@@ -318,7 +318,7 @@ TEST_CASE("photons that do not fit the scene are an error of the maps, and no cr
   };
   refuse([](Photons& p) { p.flux.pop_back(); }, "different lengths");
   refuse([](Photons& p) { p.first_of.clear(); }, "order of their triangles");
-  refuse([](Photons& p) { std::reverse(p.sided_triangle.begin(), p.sided_triangle.end()); },
+  refuse([](Photons& p) { std::reverse(p.oriented_face.begin(), p.oriented_face.end()); },
          "order of their triangles");
   refuse([](Photons& p) { p.position[7].x = nan; }, "NaN or infinite");
   CHECK_THROWS_WITH(

@@ -30,7 +30,7 @@ const Light& light_named(const Scene& scene, const std::string& name) {
 }
 
 glm::dvec3 front_normal(const Scene& scene, std::uint32_t triangle) {
-  return sided_normal(scene, sided(triangle, scene.front_side[triangle]));
+  return face_normal(scene, oriented(triangle, scene.front_side[triangle]));
 }
 
 /// Distance along a ray to a triangle (Moeller and Trumbore 1997), both sides.

@@ -28,7 +28,7 @@ inline ExpectedEstimates expected_irradiance(const reference::DensityOracle& ora
                                              DensityKernel kernel = DensityKernel::constant) {
   ExpectedEstimates expected;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    expected.push_back(oracle.irradiance(hits.position[hit], hits.sided_triangle[hit], k,
+    expected.push_back(oracle.irradiance(hits.position[hit], hits.oriented_face[hit], k,
                                          static_cast<float>(radius), kernel));
   }
   return expected;
@@ -120,7 +120,7 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
   ExpectedEstimates expected;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const auto near =
-        oracle.nearest(hits.position[hit], hits.sided_triangle[hit], k, static_cast<float>(radius));
+        oracle.nearest(hits.position[hit], hits.oriented_face[hit], k, static_cast<float>(radius));
     const auto count = static_cast<std::size_t>(k);
     const std::size_t used = near.photons.size() == count ? count - 1 : near.photons.size();
     std::vector<glm::dvec3>& sums = expected.emplace_back(lights, glm::dvec3(0.0));
@@ -181,7 +181,7 @@ inline void add_lobes(PrimaryHits& hits, const Scene& scene, std::uint64_t seed)
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const glm::vec3 normal = glm::vec3(sided_normal(scene, hits.sided_triangle[i]));
+    const glm::vec3 normal = glm::vec3(face_normal(scene, hits.oriented_face[i]));
     hits.outgoing.push_back(
         glm::normalize(normal + glm::vec3(uniform(random), uniform(random), uniform(random))));
     hits.lobe.push_back({scene.materials[0].specular, scene.materials[0].roughness, normal});

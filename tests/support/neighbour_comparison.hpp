@@ -22,7 +22,7 @@ inline std::size_t count_differences(const PrimaryHits& hits, const NeighbourLis
   std::size_t differences = 0;
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const glm::dvec3 position = hits.position[hit];
-    const auto expected = oracle.nearest(position, hits.sided_triangle[hit], found.k, radius);
+    const auto expected = oracle.nearest(position, hits.oriented_face[hit], found.k, radius);
     const std::set<std::uint32_t> wanted(expected.photons.begin(), expected.photons.end());
     std::set<std::uint32_t> got;
     for (std::size_t i = 0; i < k; ++i) {

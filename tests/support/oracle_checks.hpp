@@ -63,7 +63,7 @@ struct MapsUnderTest {
   ExpectedEstimates expected(const std::vector<glm::vec3>& found, int k) const {
     ExpectedEstimates truth = expected_irradiance(oracle, hits, k, radius);
     for (std::size_t hit = 0; hit < truth.size(); ++hit) {
-      if (!estimate_is_tied(oracle, hits.position[hit], hits.sided_triangle[hit], k, radius)) {
+      if (!estimate_is_tied(oracle, hits.position[hit], hits.oriented_face[hit], k, radius)) {
         continue;
       }
       const auto first = found.begin() + static_cast<std::ptrdiff_t>(hit * truth[hit].size());

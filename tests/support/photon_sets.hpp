@@ -90,16 +90,16 @@ inline std::discrete_distribution<std::uint32_t> by_area(const Scene& scene) {
 }
 
 inline void add_photon(Photons& photons, const Scene& scene, glm::vec3 position,
-                       std::uint32_t sided_triangle, std::mt19937_64& random) {
+                       std::uint32_t oriented_face, std::mt19937_64& random) {
   std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
   photons.position.push_back(position);
   photons.flux.emplace_back(uniform(random), uniform(random), uniform(random));
-  photons.sided_triangle.push_back(sided_triangle);
+  photons.oriented_face.push_back(oriented_face);
   if (scene.lights.size() > 1) {
     photons.light.push_back(static_cast<std::uint16_t>(random() % scene.lights.size()));
   }
   if (needs_of(scene).glossy) {
-    const glm::dvec3 normal = sided_normal(scene, sided_triangle);
+    const glm::dvec3 normal = face_normal(scene, oriented_face);
     photons.incoming.emplace_back(glm::normalize(
         glm::vec3(normal) + 0.8f * glm::vec3(uniform(random), uniform(random), uniform(random))));
   }
@@ -114,19 +114,19 @@ inline Photons uniform_photons(const Scene& scene, std::size_t count, std::uint6
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t triangle = pick(random);
     const std::uint32_t side = both_sides ? static_cast<std::uint32_t>(random() & 1) : 0;
-    add_photon(photons, scene, random_point(scene, triangle, random), sided(triangle, side),
+    add_photon(photons, scene, random_point(scene, triangle, random), oriented(triangle, side),
                random);
   }
-  return sort_by_sided_triangle(std::move(photons), 2 * scene.triangle_count());
+  return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
-/// Hits uniform over the scene, grouped by sided triangle as the estimator wants them.
+/// Hits uniform over the scene, grouped by oriented face as the estimator wants them.
 inline PrimaryHits uniform_hits(const Scene& scene, std::size_t count, std::uint64_t seed,
                                 bool both_sides = true) {
   const Photons points = uniform_photons(scene, count, seed, both_sides);
   PrimaryHits hits;
   hits.position = points.position;
-  hits.sided_triangle = points.sided_triangle;
+  hits.oriented_face = points.oriented_face;
   hits.pixel.resize(count);
   hits.throughput.assign(count, glm::vec3(1.0f));
   hits.diffuse_albedo.assign(count, glm::vec3(0.5f));

@@ -48,10 +48,10 @@ struct RoomWithWindow {
   }
 
   /// Whether a side of a triangle looks into the room.
-  static bool inside(const Scene& scene, std::uint32_t sided_triangle) {
+  static bool inside(const Scene& scene, std::uint32_t oriented_face) {
     const glm::dvec3 middle(0.5 * width, 0.5 * height, 0.5 * depth);
-    const glm::dvec3 corner(scene.corners(triangle_of(sided_triangle))[0]);
-    return glm::dot(sided_normal(scene, sided_triangle), middle - corner) > 0;
+    const glm::dvec3 corner(scene.corners(triangle_of(oriented_face))[0]);
+    return glm::dot(face_normal(scene, oriented_face), middle - corner) > 0;
   }
 };
 

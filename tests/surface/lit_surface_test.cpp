@@ -13,10 +13,10 @@
 #include "photile/surface_index.hpp"
 #include "photon_sets.hpp"
 #include "surface/boundary_edges.hpp"
-#include "surface/dark_sides.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
 #include "surface/sheets.hpp"
+#include "surface/unlit_sides.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -60,16 +60,16 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
     Photons photons;
     spread(bright, 6, photons);
     photons.position.insert(photons.position.end(), on_lit, middle_of(lit));
-    // The next photon lies over the dark part, on the other triangle.
+    // The next photon lies over the unlit region, on the other triangle.
     const std::uint32_t own = 64 + on_lit;
     photons.position.push_back(middle_of(dark) + above);
     photons.first_of = {0, own, own, own + 1, own + 1};
     const auto parts =
-        surface::find_dark_parts(mesh, photons, std::vector<std::uint8_t>(4, 0), 0.05);
+        surface::find_unlit_regions(mesh, photons, std::vector<std::uint8_t>(4, 0), 0.05);
     CAPTURE(on_lit);
     REQUIRE(parts.size() == (on_lit == 10 ? 1 : 0));
     for (const DarkPart& part : parts) {
-      CHECK(part.sided_triangle == 0);
+      CHECK(part.oriented_face == 0);
       CHECK(glm::distance(middle_of(part.corner), middle_of(dark)) < 1e-6f);
     }
   }
@@ -77,17 +77,17 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
 
 // Sides that no photon reaches, by what their sheet lets expect.
 
-/// The dark sides of a plate of 200 equal triangles, where so many photons landed on the front of
+/// The unlit sides of a plate of 200 equal triangles, where so many photons landed on the front of
 /// each triangle, and none on the first ones.
-std::vector<std::uint32_t> dark_sides(std::uint32_t on_each, std::uint32_t empty) {
+std::vector<std::uint32_t> unlit_sides(std::uint32_t on_each, std::uint32_t empty) {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 10);
   const surface::SurfaceMesh mesh(scene);
   std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
-  for (std::uint32_t t = empty; t < scene.triangle_count(); ++t) landed[sided(t, 0)] = on_each;
+  for (std::uint32_t t = empty; t < scene.triangle_count(); ++t) landed[oriented(t, 0)] = on_each;
   const auto connections = surface::find_connections(mesh, 0.1, 60);
   const auto dark =
-      surface::find_dark_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
+      surface::find_unlit_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
   std::vector<std::uint32_t> found;
   for (std::uint32_t s = 0; s < dark.size(); ++s) {
     if (dark[s] != 0) found.push_back(s);
@@ -97,11 +97,11 @@ std::vector<std::uint32_t> dark_sides(std::uint32_t on_each, std::uint32_t empty
 
 TEST_CASE("sides are dark together where 40 photons are expected and none landed") {
   std::vector<std::uint32_t> first_row;
-  for (std::uint32_t t = 0; t < 20; ++t) first_row.push_back(sided(t, 0));
-  CHECK(dark_sides(20, 20) == first_row);  // 18 expected on each
-  CHECK(dark_sides(5, 20).empty());        // 4.5 on each: too few to tell
-  CHECK(dark_sides(50, 1) == std::vector<std::uint32_t>{0});
-  CHECK(dark_sides(20, 1).empty());  // 19.9, and no neighbour that is dark as well
+  for (std::uint32_t t = 0; t < 20; ++t) first_row.push_back(oriented(t, 0));
+  CHECK(unlit_sides(20, 20) == first_row);  // 18 expected on each
+  CHECK(unlit_sides(5, 20).empty());        // 4.5 on each: too few to tell
+  CHECK(unlit_sides(50, 1) == std::vector<std::uint32_t>{0});
+  CHECK(unlit_sides(20, 1).empty());  // 19.9, and no neighbour that is dark as well
 }
 
 // How much of lit surface lies open under what lies on it.
@@ -128,7 +128,7 @@ float floor_exposure(const Scene& scene, bool tiles_lit) {
   std::uint32_t floor = none;
   for (std::uint32_t s = 0; s < landed.size(); ++s) {
     const bool is_floor = triangle_of(s) < 2;
-    landed[s] = sided_normal(scene, s).z > 0.9 && (is_floor || tiles_lit);
+    landed[s] = face_normal(scene, s).z > 0.9 && (is_floor || tiles_lit);
     if (is_floor && landed[s] != 0 && floor == none) floor = s;
   }
   return index_surface(scene, landed, radius, 60).exposure[floor];
@@ -152,7 +152,7 @@ TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers 
     const Scene scene = room.build();
     std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
     for (std::uint32_t s = 0; s < landed.size(); ++s) {
-      landed[s] = lit_below || sided_normal(scene, s).z > 0;
+      landed[s] = lit_below || face_normal(scene, s).z > 0;
     }
     const SurfaceIndex index = index_surface(scene, landed, radius, 60);
     float least = 1;
@@ -237,7 +237,7 @@ std::set<std::uint32_t> sheets_facing_up(const Scene& scene) {
   const surface::Sheets sheets = sheets_of(scene);
   std::set<std::uint32_t> found;
   for (std::uint32_t s = 0; s < sheets.of.size(); ++s) {
-    if (sided_normal(scene, s).z > 0.9) found.insert(sheets.of[s]);
+    if (face_normal(scene, s).z > 0.9) found.insert(sheets.of[s]);
   }
   return found;
 }
@@ -305,8 +305,8 @@ TEST_CASE("the blades of a fan are joined as by all pairs, of which few are look
               continue;
             }
             for (const std::uint32_t side : {0u, 1u}) {
-              pairs.join(sided(a.triangle, side),
-                         sided(b.triangle, side ^ surface::flip_between(a, b)));
+              pairs.join(oriented(a.triangle, side),
+                         oriented(b.triangle, side ^ surface::flip_between(a, b)));
             }
           }
         }

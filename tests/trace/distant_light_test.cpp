@@ -65,7 +65,7 @@ double flux_from_above(const Scene& scene, std::uint64_t seed, std::uint64_t pat
       trace_photons(RayScene(scene), {.emitted_photons = paths, .seed = seed}).photons;
   double flux = 0;
   for (std::size_t i = 0; i < photons.size(); ++i)
-    if (sided_normal(scene, photons.sided_triangle[i]).z > 0.5) flux += luminance(photons.flux[i]);
+    if (face_normal(scene, photons.oriented_face[i]).z > 0.5) flux += luminance(photons.flux[i]);
   return flux;
 }
 
@@ -193,7 +193,7 @@ TEST_CASE("photons of an even environment land evenly on both sides of a plate, 
     const glm::vec3 p = 2.0f * (photons.position[i] + 1.0f);
     const int cell =
         4 * std::clamp(static_cast<int>(p.y), 0, 3) + std::clamp(static_cast<int>(p.x), 0, 3);
-    const bool top = sided_normal(scene, photons.sided_triangle[i]).z > 0;
+    const bool top = face_normal(scene, photons.oriented_face[i]).z > 0;
     ++counts[static_cast<std::size_t>(cell + (top ? 16 : 0))];
   }
   counts.back() = static_cast<double>(paths - photons.size());

@@ -32,7 +32,7 @@ std::vector<double> counts_in_rings(const Scene& scene, std::uint64_t seed) {
   for (std::size_t i = 0; i < photons.size(); ++i) {
     const glm::vec3& p = photons.position[i];
     const double ring = 10 * std::hypot(p.x, p.y);
-    const bool on_top = sided_normal(scene, photons.sided_triangle[i]).z > 0;
+    const bool on_top = face_normal(scene, photons.oriented_face[i]).z > 0;
     ++counts[on_top && ring < 20 ? static_cast<std::size_t>(ring) : 20];
   }
   return counts;

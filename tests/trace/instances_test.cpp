@@ -160,10 +160,10 @@ TEST_CASE("photons of a room with instances are those of the flattened room") {
     return sum;
   };
   CHECK(flux(shared.photons) == Approx(flux(single.photons)).epsilon(2e-3));
-  // Both lie in the order of their sided triangles: nearly all have a twin on the same one.
+  // Both lie in the order of their oriented faces: nearly all have a twin on the same one.
   std::vector<std::uint32_t> together;
-  std::set_intersection(shared.photons.sided_triangle.begin(), shared.photons.sided_triangle.end(),
-                        single.photons.sided_triangle.begin(), single.photons.sided_triangle.end(),
+  std::set_intersection(shared.photons.oriented_face.begin(), shared.photons.oriented_face.end(),
+                        single.photons.oriented_face.begin(), single.photons.oriented_face.end(),
                         std::back_inserter(together));
   CHECK(static_cast<double>(together.size()) > 0.998 * count);
 }
@@ -237,7 +237,7 @@ double share_through(const Scene& scene) {
     const RandomBlock place = random.block(Purpose::film_position, 0);
     glm::vec3 origin(1.8f * place.uniform(0) - 0.9f, 1.8f * place.uniform(1) - 0.9f, 2);
     std::uint32_t holes = 0;
-    const auto met = next_surface(rays, origin, {0, 0, -1}, random, Purpose::eye_holes, holes);
+    const auto met = next_surface(rays, origin, {0, 0, -1}, random, Purpose::eye_cutouts, holes);
     REQUIRE(met);
     through += met->position.z < -0.5f;
   }
@@ -304,7 +304,8 @@ TEST_CASE("A surface without holes asks for no random numbers") {
   const RayScene rays(scene);
   glm::vec3 origin(0.1f, 0.2f, 1.0f);
   std::uint32_t holes = 0;
-  REQUIRE(next_surface(rays, origin, {0, 0, -1}, RandomStream(1, 1, 0), Purpose::eye_holes, holes));
+  REQUIRE(
+      next_surface(rays, origin, {0, 0, -1}, RandomStream(1, 1, 0), Purpose::eye_cutouts, holes));
   CHECK(holes == 0);
   CHECK(origin == glm::vec3(0.1f, 0.2f, 1.0f));
 }

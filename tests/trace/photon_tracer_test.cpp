@@ -153,7 +153,7 @@ TEST_CASE("A photon is stored where it lands, before it is reflected") {
   REQUIRE(photons.incoming.size() == photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i) {
     CHECK(photons.position[i].z == 0.0f);
-    CHECK(sided_normal(scene, photons.sided_triangle[i]).z == 1.0);
+    CHECK(face_normal(scene, photons.oriented_face[i]).z == 1.0);
     CHECK(photons.incoming[i] == -sun.direction);
     CHECK(glm::distance(1000.0f * photons.flux[i], sun.color) < 1e-5f);
   }
@@ -164,7 +164,7 @@ TEST_CASE("Light from below is stored on the lower side") {
   scene.lights.push_back(point_light("lamp", {0, 0, -1}));
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 1000}).photons;
   REQUIRE(photons.size() > 100);
-  for (const std::uint32_t s : photons.sided_triangle) CHECK(sided_normal(scene, s).z == -1.0);
+  for (const std::uint32_t s : photons.oriented_face) CHECK(face_normal(scene, s).z == -1.0);
 }
 
 TEST_CASE("Nothing is stored on mirrors and glass, and arrays that nobody needs stay empty") {
@@ -175,17 +175,17 @@ TEST_CASE("Nothing is stored on mirrors and glass, and arrays that nobody needs 
   scene.materials.push_back(mirror(glm::vec3(0.9f)));
   scene.triangle_material[0] = scene.triangle_material[5] = 1;
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 10'000}).photons;
-  for (const std::uint32_t s : photons.sided_triangle) {
+  for (const std::uint32_t s : photons.oriented_face) {
     CHECK(triangle_of(s) != 0);
     CHECK(triangle_of(s) != 5);
   }
 }
 
-TEST_CASE("Photons are in the order of their sided triangles, and counts per light add up") {
+TEST_CASE("Photons are in the order of their oriented faces, and counts per light add up") {
   const Scene scene = furnished_room(3);
   const PhotonTracerResult result = trace_photons(RayScene(scene), {.emitted_photons = 20'000});
   const Photons& photons = result.photons;
-  CHECK(std::is_sorted(photons.sided_triangle.begin(), photons.sided_triangle.end()));
+  CHECK(std::is_sorted(photons.oriented_face.begin(), photons.oriented_face.end()));
   CHECK(photons.first_of.size() == 2 * scene.triangle_count() + 1);
   CHECK(photons.first_of.back() == photons.size());
   std::vector<std::uint64_t> counted(2, 0);
@@ -249,31 +249,31 @@ TEST_CASE("Tracing stops when it is cancelled, and reports all of its paths when
 
 // The order and the size of stored photons.
 
-/// Photons on random sided triangles; the x of each position is its index.
-Photons random_photons(std::size_t count, std::uint32_t sided_triangles, bool full) {
+/// Photons on random oriented faces; the x of each position is its index.
+Photons random_photons(std::size_t count, std::uint32_t oriented_faces, bool full) {
   std::mt19937 generator(99);
   Photons photons;
   for (std::size_t i = 0; i < count; ++i) {
     photons.position.emplace_back(i, 1, 2);
     photons.flux.emplace_back(3 * i, 4, 5);
-    photons.sided_triangle.push_back(generator() % sided_triangles);
+    photons.oriented_face.push_back(generator() % oriented_faces);
     if (full) photons.incoming.emplace_back(5 * i, 0, 1);
     if (full) photons.light.push_back(static_cast<std::uint16_t>(i % 7));
   }
   return photons;
 }
 
-TEST_CASE("Photons sorted by sided triangle agree with std::stable_sort in every array") {
+TEST_CASE("Photons sorted by oriented face agree with std::stable_sort in every array") {
   for (const std::size_t count : {0, 1, 1000, 300'000})
     for (const bool full : {false, true}) {
-      constexpr std::uint32_t sided_triangles = 1001;
-      const Photons given = random_photons(count, sided_triangles, full);
+      constexpr std::uint32_t oriented_faces = 1001;
+      const Photons given = random_photons(count, oriented_faces, full);
       std::vector<std::size_t> order(count);
       std::iota(order.begin(), order.end(), std::size_t{0});
       std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return given.sided_triangle[a] < given.sided_triangle[b];
+        return given.oriented_face[a] < given.oriented_face[b];
       });
-      const Photons sorted = sort_by_sided_triangle(given, sided_triangles);
+      const Photons sorted = sort_by_oriented_face(given, oriented_faces);
       REQUIRE(sorted.size() == count);
       REQUIRE(sorted.incoming.size() == (full ? count : 0));
       REQUIRE(sorted.light.size() == (full ? count : 0));
@@ -281,7 +281,7 @@ TEST_CASE("Photons sorted by sided triangle agree with std::stable_sort in every
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t from = order[i];
         same &= sorted.position[i] == given.position[from] && sorted.flux[i] == given.flux[from] &&
-                sorted.sided_triangle[i] == given.sided_triangle[from];
+                sorted.oriented_face[i] == given.oriented_face[from];
         if (full)
           same &=
               sorted.incoming[i] == given.incoming[from] && sorted.light[i] == given.light[from];
@@ -293,9 +293,9 @@ TEST_CASE("Photons sorted by sided triangle agree with std::stable_sort in every
 TEST_CASE("Photons of runs are those of all runs in a row, sorted, and the runs are emptied") {
   for (const std::size_t count : {0, 1, 1000, 300'000})
     for (const bool full : {false, true}) {
-      // Many sided triangles: too many for a table of counts for each thread.
-      const std::uint32_t sided_triangles = count == 1000 ? 4000 : 501;
-      Photons given = random_photons(count, sided_triangles, full);
+      // Many oriented faces: too many for a table of counts for each thread.
+      const std::uint32_t oriented_faces = count == 1000 ? 4000 : 501;
+      Photons given = random_photons(count, oriented_faces, full);
       constexpr std::size_t run_size = 333;
       std::vector<trace::PhotonRun> parts(count / run_size + 2);  // the last is empty
       std::vector<trace::LayerRun> runs;
@@ -308,39 +308,38 @@ TEST_CASE("Photons of runs are those of all runs in a row, sorted, and the runs 
           return all.empty() ? all : std::decay_t<decltype(all)>(begin + first, begin + last);
         };
         parts[r] = {part_of(given.position), part_of(given.flux), part_of(given.incoming),
-                    part_of(given.sided_triangle)};
+                    part_of(given.oriented_face)};
         runs.push_back({&parts[r], static_cast<std::uint16_t>(r % 5)});
         if (full) given.light.insert(given.light.end(), last - first, runs.back().layer);
       }
-      const Photons expected = sort_by_sided_triangle(given, sided_triangles);
-      const Photons sorted = trace::sorted_photons(runs, full, sided_triangles);
+      const Photons expected = sort_by_oriented_face(given, oriented_faces);
+      const Photons sorted = trace::sorted_photons(runs, full, oriented_faces);
       CHECK(sorted.position == expected.position);
       CHECK(sorted.flux == expected.flux);
       CHECK(sorted.incoming == expected.incoming);
       CHECK(sorted.light == expected.light);
-      CHECK(sorted.sided_triangle == expected.sided_triangle);
+      CHECK(sorted.oriented_face == expected.oriented_face);
       CHECK(sorted.first_of == expected.first_of);
       for (const trace::PhotonRun& run : parts)
-        CHECK((run.size() == 0 && run.sided_triangle.empty()));
+        CHECK((run.size() == 0 && run.oriented_face.empty()));
     }
 }
 
-TEST_CASE("first_of delimits the photons of each sided triangle, also of empty ones") {
+TEST_CASE("first_of delimits the photons of each oriented face, also of empty ones") {
   Photons photons;
   for (const std::uint32_t s : {3u, 1u, 3u, 3u}) {
-    photons.sided_triangle.push_back(s);
+    photons.oriented_face.push_back(s);
     photons.position.emplace_back(0.0f);
     photons.flux.emplace_back(0.0f);
   }
-  CHECK(sort_by_sided_triangle(photons, 5).first_of ==
-        std::vector<std::uint32_t>{0, 0, 1, 1, 4, 4});
-  CHECK(sort_by_sided_triangle({}, 2).first_of == std::vector<std::uint32_t>{0, 0, 0});
+  CHECK(sort_by_oriented_face(photons, 5).first_of == std::vector<std::uint32_t>{0, 0, 1, 1, 4, 4});
+  CHECK(sort_by_oriented_face({}, 2).first_of == std::vector<std::uint32_t>{0, 0, 0});
 }
 
 TEST_CASE("A photon takes 28 bytes, 12 more where surfaces are glossy and 2 with several lights") {
   CHECK(random_photons(1000, 10, false).bytes() == 28'000);
   CHECK(random_photons(1000, 10, true).bytes() == 42'000);
-  CHECK(sort_by_sided_triangle(random_photons(1000, 10, false), 10).bytes() == 28'000 + 11 * 4);
+  CHECK(sort_by_oriented_face(random_photons(1000, 10, false), 10).bytes() == 28'000 + 11 * 4);
 }
 
 }  // namespace

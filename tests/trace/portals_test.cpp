@@ -41,7 +41,7 @@ Inside inside(const Scene& scene, std::uint64_t seed, std::uint64_t paths) {
       trace_photons(RayScene(scene), {.emitted_photons = paths, .seed = seed}).photons;
   Inside found;
   for (std::size_t i = 0; i < photons.size(); ++i) {
-    if (!Room::inside(scene, photons.sided_triangle[i])) continue;
+    if (!Room::inside(scene, photons.oriented_face[i])) continue;
     found.flux += luminance(photons.flux[i]);
     ++found.count;
   }
@@ -196,8 +196,7 @@ TEST_CASE("light on the outer side of a frame comes by the portal that is found"
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 200'000}).photons;
   std::vector<float> fluxes;
   for (std::size_t i = 0; i < photons.size(); ++i) {
-    if (Room::inside(scene, photons.sided_triangle[i]))
-      fluxes.push_back(luminance(photons.flux[i]));
+    if (Room::inside(scene, photons.oriented_face[i])) fluxes.push_back(luminance(photons.flux[i]));
   }
   REQUIRE(fluxes.size() > 10'000);
   std::sort(fluxes.begin(), fluxes.end());

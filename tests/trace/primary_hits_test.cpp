@@ -59,7 +59,7 @@ TEST_CASE("Each sample of a pixel hits the plate in that pixel's own square, in 
     CHECK(p.z == 0.0f);
     CHECK(batch.hits.throughput[i] == glm::vec3(0.25f));
     CHECK(batch.hits.diffuse_albedo[i] == glm::vec3(0.2f, 0.4f, 0.6f));
-    CHECK(sided_normal(scene, batch.hits.sided_triangle[i]).z == 1.0);
+    CHECK(face_normal(scene, batch.hits.oriented_face[i]).z == 1.0);
   }
   CHECK(strata.size() == 400);
   CHECK(batch.hits.outgoing.empty());
@@ -81,7 +81,7 @@ TEST_CASE("Samples fall evenly over a pixel, and rays beside the plate hit nothi
       counts_agree(counts, std::vector<double>(64, static_cast<double>(batch.hits.size()) / 64)));
 }
 
-TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
+TEST_CASE("Hits are sorted by oriented face, then by Morton code") {
   const Scene scene = furnished_room(2);
   const RayScene rays(scene);
   Camera camera = camera_above();
@@ -92,7 +92,7 @@ TEST_CASE("Hits are sorted by sided triangle, then by Morton code") {
   REQUIRE(hits.size() > 10'000);
   const trace::HitCells cells(impl_of(rays).bounds);
   const auto key = [&](std::size_t i) {
-    return std::pair{hits.sided_triangle[i], cells.morton_code(hits.position[i])};
+    return std::pair{hits.oriented_face[i], cells.morton_code(hits.position[i])};
   };
   for (std::size_t i = 1; i < hits.size(); ++i) REQUIRE(key(i - 1) <= key(i));
 }
@@ -338,7 +338,7 @@ TEST_CASE("Hits are sorted by map and cell, those on triangles without a map las
     for (int i = 0; i < 40; ++i) {
       trace::EyeHit hit{};
       hit.position = {uniform(random), uniform(random), uniform(random)};
-      hit.sided_triangle = static_cast<std::uint32_t>(random() % map_of.size());
+      hit.oriented_face = static_cast<std::uint32_t>(random() % map_of.size());
       record.hits.push_back(hit);
     }
   }
@@ -346,7 +346,7 @@ TEST_CASE("Hits are sorted by map and cell, those on triangles without a map las
   REQUIRE(places.size() == 2'000);
   const auto order_of = [&](const trace::HitPlace& place) {
     const trace::EyeHit& hit = records[place.record].hits[place.index];
-    return std::tuple(map_of[hit.sided_triangle], cells.morton_code(hit.position), place.record,
+    return std::tuple(map_of[hit.oriented_face], cells.morton_code(hit.position), place.record,
                       place.index);
   };
   CHECK(std::is_sorted(places.begin(), places.end(),

@@ -31,7 +31,7 @@ TEST_CASE("A ray hits the point of the plate below it, on the side that it comes
       const SurfacePoint point = surface_hit(scene, *hit, direction);
       CHECK(glm::distance(point.position, glm::vec3(x, y, 0)) < 1e-6f);
       CHECK(point.normal == glm::vec3(0, 0, z));
-      CHECK(glm::dvec3(point.normal) == sided_normal(scene, point.sided_triangle()));
+      CHECK(glm::dvec3(point.normal) == face_normal(scene, point.oriented_face()));
       CHECK(on_front(scene, point) == (z > 0));
     }
   }

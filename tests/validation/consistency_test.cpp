@@ -152,7 +152,7 @@ TEST_CASE("each light of two is read at its own power", "[slow]") {
   CHECK_VERDICT(test::mean_is(second, 3 / (2 * pi), 0.015 * 3 / (2 * pi)));
 }
 
-TEST_CASE("the dark side of a lit plate, and a dark wall beside it, read nothing") {
+TEST_CASE("the unlit side of a lit plate, and a dark wall beside it, read nothing") {
   // The wall stands along the light: photons of the floor lie within reach of its foot.
   test::SceneBuilder builder;
   const std::uint32_t black = builder.add(test::diffuse(glm::vec3(0.0f)));

@@ -103,8 +103,8 @@ TEST_CASE("what an estimate's noise depends on follows from k, the kernel and th
 TEST_CASE("the paths of pooled lights are those of their powers together, of dark ones none") {
   EstimateNoise noise;
   noise.paths = {100, 300, 50};
-  const LightPooling pooling{{"on", "off"}, {0, 0, 1}, {2, 3, 0}};
-  CHECK(noise.pooled(pooling).paths == std::vector<double>{400.0 / 5, 0});
+  const LayerMixdown mixdown{{"on", "off"}, {0, 0, 1}, {2, 3, 0}};
+  CHECK(noise.pooled(mixdown).paths == std::vector<double>{400.0 / 5, 0});
 }
 
 TEST_CASE("a number has as many digits as its error leaves meaning") {

@@ -91,14 +91,14 @@ TEST_CASE("patches of a sky are one layer beside the lamps, at the powers of the
   CHECK(board.controls()[1].name == "sodium");
   board.controls()[1].power = 7;
   const LightMix all = board.mix(), shown = board.shown_mix();
-  const LightPooling pooling = board.pooling();
-  REQUIRE(pooling.layers == std::vector<std::string>{"ceiling", "sodium", "sky"});
+  const LayerMixdown mixdown = board.mixdown();
+  REQUIRE(mixdown.layers == std::vector<std::string>{"ceiling", "sodium", "sky"});
   REQUIRE(shown.lights.size() == 3);
   CHECK(all.lights[40].power == 7);
   // Layers at their shown powers sum to lights at theirs.
   for (std::size_t light = 0; light < all.lights.size(); ++light) {
-    const std::uint32_t layer = pooling.layer_of[light];
-    CHECK(static_cast<double>(pooling.scale[light]) * shown.lights[layer].power ==
+    const std::uint32_t layer = mixdown.layer_of[light];
+    CHECK(static_cast<double>(mixdown.scale[light]) * shown.lights[layer].power ==
           Approx(all.lights[light].power));
   }
   CHECK(board.lamps_mix().lights[50].power == 3);

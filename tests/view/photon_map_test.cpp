@@ -42,8 +42,8 @@ PreparedPhotons prepared(const Scene& scene, MapMode mode) {
 
 /// Upper sides of the floor that are picked in turn.
 std::uint32_t some_triangle(const Scene& scene, std::uint32_t triangle) {
-  const bool up = sided_normal(scene, sided(triangle, 0)).y > 0.5;
-  return sided(triangle, up ? 0 : 1);
+  const bool up = face_normal(scene, oriented(triangle, 0)).y > 0.5;
+  return oriented(triangle, up ? 0 : 1);
 }
 
 Camera above() { return Camera::look_at({2, 3, 7}, {2, 0.5, 1}, {0, 1, 0}, glm::radians(45.0)); }
@@ -78,9 +78,9 @@ TEST_CASE("the photons of a picked triangle lie on it, those of its group in rea
   const std::array<glm::dvec3, 3> target{glm::dvec3(corners[0]), glm::dvec3(corners[1]),
                                          glm::dvec3(corners[2])};
   for (std::size_t i = 0; i < photons.photons.size(); ++i) {
-    const std::uint32_t on = photons.photons.sided_triangle[i];
+    const std::uint32_t on = photons.photons.oriented_face[i];
     own += on == picked ? 1 : 0;
-    if (on == picked || sided_normal(scene, on).y < 0.5) continue;
+    if (on == picked || face_normal(scene, on).y < 0.5) continue;
     const glm::dvec3 at(photons.photons.position[i]);
     near += triangle_triangle_distance(target, {at, at, at}) <= 0.3 ? 1 : 0;
   }
@@ -141,15 +141,15 @@ TEST_CASE("a picked triangle is tinted where it is seen, and its photons are dot
 
   const SeenSurfaces seen = seen_surfaces(RayScene(scene), frame.camera, 320, 240);
   std::size_t yellow = 0, tinted = 0;
-  for (std::size_t pixel = 0; pixel < seen.sided_triangle.size(); ++pixel) {
-    const bool picked = seen.sided_triangle[pixel] == inspector.map()->sided_triangle;
+  for (std::size_t pixel = 0; pixel < seen.oriented_face.size(); ++pixel) {
+    const bool picked = seen.oriented_face[pixel] == inspector.map()->oriented_face;
     const std::uint8_t* rgb = &shown.rgb[3 * pixel];
     const bool red = rgb[0] > rgb[2] && rgb[1] < 100;
     tinted += red ? 1 : 0;
     yellow += rgb[0] == 255 && rgb[2] == 0 ? 1 : 0;
     if (red) CHECK(picked);
   }
-  CHECK(seen.sided_triangle[144 * 320 + 160] == inspector.map()->sided_triangle);
+  CHECK(seen.oriented_face[144 * 320 + 160] == inspector.map()->oriented_face);
   CHECK(tinted > 100);
   CHECK(yellow > 10);
   CHECK(yellow <= inspector.map()->own_photons.size());

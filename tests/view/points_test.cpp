@@ -57,7 +57,7 @@ TEST_CASE("a clicked point reads I cos / d^2 of each lamp at its power") {
   CHECK(first[1].value == Approx(truth(400, 4, 3)).epsilon(1e-3));
   CHECK(first[2].value == Approx(first[0].value + first[1].value));
   // Layers that are pooled are read together.
-  const LightPooling one{{"both"}, {0, 0}, {1, 1}};
+  const LayerMixdown one{{"both"}, {0, 0}, {1, 1}};
   const auto pooled = points[0].lux(mix, 1, &one);
   REQUIRE(pooled.size() == 2);
   CHECK(pooled[0].value == Approx(truth(100, 2, 0) + truth(400, 4, 3)).epsilon(1e-3));
@@ -101,7 +101,7 @@ TEST_CASE("points are kept as lines for measure, and as a table") {
   worker.add({0, 0, 0}, {0, 0, 1});
   const auto points = wait_for(worker, 2);
   CHECK(points_text(points) == "0 0 0 0 0 1\n");
-  const LightPooling as_they_are = LightBoard(LightMix::of(scene, 683)).pooling();
+  const LayerMixdown as_they_are = LightBoard(LightMix::of(scene, 683)).mixdown();
   const std::string csv = points_csv(points, LightMix::of(scene, 683), as_they_are, 1);
   CHECK_THAT(csv, Catch::Contains("point,x,y,z,dx,dy,dz,lux,standard_error,lux near") &&
                       Catch::Contains("\n1,0,0,0,0,0,1,"));

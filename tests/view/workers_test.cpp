@@ -190,17 +190,17 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
   test::SceneBuilder builder;
   const std::uint32_t grey = builder.add(test::diffuse(glm::vec3(0.5f)));
   builder.quad({-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0, -0.5f}, {-0.5f, 0, -0.5f}, grey);
-  LightPooling pooling{{"odd", "even"}, {}, {}};
+  LayerMixdown mixdown{{"odd", "even"}, {}, {}};
   for (std::uint32_t i = 0; i < 10; ++i) {
     const float x = -0.4f + 0.08f * static_cast<float>(i);
     builder.add(test::point_light("lamp" + std::to_string(i), {x, 0.5f, 0}, 100));
-    pooling.layer_of.push_back(i % 2);
-    pooling.scale.push_back(static_cast<float>(i));
+    mixdown.layer_of.push_back(i % 2);
+    mixdown.scale.push_back(static_cast<float>(i));
   }
   const Scene scene = builder.build();
   FrameWorker frames(4, 30);
   frames.show(
-      {from_above(), 40, 30, false, false, false, {}, std::make_shared<LightPooling>(pooling)});
+      {from_above(), 40, 30, false, false, false, {}, std::make_shared<LayerMixdown>(mixdown)});
   PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
                        [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
@@ -214,7 +214,7 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
     for (std::size_t pixel = 0; pixel < 40 * 30; ++pixel) {
       float expected = 0;
       for (std::size_t light = layer; light < 10; light += 2) {
-        expected += pooling.scale[light] * all.layers[light].radiance[pixel].x;
+        expected += mixdown.scale[light] * all.layers[light].radiance[pixel].x;
       }
       REQUIRE(frame->layers.layers[layer].radiance[pixel].x == Approx(expected).epsilon(1e-4));
     }

@@ -28,9 +28,9 @@ constexpr double coarser = 1.25;
 /// Texels whose nodes are valued at a time: bounds the memory of their hits.
 constexpr std::size_t texels_per_fill = std::size_t{1} << 16;
 
-void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t sided_triangle) {
+void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_face) {
   hits.position.push_back(position);
-  hits.sided_triangle.push_back(sided_triangle);
+  hits.oriented_face.push_back(oriented_face);
 }
 
 /// Calls visit(value) for each estimate of a layer at a node.
@@ -86,7 +86,7 @@ constexpr double widest_texel = 1e6;
 }  // namespace
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-                       const cache::NodeSight& sight, const BakeParameters& parameters,
+                       const cache::NodeVisibility& sight, const BakeParameters& parameters,
                        Progress& progress)
     : scene_(scene), maps_(maps) {
   progress.begin("find lit surfaces", 0, "");
@@ -133,21 +133,21 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
   const std::size_t layers = parameters.powers.size();
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     NodeBlend blend{};
-    maps_.find(samples.sided_triangle[i], samples.position[i], blend);
+    maps_.find(samples.oriented_face[i], samples.position[i], blend);
     for (std::size_t layer = 0; layer < layers; ++layer) {
       light_at[i] += parameters.powers[layer] *
                      luminance(glm::dvec3(blended(maps_.values(), blend, layer, layers)));
     }
   });
   std::vector<double> light(chart_of.size(), 0.0);
-  for (std::size_t i = 0; i < samples.size(); ++i) light[samples.sided_triangle[i]] += light_at[i];
+  for (std::size_t i = 0; i < samples.size(); ++i) light[samples.oriented_face[i]] += light_at[i];
   for (std::uint32_t t = 0; t < scene_.triangle_count(); ++t) {
     const std::uint32_t front = scene_.front_side[t];
-    const bool only_back = open(sided(t, 1 - front)) && !open(sided(t, front));
+    const bool only_back = open(oriented(t, 1 - front)) && !open(oriented(t, front));
     const std::uint32_t brighter =
-        only_back || light[sided(t, 1 - front)] > light[sided(t, front)] ? 1 - front : front;
+        only_back || light[oriented(t, 1 - front)] > light[oriented(t, front)] ? 1 - front : front;
     for (const std::uint32_t side : {0u, 1u}) {
-      if (side == brighter || light[sided(t, side)] > 0) sides_.push_back(sided(t, side));
+      if (side == brighter || light[oriented(t, side)] > 0) sides_.push_back(oriented(t, side));
     }
   }
 }
@@ -197,14 +197,14 @@ glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t
 
 /// A texel that no triangle covers has the light of the surface nearest to it, so that a lookup at
 /// an edge blends light of the surface alone.
-PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeSight& sight,
+PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& sight,
                              Progress& progress) {
   NodeBlend nothing{};
   nothing.node.fill(none);
   blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
   PrimaryHits points;
   points.position.resize(blend_.size());
-  points.sided_triangle.resize(blend_.size(), none);
+  points.oriented_face.resize(blend_.size(), none);
   progress.begin("bake light maps", used_texels(), "texels");
   PrimaryHits hits;
   std::vector<std::size_t> texels;
@@ -213,18 +213,17 @@ PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeSight& sight,
     tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
       const trace::FlushDenormals flush_denormals;
       NodeBlend& blend = blend_[texels[i]];
-      maps_.find(hits.sided_triangle[i], hits.position[i], blend);
-      sight.look(hits.sided_triangle[i], hits.position[i], blend);
+      maps_.find(hits.oriented_face[i], hits.position[i], blend);
+      sight.look(hits.oriented_face[i], hits.position[i], blend);
     });
     for (std::size_t i = 0; i < texels.size(); ++i) {
       points.position[texels[i]] = hits.position[i];
-      points.sided_triangle[texels[i]] = hits.sided_triangle[i];
+      points.oriented_face[texels[i]] = hits.oriented_face[i];
     }
     if (!maps_.values().by_normal.empty()) {
       normal_.resize(blend_.size());
       for (std::size_t i = 0; i < texels.size(); ++i) {
-        normal_[texels[i]] =
-            trace::shading_normal(scene_, hits.sided_triangle[i], hits.position[i]);
+        normal_[texels[i]] = trace::shading_normal(scene_, hits.oriented_face[i], hits.position[i]);
       }
     }
     progress.advance(texels.size());
@@ -237,13 +236,13 @@ PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeSight& sight,
     const std::size_t first = hits.size();
     const std::size_t count = std::size_t{rectangle.width} * rectangle.height;
     hits.position.resize(first + count);
-    hits.sided_triangle.resize(first + count);
+    hits.oriented_face.resize(first + count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       const auto x = static_cast<std::uint32_t>(i % rectangle.width);
       const auto y = static_cast<std::uint32_t>(i / rectangle.width);
       const cache::Charts::Owner owner =
           charts.owner(placed.chart, place(placed, x, y), 2 * texel_);
-      hits.sided_triangle[first + i] = sided(owner.where.triangle, owner.side);
+      hits.oriented_face[first + i] = oriented(owner.where.triangle, owner.side);
       hits.position[first + i] = trace::surface_point(scene_, owner.where, owner.side).position;
     });
     for (std::uint32_t y = 0; y < rectangle.height; ++y) {
@@ -271,7 +270,7 @@ std::uint64_t BakedLight::used_texels() const {
 /// has; and so do those in the slit below a thing that stands a little above the surface, such as a
 /// skirting board, where next to no light comes. A slit as high as texels are apart is lit where a
 /// lookup beside the thing reaches.
-void BakedLight::spread(const PrimaryHits& points, const cache::NodeSight& sight) {
+void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& sight) {
   const std::vector<NodeBlend> found = blend_;
   const Estimates& values = maps_.values();
   const std::size_t nodes = maps_.statistics().nodes;
@@ -293,7 +292,7 @@ void BakedLight::spread(const PrimaryHits& points, const cache::NodeSight& sight
     });
   };
   const auto on_surface = [&](std::size_t texel) {
-    return trace::place_on(scene_, points.sided_triangle[texel], points.position[texel]);
+    return trace::place_on(scene_, points.oriented_face[texel], points.position[texel]);
   };
   constexpr int around[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                 {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -328,14 +327,14 @@ void BakedLight::spread(const PrimaryHits& points, const cache::NodeSight& sight
   });
 }
 
-std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t sided_triangle) const {
+std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t oriented_face) const {
   const cache::Charts& charts = maps_.charts();
-  const std::uint32_t chart = charts.chart_of()[sided_triangle];
+  const std::uint32_t chart = charts.chart_of()[oriented_face];
   std::array<glm::vec2, 3> corners{};
   if (chart == none) return corners;
   const Placed& placed = placed_[place_of_chart_[chart]];
   const cache::Chart& lattice = charts[chart];
-  const auto positions = scene_.corners(triangle_of(sided_triangle));
+  const auto positions = scene_.corners(triangle_of(oriented_face));
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 offset = glm::dvec3(positions[i]) - lattice.origin;
     const glm::dvec2 place(glm::dot(offset, lattice.across), glm::dot(offset, lattice.along));

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/node_sight.hpp"
+#include "cache/node_visibility.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
@@ -49,18 +49,19 @@ class BakedLight {
   /// at this distance of texels; those of LightMaps::fill.
   ///   sight      of the light maps
   ///   progress   is told of a stage
-  BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source, const cache::NodeSight& sight,
-             const BakeParameters& parameters, Progress& progress);
+  BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
+             const cache::NodeVisibility& sight, const BakeParameters& parameters,
+             Progress& progress);
 
   std::uint32_t width() const { return atlas_.width; }
   std::uint32_t height() const { return atlas_.height; }
   double texel() const { return texel_; }
 
-  /// Sided triangles that are baked, ascending.
+  /// Oriented faces that are baked, ascending.
   std::span<const std::uint32_t> sides() const { return sides_; }
   /// Texture coordinates of a baked triangle's corners: (0, 0) is the top left corner of the
   /// picture.
-  std::array<glm::vec2, 3> corners(std::uint32_t sided_triangle) const;
+  std::array<glm::vec2, 3> corners(std::uint32_t oriented_face) const;
 
   /// Irradiance of a layer at power 1: width x height, row 0 at the top; 0 where no chart lies.
   /// Where nodes know how light depends on the normal it is that of the shading normal.
@@ -85,8 +86,8 @@ class BakedLight {
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
   /// Returns the points of all texels; the side is none where there is none.
-  PrimaryHits fill(NodeSource& source, const cache::NodeSight& sight, Progress& progress);
-  void spread(const PrimaryHits& points, const cache::NodeSight& sight);
+  PrimaryHits fill(NodeSource& source, const cache::NodeVisibility& sight, Progress& progress);
+  void spread(const PrimaryHits& points, const cache::NodeVisibility& sight);
   glm::dvec2 place(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
@@ -97,7 +98,7 @@ class BakedLight {
   Atlas atlas_;
   std::vector<Placed> placed_;
   std::vector<std::uint32_t> place_of_chart_;  ///< into placed_, or none
-  std::vector<std::uint32_t> member_;          ///< per chart: a sided triangle of it
+  std::vector<std::uint32_t> member_;          ///< per chart: an oriented face of it
   std::vector<NodeBlend> blend_;               ///< per texel
   std::vector<glm::vec3> normal_;              ///< per texel, where light depends on it
 };

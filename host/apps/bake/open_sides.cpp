@@ -82,11 +82,11 @@ std::vector<std::uint8_t> met_sides(const RayScene& rays) {
       const auto hit = trace::intersect(rays, origin, direction);
       if (!hit) return;
       const trace::SurfacePoint point = trace::surface_hit(scene, *hit, direction);
-      std::atomic_ref(met[point.sided_triangle()]).store(1, std::memory_order_relaxed);
+      std::atomic_ref(met[point.oriented_face()]).store(1, std::memory_order_relaxed);
       const Material& material = trace::material_of(scene, point);
       const trace::RandomBlock block = numbers(bounce + 2);
       const bool passes =
-          (material.interaction == Interaction::glass || material.has_holes()) && block.bit(2);
+          (material.interaction == Interaction::glass || material.has_cutouts()) && block.bit(2);
       if (!passes) {
         direction =
             trace::Frame(point.normal)
@@ -109,7 +109,7 @@ std::vector<std::uint8_t> open_sides(const RayScene& rays) {
     for (const surface::MeshEdge& edge : edges.subspan(1)) {
       const std::uint32_t flip = surface::flip_between(first, edge);
       for (const std::uint32_t side : {0u, 1u}) {
-        joined.join(sided(first.triangle, side), sided(edge.triangle, side ^ flip));
+        joined.join(oriented(first.triangle, side), oriented(edge.triangle, side ^ flip));
       }
     }
   });

@@ -9,9 +9,9 @@
 
 namespace photile::bake {
 
-/// Per sided triangle 1 where paths from the cameras and the lights come to it, or to its sheet:
+/// Per oriented face 1 where paths from the cameras and the lights come to it, or to its sheet:
 /// what goes on over common edges. Else 0. Paths leave surfaces by the cosine and go on through
-/// glass and holes, too. Depends on the scene alone.
+/// glass and cutouts, too. Depends on the scene alone.
 std::vector<std::uint8_t> open_sides(const RayScene& rays);
 
 }  // namespace photile::bake

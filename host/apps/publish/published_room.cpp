@@ -275,7 +275,7 @@ class PageWriter {
     glm::vec3 diffuse = material.diffuse;
     if (material.interaction == Interaction::glass) diffuse = material.transmission;
     double alpha = 0;
-    if (material.has_holes()) {
+    if (material.has_cutouts()) {
       alpha = material.opacity_cutoff > 0
                   ? material.opacity_cutoff / std::max(material.opacity, 1e-6f)
                   : -material.opacity;

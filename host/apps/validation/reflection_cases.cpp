@@ -236,7 +236,7 @@ std::vector<Sensor> spread_sensors(const Scene& scene, int count) {
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const auto [a, b, c] = scene.corners(triangle);
     sensors.push_back({glm::dvec3(a) + u * glm::dvec3(b - a) + v * glm::dvec3(c - a),
-                       sided_normal(scene, sided(triangle, scene.front_side[triangle]))});
+                       face_normal(scene, oriented(triangle, scene.front_side[triangle]))});
   }
   return sensors;
 }

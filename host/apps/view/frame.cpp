@@ -48,11 +48,11 @@ EstimateNoise EstimateNoise::of(const Scene& scene, const RenderParameters& para
   return noise;
 }
 
-EstimateNoise EstimateNoise::pooled(const LightPooling& pooling) const {
-  std::vector<double> sums(pooling.layers.size()), powers(pooling.layers.size());
+EstimateNoise EstimateNoise::pooled(const LayerMixdown& mixdown) const {
+  std::vector<double> sums(mixdown.layers.size()), powers(mixdown.layers.size());
   for (std::size_t light = 0; light < paths.size(); ++light) {
-    sums[pooling.layer_of[light]] += paths[light];
-    powers[pooling.layer_of[light]] += static_cast<double>(pooling.scale[light]);
+    sums[mixdown.layer_of[light]] += paths[light];
+    powers[mixdown.layer_of[light]] += static_cast<double>(mixdown.scale[light]);
   }
   for (std::size_t layer = 0; layer < sums.size(); ++layer) {
     sums[layer] = powers[layer] > 0 ? sums[layer] / powers[layer] : 0.0;

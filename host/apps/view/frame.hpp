@@ -32,7 +32,7 @@ struct EstimateNoise {
   std::vector<double> paths;
 
   static EstimateNoise of(const Scene& scene, const RenderParameters& parameters);
-  EstimateNoise pooled(const LightPooling& pooling) const;
+  EstimateNoise pooled(const LayerMixdown& mixdown) const;
 };
 
 struct Frame {

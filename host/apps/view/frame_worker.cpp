@@ -200,12 +200,12 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   Interruption progress(
       [&] { return stop.stop_requested() || (!task.request.moving && outdated(task)); });
   const Stopwatch stopwatch;
-  const LightPooling* const pooling = task.request.pooling.get();
-  RenderResult result = task.maps->renderer->render(task.request.camera, film, progress, pooling);
+  const LayerMixdown* const mixdown = task.request.mixdown.get();
+  RenderResult result = task.maps->renderer->render(task.request.camera, film, progress, mixdown);
   std::optional<LightLayers> reflections;
   if (task.request.reflections) {
     reflections = std::move(
-        task.maps->renderer->render_reflections(task.request.camera, film, progress, pooling)
+        task.maps->renderer->render_reflections(task.request.camera, film, progress, mixdown)
             .layers);
   }
   const double seconds = stopwatch.seconds();
@@ -223,7 +223,7 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
             result.used.film.samples_per_pixel,
             0.0,
             task.maps->emitted_photons,
-            pooling ? task.maps->noise.pooled(*pooling) : task.maps->noise,
+            mixdown ? task.maps->noise.pooled(*mixdown) : task.maps->noise,
             seconds,
             std::move(result.statistics)});
 }

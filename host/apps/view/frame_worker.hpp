@@ -46,7 +46,7 @@ struct FrameRequest {
   /// moves and until no node is lacking. Empty: frames with layers are wanted.
   std::vector<glm::vec3> powers = {};
   /// How the layers of frames that have some are mixed; null = each light for itself.
-  std::shared_ptr<const LightPooling> pooling = nullptr;
+  std::shared_ptr<const LayerMixdown> mixdown = nullptr;
 };
 
 /// Renders what was asked for last from the newest maps. A frame in the making is finished while

@@ -125,23 +125,23 @@ LightMix LightBoard::mix() const {
   return result;
 }
 
-LightPooling LightBoard::pooling() const {
-  LightPooling pooling;
-  pooling.layer_of.resize(scene_.lights.size());
-  pooling.scale.assign(scene_.lights.size(), 1.0f);
+LayerMixdown LightBoard::mixdown() const {
+  LayerMixdown mixdown;
+  mixdown.layer_of.resize(scene_.lights.size());
+  mixdown.scale.assign(scene_.lights.size(), 1.0f);
   for (const std::size_t light : lights_) {
-    pooling.layer_of[light] = static_cast<std::uint32_t>(pooling.layers.size());
-    pooling.layers.push_back(scene_.lights[light].name);
+    mixdown.layer_of[light] = static_cast<std::uint32_t>(mixdown.layers.size());
+    mixdown.layers.push_back(scene_.lights[light].name);
   }
-  if (!sky_) return pooling;
+  if (!sky_) return mixdown;
   const std::vector<double> powers = sky_->powers(daylight_.moment);
   for (std::size_t i = 0; i < powers.size(); ++i) {
     const std::size_t light = sky_->lights()[i];
-    pooling.layer_of[light] = static_cast<std::uint32_t>(pooling.layers.size());
-    pooling.scale[light] = static_cast<float>(powers[i]);
+    mixdown.layer_of[light] = static_cast<std::uint32_t>(mixdown.layers.size());
+    mixdown.scale[light] = static_cast<float>(powers[i]);
   }
-  pooling.layers.push_back(sky_name_);
-  return pooling;
+  mixdown.layers.push_back(sky_name_);
+  return mixdown;
 }
 
 LightMix LightBoard::shown_mix() const {

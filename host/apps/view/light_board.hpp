@@ -56,7 +56,7 @@ class LightBoard {
 
   /// How frames' layers are made of the scene's: the patches of the sky are one, at the powers of
   /// the moment.
-  LightPooling pooling() const;
+  LayerMixdown mixdown() const;
   /// `mix` of these layers.
   LightMix shown_mix() const;
 

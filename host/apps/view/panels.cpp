@@ -210,7 +210,7 @@ void draw_photon_map(const PhotonMapView* map) {
   ImGui::TextWrapped(
       "triangle %u, side %u: %zu photons (yellow); %zu triangles near (blue) with "
       "%zu photons in reach (cyan); %zu more share its map (green)",
-      triangle_of(map->sided_triangle), side_of(map->sided_triangle), map->own_photons.size(),
+      triangle_of(map->oriented_face), side_of(map->oriented_face), map->own_photons.size(),
       map->group.size(), map->group_photons.size(), map->patch.size());
 }
 

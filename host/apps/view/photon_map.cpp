@@ -15,8 +15,8 @@ namespace photile::view {
 
 namespace {
 
-std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t sided_triangle) {
-  const auto corners = scene.corners(triangle_of(sided_triangle));
+std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t oriented_face) {
+  const auto corners = scene.corners(triangle_of(oriented_face));
   return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
 }
 
@@ -30,22 +30,22 @@ bool boxes_within(const std::array<glm::dvec3, 3>& a, const std::array<glm::dvec
 }
 
 std::vector<std::uint32_t> group_of(const Scene& scene, const InspectablePhotons& photons,
-                                    std::uint32_t sided_triangle) {
+                                    std::uint32_t oriented_face) {
   if (!std::isfinite(photons.radius)) return {};
   const double cos_angle = std::cos(glm::radians(photons.angle_degrees));
-  const auto own = corners_of(scene, sided_triangle);
-  const glm::dvec3 normal = sided_normal(scene, sided_triangle);
+  const auto own = corners_of(scene, oriented_face);
+  const glm::dvec3 normal = face_normal(scene, oriented_face);
   std::vector<std::uint8_t> near(2 * scene.triangle_count(), 0);
   tbb::parallel_for(std::size_t{0}, scene.triangle_count(), [&](std::size_t triangle) {
-    const auto first = sided(static_cast<std::uint32_t>(triangle), 0);
+    const auto first = oriented(static_cast<std::uint32_t>(triangle), 0);
     const auto other = corners_of(scene, first);
     if (!boxes_within(own, other, photons.radius)) return;
     if (triangle_triangle_distance(own, other) > photons.radius) return;
     for (const std::uint32_t each : {first, first + 1}) {
-      near[each] = normals_agree(normal, sided_normal(scene, each), cos_angle) ? 1 : 0;
+      near[each] = normals_agree(normal, face_normal(scene, each), cos_angle) ? 1 : 0;
     }
   });
-  near[sided_triangle] = 0;
+  near[oriented_face] = 0;
   std::vector<std::uint32_t> group;
   for (std::uint32_t each = 0; each < near.size(); ++each) {
     if (near[each]) group.push_back(each);
@@ -54,10 +54,10 @@ std::vector<std::uint32_t> group_of(const Scene& scene, const InspectablePhotons
 }
 
 std::span<const glm::vec3> photons_on(const InspectablePhotons& photons,
-                                      std::uint32_t sided_triangle) {
+                                      std::uint32_t oriented_face) {
   return std::span(photons.position)
-      .subspan(photons.first_of[sided_triangle],
-               photons.first_of[sided_triangle + 1] - photons.first_of[sided_triangle]);
+      .subspan(photons.first_of[oriented_face],
+               photons.first_of[oriented_face + 1] - photons.first_of[oriented_face]);
 }
 
 }  // namespace
@@ -68,18 +68,18 @@ InspectablePhotons InspectablePhotons::of(const PreparedPhotons& photons) {
 }
 
 PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
-                          std::uint32_t sided_triangle) {
+                          std::uint32_t oriented_face) {
   PhotonMapView view;
-  view.sided_triangle = sided_triangle;
-  view.group = group_of(scene, photons, sided_triangle);
+  view.oriented_face = oriented_face;
+  view.group = group_of(scene, photons, oriented_face);
   const std::vector<std::uint32_t>& map_of = photons.patches.map_of;
   for (std::uint32_t each = 0; each < map_of.size(); ++each) {
-    if (each == sided_triangle || map_of[each] != map_of[sided_triangle]) continue;
+    if (each == oriented_face || map_of[each] != map_of[oriented_face]) continue;
     if (!std::binary_search(view.group.begin(), view.group.end(), each)) view.patch.push_back(each);
   }
-  const auto own = photons_on(photons, sided_triangle);
+  const auto own = photons_on(photons, oriented_face);
   view.own_photons.assign(own.begin(), own.end());
-  const auto corners = corners_of(scene, sided_triangle);
+  const auto corners = corners_of(scene, oriented_face);
   for (const std::uint32_t each : view.group) {
     for (const glm::vec3& photon : photons_on(photons, each)) {
       if (geometry::squared_point_triangle_distance(glm::dvec3(photon), corners) <=
@@ -127,7 +127,7 @@ void draw_photons(DisplayedFrame& shown, const Camera& camera, const SeenSurface
 }
 
 struct SeenPoint {
-  std::uint32_t sided_triangle = none;
+  std::uint32_t oriented_face = none;
   double distance = std::numeric_limits<double>::infinity();
 };
 
@@ -139,8 +139,8 @@ SeenPoint seen_along(const RayScene& rays, const glm::dvec3& from, const glm::dv
   const double u = static_cast<double>(hit->u), v = static_cast<double>(hit->v);
   const glm::dvec3 place = (1 - u - v) * glm::dvec3(corners[0]) + u * glm::dvec3(corners[1]) +
                            v * glm::dvec3(corners[2]);
-  const bool faces = glm::dot(sided_normal(scene, sided(hit->triangle, 0)), direction) < 0;
-  return {sided(hit->triangle, faces ? 0 : 1), glm::distance(place, from)};
+  const bool faces = glm::dot(face_normal(scene, oriented(hit->triangle, 0)), direction) < 0;
+  return {oriented(hit->triangle, faces ? 0 : 1), glm::distance(place, from)};
 }
 
 }  // namespace
@@ -148,15 +148,15 @@ SeenPoint seen_along(const RayScene& rays, const glm::dvec3& from, const glm::dv
 SeenSurfaces seen_surfaces(const RayScene& rays, const Camera& camera, int width, int height) {
   SeenSurfaces seen{width, height, {}, {}};
   const auto columns = static_cast<std::size_t>(width);
-  seen.sided_triangle.resize(columns * static_cast<std::size_t>(height));
-  seen.distance.resize(seen.sided_triangle.size());
+  seen.oriented_face.resize(columns * static_cast<std::size_t>(height));
+  seen.distance.resize(seen.oriented_face.size());
   tbb::parallel_for(0, height, [&](int y) {
     const trace::FlushDenormals flush_denormals;
     for (int x = 0; x < width; ++x) {
       const SeenPoint point =
           seen_along(rays, camera.position, camera.direction(x + 0.5, y + 0.5, width, height));
       const std::size_t pixel = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
-      seen.sided_triangle[pixel] = point.sided_triangle;
+      seen.oriented_face[pixel] = point.oriented_face;
       seen.distance[pixel] = point.distance;
     }
   });
@@ -179,10 +179,10 @@ void draw_photon_map(DisplayedFrame& shown, const Camera& camera, const SeenSurf
   const auto holds = [](const std::vector<std::uint32_t>& ascending, std::uint32_t each) {
     return std::binary_search(ascending.begin(), ascending.end(), each);
   };
-  for (std::size_t pixel = 0; pixel < seen.sided_triangle.size(); ++pixel) {
-    const std::uint32_t triangle = seen.sided_triangle[pixel];
+  for (std::size_t pixel = 0; pixel < seen.oriented_face.size(); ++pixel) {
+    const std::uint32_t triangle = seen.oriented_face[pixel];
     if (triangle == none) continue;
-    if (triangle == map.sided_triangle) {
+    if (triangle == map.oriented_face) {
       tint(shown, pixel, red);
     } else if (holds(map.group, triangle)) {
       tint(shown, pixel, blue);
@@ -203,7 +203,7 @@ void PhotonInspector::pick(const Frame& frame, double x, double y) {
   const trace::FlushDenormals flush_denormals;
   const int width = frame.layers.width, height = frame.layers.height;
   const glm::dvec3 direction = frame.camera.direction(x * width, y * height, width, height);
-  picked_ = seen_along(rays(), frame.camera.position, direction).sided_triangle;
+  picked_ = seen_along(rays(), frame.camera.position, direction).oriented_face;
   map_.reset();
 }
 
@@ -213,9 +213,9 @@ std::optional<PhotonInspector::Place> PhotonInspector::place_at(const Frame& fra
   const int width = frame.layers.width, height = frame.layers.height;
   const glm::dvec3 direction = frame.camera.direction(x * width, y * height, width, height);
   const SeenPoint seen = seen_along(rays(), frame.camera.position, direction);
-  if (seen.sided_triangle == none) return std::nullopt;
+  if (seen.oriented_face == none) return std::nullopt;
   return Place{frame.camera.position + seen.distance * direction,
-               sided_normal(scene_, seen.sided_triangle)};
+               face_normal(scene_, seen.oriented_face)};
 }
 
 void PhotonInspector::draw(const Frame& frame, DisplayedFrame& shown) {

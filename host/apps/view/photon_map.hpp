@@ -25,27 +25,27 @@ struct InspectablePhotons {
   static InspectablePhotons of(const PreparedPhotons& photons);
 };
 
-/// A sided triangle and what an estimate on it may find.
+/// An oriented face and what an estimate on it may find.
 struct PhotonMapView {
-  std::uint32_t sided_triangle = none;
-  /// Sided triangles of its neighbour group (Graglia et al. 2012, section 2.1) without itself,
+  std::uint32_t oriented_face = none;
+  /// Oriented faces of its neighbour group (Graglia et al. 2012, section 2.1) without itself,
   /// ascending: at most the radius away, with a normal that agrees.
   std::vector<std::uint32_t> group;
-  /// Sided triangles that share its map without being of its group, ascending.
+  /// Oriented faces that share its map without being of its group, ascending.
   std::vector<std::uint32_t> patch;
   std::vector<glm::vec3> own_photons;    ///< that landed on it
   std::vector<glm::vec3> group_photons;  ///< on its group, at most the radius from it
 };
 
-/// Looks at one sided triangle; time grows with the triangles of the scene.
+/// Looks at one oriented face; time grows with the triangles of the scene.
 PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
-                          std::uint32_t sided_triangle);
+                          std::uint32_t oriented_face);
 
 /// The surfaces that the middles of pixels see, mirrors and glass themselves.
 struct SeenSurfaces {
   int width = 0, height = 0;
-  std::vector<std::uint32_t> sided_triangle;  ///< per pixel; none = nothing
-  std::vector<double> distance;               ///< per pixel, metres from the eye; infinite
+  std::vector<std::uint32_t> oriented_face;  ///< per pixel; none = nothing
+  std::vector<double> distance;              ///< per pixel, metres from the eye; infinite
 };
 SeenSurfaces seen_surfaces(const RayScene& rays, const Camera& camera, int width, int height);
 

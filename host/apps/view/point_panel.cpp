@@ -93,7 +93,7 @@ void draw_newest_point(PanelState& state) {
   ImGui::Text("at %.3f, %.3f, %.3f m", point.position.x, point.position.y, point.position.z);
   if (!point.read()) return;
   ImGui::Separator();
-  const LightPooling layers = state.lights.pooling();
+  const LayerMixdown layers = state.lights.mixdown();
   const std::vector<Measured> lux = point.lux(mix, state.point_settings.maintenance, &layers);
   for (std::size_t light = 0; light + 1 < lux.size(); ++light) {
     if (lux[light].value == 0) continue;

@@ -17,7 +17,7 @@
 namespace photile::view {
 
 std::vector<Measured> ClickedPoint::lux(const LightMix& mix, double factor,
-                                        const LightPooling* layers) const {
+                                        const LayerMixdown* layers) const {
   const std::size_t count = layers ? layers->layers.size() : mix.lights.size();
   std::vector<std::vector<float>> values;  // per repeat: each layer, then the sum
   for (const auto& repeat : repeats) {
@@ -117,7 +117,7 @@ std::string points_text(const std::vector<ClickedPoint>& points) {
 }
 
 std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
-                       const LightPooling& layers, double factor) {
+                       const LayerMixdown& layers, double factor) {
   std::string text = "point,x,y,z,dx,dy,dz,lux,standard_error";
   for (const std::string& layer : layers.layers) {
     text += fmt::format(",{},{}", csv_field("lux " + layer), csv_field("standard_error " + layer));

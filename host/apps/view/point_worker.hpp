@@ -29,7 +29,7 @@ struct ClickedPoint {
   /// the scatter of repeats; there are none before the second.
   ///   layers   into which the lights' lux are summed; null = each light's own
   std::vector<Measured> lux(const LightMix& mix, double factor,
-                            const LightPooling* layers = nullptr) const;
+                            const LayerMixdown* layers = nullptr) const;
   bool read() const { return repeats.size() >= 2; }
 };
 
@@ -65,6 +65,6 @@ std::string points_text(const std::vector<ClickedPoint>& points);
 /// A line for each point: number, place, normal, lux and standard error of all lights and of each
 /// layer.
 std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
-                       const LightPooling& layers, double factor);
+                       const LayerMixdown& layers, double factor);
 
 }  // namespace photile::view

@@ -38,7 +38,7 @@ std::string keep_points(const std::filesystem::path& folder,
   keep_as(folder, "points", ".pts",
           [&](const std::filesystem::path& file) { write_file(file, points_text(points)); });
   return keep_as(folder, "points", ".csv", [&](const std::filesystem::path& file) {
-    write_file(file, points_csv(points, lights.mix(), lights.pooling(), maintenance));
+    write_file(file, points_csv(points, lights.mix(), lights.mixdown(), maintenance));
   });
 }
 

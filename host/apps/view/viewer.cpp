@@ -153,7 +153,7 @@ class Viewer {
     scene_ = maps->scene;
     const LightMix mix = parameters_.mix_of(*scene_);
     lights_.adopt(mix, MovingSky::of(mix, parameters_.situation));
-    if (lights_.sky()) pooling_ = std::make_shared<const LightPooling>(lights_.pooling());
+    if (lights_.sky()) mixdown_ = std::make_shared<const LayerMixdown>(lights_.mixdown());
     points_.use(scene_);
     inspector_.emplace(*scene_);
     frame_.reset();  // its layers are those of other lights; the window goes on showing it
@@ -200,7 +200,7 @@ class Viewer {
   /// Frames' layers hold the sky of a moment: others are asked for, quick ones while it moves.
   void move_sky() {
     shown_moment_ = lights_.daylight().moment;
-    pooling_ = std::make_shared<const LightPooling>(lights_.pooling());
+    mixdown_ = std::make_shared<const LayerMixdown>(lights_.mixdown());
     last_motion_ = glfwGetTime();
     sky_moved_ = true;
     if (display_.adapts) exposed_ = false;
@@ -243,7 +243,7 @@ class Viewer {
             display_.mode == DisplayMode::glare,
             relit,
             quick ? scales_of(lights_.mix()) : std::vector<glm::vec3>(),
-            pooling_};
+            mixdown_};
   }
 
   /// Whether a click has picked a triangle whose photons are to be shown.
@@ -368,7 +368,7 @@ class Viewer {
   int asked_width_ = 0, asked_height_ = 0;
   /// The moment that frames were requested with, of a sky that hours move.
   SkyMoment shown_moment_;
-  std::shared_ptr<const LightPooling> pooling_;
+  std::shared_ptr<const LayerMixdown> mixdown_;
   bool sky_moved_ = false;
   bool exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
   bool seen_ = false;  ///< any frame

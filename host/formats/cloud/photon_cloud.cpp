@@ -82,7 +82,7 @@ std::uint32_t light_count(std::span<const std::uint16_t> lights) {
   return count;
 }
 
-/// Each photon stands for a sided triangle of its own, which is what tables of normals and maps are
+/// Each photon stands for an oriented face of its own, which is what tables of normals and maps are
 /// indexed by.
 Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
   Photons photons;
@@ -90,8 +90,8 @@ Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
   photons.flux.assign(cloud.flux.begin(), cloud.flux.end());
   photons.flux.resize(photons.size(), glm::vec3(1.0f));
   if (needs.several_lights()) photons.light.assign(cloud.light.begin(), cloud.light.end());
-  photons.sided_triangle.resize(photons.size());
-  std::iota(photons.sided_triangle.begin(), photons.sided_triangle.end(), 0u);
+  photons.oriented_face.resize(photons.size());
+  std::iota(photons.oriented_face.begin(), photons.oriented_face.end(), 0u);
   photons.first_of.resize(photons.size() + 1);
   std::iota(photons.first_of.begin(), photons.first_of.end(), 0u);
   return photons;
@@ -164,8 +164,8 @@ PrimaryHits PhotonCloud::Impl::place(std::span<const glm::vec3> points,
   };
   PrimaryHits hits;
   hits.position.assign(points.begin(), points.end());
-  hits.sided_triangle.resize(points.size());
-  std::iota(hits.sided_triangle.begin(), hits.sided_triangle.end(),
+  hits.oriented_face.resize(points.size());
+  std::iota(hits.oriented_face.begin(), hits.oriented_face.end(),
             static_cast<std::uint32_t>(photons));
   store->map_of.resize(photons + points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -78,7 +78,7 @@ Voxels::Voxels(std::span<const glm::vec3> positions, std::span<const glm::vec3> 
   for (std::size_t v = 0; v < voxels_.size(); ++v) {
     plan_.surfaces.shapes.push_back(shape_of(cells_[v], voxels_[v], plan_.normals));
   }
-  plan_.crowding.assign(2 * voxels_.size(), 1.0f);
+  plan_.density_ratio.assign(2 * voxels_.size(), 1.0f);
 }
 
 std::uint32_t Voxels::map_at(const glm::vec3& point, const glm::vec3& normal) const {

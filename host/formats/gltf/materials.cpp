@@ -187,7 +187,7 @@ void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness m
   }
 }
 
-/// Emission knows no holes: what shines stays whole.
+/// Emission knows no cutouts: what shines stays whole.
 void Converter::set_opacity(const tinygltf::Material& source, bool emits, Material& material) {
   if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
   if (material.interaction == Interaction::glass) return;  // transmission says what passes

@@ -137,7 +137,7 @@ std::uint32_t texture_or_none(const std::string& name, pictures::TextureContent 
   }
 }
 
-/// d, Tr and map_d. Emission knows no holes: what shines stays whole.
+/// d, Tr and map_d. Emission knows no cutouts: what shines stays whole.
 void set_opacity(const tinyobj::material_t& source, bool emits, pictures::TextureStore& textures,
                  Material& material, reading::ImportContext& context) {
   if (material.interaction == Interaction::glass) return;
@@ -188,7 +188,7 @@ reading::Emission emission_of(const tinyobj::material_t& source, pictures::Textu
 /// | illum 3, 5 with Ns >= 1000, or black Kd and Ks | mirror with reflectance Ks                |
 /// | illum 2, 3, 5 with Ks                          | Lambertian Kd plus a GGX lobe of F0 Ks    |
 /// | anything else                                  | Lambertian Kd                             |
-/// | map_d; or d < 1 without Ni                     | opacity: holes, by chance in between      |
+/// | map_d; or d < 1 without Ni                     | opacity: cutouts, by chance in between      |
 /// | norm                                           | a normal map, -bm its scale               |
 void add_mtl_material(const tinyobj::material_t& source, pictures::TextureStore& textures,
                       reading::ImportContext& context) {

@@ -69,7 +69,7 @@ void for_each_array_of_photons(Photons& photons, const Visit& visit) {
   visit(photons.flux);
   visit(photons.incoming);
   visit(photons.light);
-  visit(photons.sided_triangle);
+  visit(photons.oriented_face);
   visit(photons.first_of);
   visit(photons.emitted_per_light);
 }
@@ -443,37 +443,37 @@ namespace {
 using maps::all_below;
 using maps::are_rows;
 
-bool are_patches(const Patches& patches, std::uint64_t sided_triangles) {
+bool are_patches(const Patches& patches, std::uint64_t oriented_faces) {
   if (patches.empty()) return patches.first_of.empty() && patches.members.empty();
-  return patches.map_of.size() == sided_triangles && !patches.first_of.empty() &&
+  return patches.map_of.size() == oriented_faces && !patches.first_of.empty() &&
          are_rows(patches.first_of, patches.first_of.size() - 1, patches.members.size()) &&
-         all_below(patches.members, sided_triangles) &&
+         all_below(patches.members, oriented_faces) &&
          all_below(patches.map_of, 2 * std::uint64_t{patches.count()});
 }
 
 }  // namespace
 
 std::string problem_of(const PreparedPhotons& prepared, const Scene& scene) {
-  const std::uint64_t sided_triangles = 2 * std::uint64_t{scene.triangle_count()};
+  const std::uint64_t oriented_faces = 2 * std::uint64_t{scene.triangle_count()};
   const NeighbourGroups& groups = prepared.groups;
-  const std::string problem = maps::problem_of(prepared.photons, needs_of(scene), sided_triangles);
+  const std::string problem = maps::problem_of(prepared.photons, needs_of(scene), oriented_faces);
   if (!problem.empty()) return problem;
   if (prepared.photons.emitted_per_light.size() != scene.lights.size()) {
     return "another number of lights";
   }
   if (prepared.caustics) {
     const std::string of_caustics =
-        maps::problem_of(*prepared.caustics, needs_of(scene), sided_triangles);
+        maps::problem_of(*prepared.caustics, needs_of(scene), oriented_faces);
     if (!of_caustics.empty()) return of_caustics;
   }
   if (!prepared.has_groups()) {
     const bool none = groups.offsets.empty() && groups.members.empty() && groups.patches.empty();
     return none && !prepared.light_maps ? "" : "groups without a radius";
   }
-  if (!are_patches(groups.patches, sided_triangles)) return "patches that do not fit the scene";
+  if (!are_patches(groups.patches, oriented_faces)) return "patches that do not fit the scene";
   const std::uint64_t map_count =
-      groups.patches.empty() ? sided_triangles : 2 * std::uint64_t{groups.patches.count()};
-  if (!are_rows(groups.offsets, sided_triangles, groups.members.size()) ||
+      groups.patches.empty() ? oriented_faces : 2 * std::uint64_t{groups.patches.count()};
+  if (!are_rows(groups.offsets, oriented_faces, groups.members.size()) ||
       !all_below(groups.members, map_count)) {
     return "groups that do not fit the scene";
   }

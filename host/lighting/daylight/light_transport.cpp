@@ -25,11 +25,11 @@ void SkyRays::follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, st
   double radiance_factor = 1;
   float distance = 0;
   bool straight = true;
-  std::uint32_t holes = 0;
+  std::uint32_t cutouts = 0;
   for (int depth = 0; depth <= parameters_.max_specular_depth; ++depth) {
     const glm::vec3 from = origin;
     const auto met =
-        trace::next_surface(rays_, origin, direction, random, trace::Purpose::eye_holes, holes);
+        trace::next_surface(rays_, origin, direction, random, trace::Purpose::eye_cutouts, cutouts);
     const auto factor = static_cast<float>(radiance_factor);
     if (!met) {
       seen.patches.push_back({patches_(direction), batch, straight, factor * weight});

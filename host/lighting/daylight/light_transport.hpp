@@ -22,7 +22,7 @@ namespace photile::daylight {
 struct SeenPatch {
   std::uint32_t patch;  ///< the ground is the one after the sky's
   std::uint32_t batch;
-  bool straight;  ///< through panes and holes at most
+  bool straight;  ///< through panes and cutouts at most
   glm::vec3 weight;
 };
 

@@ -40,7 +40,7 @@ struct Piece {
 std::vector<Piece> horizontal_pieces(const Scene& scene, const trace::PlanAxes& axes) {
   std::vector<Piece> pieces;
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    if (std::abs(glm::dot(sided_normal(scene, sided(t, 0)), axes.up)) < steepest_cosine) continue;
+    if (std::abs(glm::dot(face_normal(scene, oriented(t, 0)), axes.up)) < steepest_cosine) continue;
     const auto [a, b, c] = scene.corners(t);
     const glm::dvec3 middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0;
     pieces.push_back({t, glm::dot(middle, axes.up), triangle_area(scene, t)});

@@ -71,7 +71,7 @@ void AmbientLight::gather(const LightMaps& maps, const Scene& scene,
     finest_.assign(static_cast<std::size_t>(side * side * side), Vertex{});
     for (std::uint32_t node = 0; node < nodes; node += step) {
       const LightMaps::NodePoint& point = maps.point(node);
-      const auto shares = shares_of(glm::vec3(sided_normal(scene, point.sided_triangle)));
+      const auto shares = shares_of(glm::vec3(face_normal(scene, point.oriented_face)));
       const auto add_to = [&](Vertex& vertex, float weight) {
         for (std::size_t i = 0; i < shares.size(); ++i) {
           vertex[i] +=

@@ -15,23 +15,23 @@ using surface::SurfaceMesh;
 /// it: the projection on the chart's plane keeps lengths to 6%.
 constexpr double largest_angle_degrees = 20;
 
-glm::dvec3 normal_of(const SurfaceMesh& mesh, std::uint32_t sided_triangle) {
-  const glm::dvec3& normal = mesh.normal[triangle_of(sided_triangle)];
-  return side_of(sided_triangle) == 0 ? normal : -normal;
+glm::dvec3 normal_of(const SurfaceMesh& mesh, std::uint32_t oriented_face) {
+  const glm::dvec3& normal = mesh.normal[triangle_of(oriented_face)];
+  return side_of(oriented_face) == 0 ? normal : -normal;
 }
 
 /// Tiles, whose edges run along each other, are of one chart only where the surface does not fold.
 constexpr double least_cosine_of_tiles = 1 - 1e-6;
 
-/// Per triangle the sided triangles that continue its side 0.
+/// Per triangle the oriented faces that continue its side 0.
 IndexRows continuations_of(const SurfaceMesh& mesh,
                            std::span<const surface::Connection> connections, double least_cosine) {
   return rows_of(mesh.normal.size(), [&](const auto& put) {
     for (const auto& [a, b, flip, shared] : connections) {
-      const double cosine = glm::dot(mesh.normal[a], normal_of(mesh, sided(b, flip)));
+      const double cosine = glm::dot(mesh.normal[a], normal_of(mesh, oriented(b, flip)));
       if (!(cosine >= (shared ? least_cosine : least_cosine_of_tiles))) continue;
-      put(a, sided(b, flip));
-      put(b, sided(a, flip));
+      put(a, oriented(b, flip));
+      put(b, oriented(a, flip));
     }
   });
 }
@@ -64,7 +64,7 @@ class Growth {
 
   ChartGrowth grow() {
     for (const std::uint32_t triangle : seeds_of(mesh_)) {
-      for (const std::uint32_t side : {0u, 1u}) grow_from(sided(triangle, side));
+      for (const std::uint32_t side : {0u, 1u}) grow_from(oriented(triangle, side));
     }
     return std::move(result_);
   }
@@ -89,9 +89,9 @@ class Growth {
     }
   }
 
-  bool fits(std::uint32_t sided_triangle) const {
-    if (!(glm::dot(normal_of(mesh_, sided_triangle), normal_) >= least_cosine_)) return false;
-    for (const glm::vec3& corner : mesh_.scene.corners(triangle_of(sided_triangle))) {
+  bool fits(std::uint32_t oriented_face) const {
+    if (!(glm::dot(normal_of(mesh_, oriented_face), normal_) >= least_cosine_)) return false;
+    for (const glm::vec3& corner : mesh_.scene.corners(triangle_of(oriented_face))) {
       if (!(std::abs(glm::dot(glm::dvec3(corner) - point_, normal_)) <= height_)) return false;
     }
     return true;

@@ -127,7 +127,7 @@ Charts::Charts(const Scene& scene, double spacing, double angle_degrees)
 /// Leaves the size of the rectangle in `spacing`.
 void Charts::frame(std::uint32_t index, std::uint32_t seed) {
   Chart& chart = charts_[index];
-  const glm::dvec3 normal = sided_normal(scene_, seed);
+  const glm::dvec3 normal = face_normal(scene_, seed);
   chart.origin = glm::dvec3(scene_.corners(triangle_of(seed))[0]);
   double least = std::numeric_limits<double>::infinity();
   Chart best = chart;

@@ -16,7 +16,7 @@
 
 namespace photile::cache {
 
-/// A plane with a lattice over the sided triangles of a chart. Lattice places are counted in cells
+/// A plane with a lattice over the oriented faces of a chart. Lattice places are counted in cells
 /// of the coarsest level; the triangles' projections lie in [0, columns] x [0, rows].
 struct Chart {
   glm::dvec3 origin{0.0};               ///< of the lattice, metres
@@ -61,7 +61,7 @@ class Charts {
 
   std::size_t size() const { return charts_.size(); }
   const Chart& operator[](std::size_t chart) const { return charts_[chart]; }
-  /// Per sided triangle; none where no photons are stored.
+  /// Per oriented face; none where no photons are stored.
   std::span<const std::uint32_t> chart_of() const { return chart_of_; }
   const ChartPlace& place(std::size_t chart) const { return places_[chart]; }
   double spacing() const { return spacing_; }
@@ -100,7 +100,7 @@ class Charts {
   const Scene& scene_;
   double spacing_;
   std::vector<std::uint32_t> chart_of_;
-  IndexRows members_;  ///< sided triangles of the charts
+  IndexRows members_;  ///< oriented faces of the charts
   std::vector<Chart> charts_;
   std::vector<ChartPlace> places_;
   std::vector<std::unique_ptr<geometry::BoxTree>>
@@ -109,10 +109,10 @@ class Charts {
 };
 
 struct ChartGrowth {
-  /// Per sided triangle; none where the material stores no photons. Numbered in the order in which
+  /// Per oriented face; none where the material stores no photons. Numbered in the order in which
   /// the charts were grown.
   std::vector<std::uint32_t> chart_of;
-  std::vector<std::uint32_t> seed;  ///< per chart: the sided triangle whose plane it has
+  std::vector<std::uint32_t> seed;  ///< per chart: the oriented face whose plane it has
 };
 
 /// Charts grow from the largest triangles over shared edges, as far as the surface stays near the

@@ -172,7 +172,7 @@ PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
                                      std::span<const std::uint32_t> chosen) const {
   PrimaryHits points = estimate::reordered(batch.points, 0, chosen);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    points.position[i] = inset_point(scene_, triangle_of(points.sided_triangle[i]),
+    points.position[i] = inset_point(scene_, triangle_of(points.oriented_face[i]),
                                      points.position[i], parameters_.inset);
   }
   return points;

@@ -43,7 +43,7 @@ struct RunLight {
   const PrimaryHits& points;
   std::span<const std::uint64_t> number;
   const IndirectLight* traced;  ///< null where no rays are
-  const EndLight& ends;
+  const SecondaryLight& ends;
   const Estimates& caustics;  ///< of all points; empty where there are none
   double caustic_relative_variance;
   std::span<const double> layer_powers;
@@ -272,7 +272,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
 GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            std::span<const std::uint64_t> number, int rays,
                                            int looks, std::size_t most, const Progress& progress) {
-  const EndLight::Costs before = ends_.costs();
+  const SecondaryLight::Costs before = ends_.costs();
   const Stopwatch caustics_watch;
   const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
   costs_.estimate_seconds += caustics_watch.seconds();

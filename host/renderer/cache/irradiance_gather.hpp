@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/end_light.hpp"
 #include "cache/gathered_irradiance.hpp"
+#include "cache/secondary_light.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
@@ -60,7 +60,7 @@ struct GatheredParts {
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light, and `of_nodes`, as EndLight has them; k of about 100 serves
+  ///   photons    of all light, and `of_nodes`, as SecondaryLight has them; k of about 100 serves
   ///   ends       light maps for these photons
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
@@ -69,7 +69,7 @@ class IrradianceGather {
                    estimate::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
-  ///   points   position, sided_triangle, diffuse_albedo and, in glossy scenes, outgoing and lobe
+  ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
   ///   rays, looks   in place of the parameters'
   /// Where several processes have the photon maps, all give the same points; each gathers at a part
@@ -83,7 +83,7 @@ class IrradianceGather {
                             const Progress& progress = Progress::none());
 
   /// What rays find where they end.
-  EndLight& ends() { return ends_; }
+  SecondaryLight& ends() { return ends_; }
 
   /// Bytes of the light maps where rays end; `forget` empties them.
   std::uint64_t bytes() const { return ends_.bytes(); }
@@ -111,7 +111,7 @@ class IrradianceGather {
   trace::LightSampler lamps_;
   std::vector<glm::vec3> emitted_;  ///< per light
   std::vector<double> layer_powers_;
-  EndLight ends_;
+  SecondaryLight ends_;
   Costs costs_;
 };
 

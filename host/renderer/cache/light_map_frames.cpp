@@ -121,11 +121,11 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
   for (std::uint32_t t = 0; t < surfaces_.size(); ++t) {
     const Material& material = scene_.materials[scene_.triangle_material[t]];
     Surface& surface = surfaces_[t];
-    surface.chart[0] = chart_of[sided(t, 0)];
-    surface.chart[1] = chart_of[sided(t, 1)];
+    surface.chart[0] = chart_of[oriented(t, 0)];
+    surface.chart[1] = chart_of[oriented(t, 1)];
     surface.reflects = (material.diffuse + material.specular) * glm::one_over_pi<float>();
     const bool opaque = material.interaction == Interaction::opaque;
-    surface.kind = !opaque || material.has_holes()    ? Surface::followed
+    surface.kind = !opaque || material.has_cutouts()  ? Surface::followed
                    : scene_.triangle_light[t] != none ? Surface::lamp
                    : material.textured()              ? Surface::textured
                                                       : Surface::plain;
@@ -347,7 +347,7 @@ void LightMapFrames::fill(std::span<const MissingPlace> places, FillingOrder ord
     PrimaryHits hits;
     for (const MissingPlace& place : places.subspan(first, count)) {
       hits.position.push_back(place.position);
-      hits.sided_triangle.push_back(place.sided_triangle);
+      hits.oriented_face.push_back(place.oriented_face);
     }
     const Stopwatch batch_watch;
     maps_.fill(hits, source_, progress, coarsest ? 1 : limits::max_light_map_levels);
@@ -397,7 +397,7 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   const Surface& surface = surfaces_[triangle];
   if (surface.kind == Surface::followed) return followed(view, pixel, direction, missing);
   const glm::vec3 light =
-      irradiance(view, sided(triangle, side), view.eye + distance * direction, missing);
+      irradiance(view, oriented(triangle, side), view.eye + distance * direction, missing);
   if (surface.kind == Surface::plain) return surface.reflects * light;
   trace::SurfacePoint point;  // its place in textures: all that is asked of it
   point.where = {triangle, u, v};
@@ -414,38 +414,38 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   return radiance;
 }
 
-glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t sided_triangle,
+glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t oriented_face,
                                      const glm::vec3& position, Missing& missing) const {
   bool lacks = false;
   std::optional<glm::vec3> light =
-      known_irradiance(sided_triangle, position, missing, missing.places, lacks);
+      known_irradiance(oriented_face, position, missing, missing.places, lacks);
   const bool is_own = light.has_value();
   if (!light && view.coarser) {
     light =
-        view.coarser->known_irradiance(sided_triangle, position, missing, missing.coarser, lacks);
+        view.coarser->known_irradiance(oriented_face, position, missing, missing.coarser, lacks);
   }
   missing.any |= lacks || !is_own;
   missing.lacking += lacks ? 1 : 0;
   ++missing.read;
   if (light) return *light;
   return (view.coarser ? view.coarser->ambient_ : ambient_)
-      .irradiance(position, glm::vec3(sided_normal(scene_, sided_triangle)));
+      .irradiance(position, glm::vec3(face_normal(scene_, oriented_face)));
 }
 
 /// None where no level is valued, and while a chart lacks some of what is seen of it: light of two
 /// kinds on one surface would show where they meet.
-std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_triangle,
+std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t oriented_face,
                                                           const glm::vec3& position,
                                                           Missing& missing,
                                                           std::vector<MissingPlace>& places,
                                                           bool& lacks) const {
   NodeBlend blend{};
-  const std::uint32_t chart = surfaces_[triangle_of(sided_triangle)].chart[side_of(sided_triangle)];
+  const std::uint32_t chart = surfaces_[triangle_of(oriented_face)].chart[side_of(oriented_face)];
   if (const auto cell = maps_.tiles().find(chart, position, blend)) {
     const bool empty = blend.node[0] == none;
     lacks = true;
     if (places.empty() || places.back().cell != *cell || places.back().packet != missing.packet) {
-      places.push_back({*cell, empty, chart, missing.packet, 0, position, sided_triangle});
+      places.push_back({*cell, empty, chart, missing.packet, 0, position, oriented_face});
     }
     places.back().gain += empty ? 1 : difference(blend);
     if (empty) return std::nullopt;
@@ -469,7 +469,7 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t sided_tr
   const glm::vec3 sum(blended(nodes_.light()));
   if (nodes_.by_normal().empty()) return sum;
   return turned(sum, blended(nodes_.by_normal()),
-                trace::shading_normal(scene_, sided_triangle, position));
+                trace::shading_normal(scene_, oriented_face, position));
 }
 
 /// Of the luminance of the nodes.
@@ -499,7 +499,7 @@ glm::vec3 LightMapFrames::followed(const View& view, std::uint32_t pixel,
     const trace::EyeHit& hit = record.hits[i];
     const glm::vec3 lobe = record.glossy.empty() ? glm::vec3(0.0f) : record.glossy[i].lobe.specular;
     radiance += hit.throughput * (hit.diffuse_albedo + lobe) * glm::one_over_pi<float>() *
-                irradiance(view, hit.sided_triangle, hit.position, missing);
+                irradiance(view, hit.oriented_face, hit.position, missing);
   }
   for (const SeenEmission& lamp : record.emission) {
     radiance += nodes_.held().powers()[layer_of_[lamp.light]] * lamp.radiance;

@@ -22,7 +22,7 @@
 namespace photile::cache {
 
 /// Draws frames from light maps. Rays through the same places of each pixel; mirrors, glass and
-/// holes are followed; a specular lobe is taken for matt reflection of the same strength, and
+/// cutouts are followed; a specular lobe is taken for matt reflection of the same strength, and
 /// normal maps are left out.
 class LightMapFrames {
  public:
@@ -65,7 +65,7 @@ class LightMapFrames {
     /// coarser nodes around it. That of its chart, once the coarsest are first.
     double gain;
     glm::vec3 position;
-    std::uint32_t sided_triangle;
+    std::uint32_t oriented_face;
   };
   /// Either the coarsest nodes of all that is seen come first, and then finer ones, or each chart
   /// gets all that it lacks before the next one does.
@@ -93,9 +93,9 @@ class LightMapFrames {
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                  std::uint32_t triangle, std::uint32_t side, float u, float v, float distance,
                  Missing& missing) const;
-  glm::vec3 irradiance(const View& view, std::uint32_t sided_triangle, const glm::vec3& position,
+  glm::vec3 irradiance(const View& view, std::uint32_t oriented_face, const glm::vec3& position,
                        Missing& missing) const;
-  std::optional<glm::vec3> known_irradiance(std::uint32_t sided_triangle, const glm::vec3& position,
+  std::optional<glm::vec3> known_irradiance(std::uint32_t oriented_face, const glm::vec3& position,
                                             Missing& missing, std::vector<MissingPlace>& places,
                                             bool& lacks) const;
   double difference(const NodeBlend& blend) const;

@@ -108,8 +108,8 @@ std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
     for (std::size_t i = task * cache::hits_per_lookup_task; i < end; ++i) {
       const std::uint32_t hit = pending[i];
       NodeBlend blend;
-      const auto missing = tiles.find(charts.chart_of()[hits.sided_triangle[hit]],
-                                      hits.position[hit], blend, levels);
+      const auto missing =
+          tiles.find(charts.chart_of()[hits.oriented_face[hit]], hits.position[hit], blend, levels);
       if (!missing) continue;
       own.hits.push_back(hit);
       if (own.cells.empty() || own.cells.back() != *missing) own.cells.push_back(*missing);
@@ -190,7 +190,7 @@ void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
       for (std::size_t light = 0; light < lights; ++light) add(light, node * lights + light);
     }
     together.push_back(static_cast<float>(sum));
-    points.push_back({at.position[node], at.sided_triangle[node]});
+    points.push_back({at.position[node], at.oriented_face[node]});
   }
   values.append(std::move(estimates));
   places.insert(places.end(), nodes.begin(), nodes.end());
@@ -277,9 +277,9 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
   }
 }
 
-bool LightMaps::find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend,
+bool LightMaps::find(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend,
                      int levels) const {
-  return !impl_->tiles.find(impl_->charts.chart_of()[sided_triangle], position, blend, levels);
+  return !impl_->tiles.find(impl_->charts.chart_of()[oriented_face], position, blend, levels);
 }
 
 double LightMaps::relative_error(const NodeBlend& blend) const {

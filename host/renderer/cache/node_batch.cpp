@@ -22,7 +22,7 @@ PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const Node
 
   PrimaryHits points;
   points.position.resize(nodes.size());
-  points.sided_triangle.resize(nodes.size());
+  points.oriented_face.resize(nodes.size());
   points.pixel.resize(nodes.size());
   points.throughput.assign(nodes.size(), glm::vec3(1.0f));
   points.diffuse_albedo.assign(nodes.size(), glm::vec3(0.0f));
@@ -34,7 +34,7 @@ PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const Node
     const Charts::Owner owner = charts.owner(nodes[i], levels);
     const trace::SurfacePoint point = trace::surface_point(scene, owner.where, owner.side);
     points.position[i] = point.position;
-    points.sided_triangle[i] = point.sided_triangle();
+    points.oriented_face[i] = point.oriented_face();
     if (!glossy) return;
     points.outgoing[i] = point.normal;
     points.lobe[i] = {.specular = glm::vec3(0.0f),

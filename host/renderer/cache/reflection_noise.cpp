@@ -51,7 +51,7 @@ double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t>
 }  // namespace
 
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
-                                        int runs, const PhotonBlotches& blotches) {
+                                        int runs, const PhotonNoise& blotches) {
   std::vector<std::uint8_t> suits(reflected.size(), 0);
   if (reflected.size() == 0) return suits;
   const auto [low, high] = std::minmax_element(reflected.pixel.begin(), reflected.pixel.end());

@@ -36,7 +36,7 @@ std::vector<std::uint32_t> places_of(std::span<const int> levels, int level) {
   return places;
 }
 
-/// Per sided triangle: flux of its photons at the powers, luminance. Of those that this process
+/// Per oriented face: flux of its photons at the powers, luminance. Of those that this process
 /// answers for, where there are several.
 std::vector<double> flux_of_triangles(const Photons& photons, std::span<const double> powers) {
   std::vector<double> flux(std::max<std::size_t>(1, photons.first_of.size()) - 1, 0.0);
@@ -94,8 +94,8 @@ double least_spacing(const Scene& scene, const Photons& photons, double reach) {
   return reach > distance ? 0 : std::max(distance / 16, near_photons(photons));
 }
 
-const Material& material_of(const Scene& scene, std::uint32_t sided_triangle) {
-  return scene.materials[scene.triangle_material[triangle_of(sided_triangle)]];
+const Material& material_of(const Scene& scene, std::uint32_t oriented_face) {
+  return scene.materials[scene.triangle_material[triangle_of(oriented_face)]];
 }
 
 /// Writes the light of hits, or its errors, one after another, from nodes, from ends of rays or
@@ -172,9 +172,9 @@ class Blend {
       light.by_normal += weight * nodes_.by_normal[value];
     });
     const glm::vec3 normal =
-        material_of(scene_, hits_.sided_triangle[hit]).normal_texture != none
+        material_of(scene_, hits_.oriented_face[hit]).normal_texture != none
             ? hits_.lobe[hit].normal
-            : trace::shading_normal(scene_, hits_.sided_triangle[hit], hits_.position[hit]);
+            : trace::shading_normal(scene_, hits_.oriented_face[hit], hits_.position[hit]);
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for_each_corner([&](ByNormal& light, std::size_t layer, std::size_t, float) {
       if (light.irradiance == glm::vec3(0.0f)) return;
@@ -251,7 +251,8 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 }
 
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-                           estimate::LightAtPoints& elsewhere, NodeSource& source, EndLight* ends)
+                           estimate::LightAtPoints& elsewhere, NodeSource& source,
+                           SecondaryLight* ends)
     : scene_(rays.scene()),
       needs_(rays.needs()),
       shared_(parameters.processes != nullptr),
@@ -300,7 +301,7 @@ Estimates SurfaceCache::errors(const PrimaryHits& hits, const Estimates& estimat
     if (reading.levels[hit] <= 0) place[hit] = hit;  // photons
   }
   Estimates own = estimates;
-  const auto relative = static_cast<float>(blotches().noise);
+  const auto relative = static_cast<float>(photon_noise().noise);
   for (glm::vec3& light : own.irradiance) light *= relative;
   for (glm::vec3& light : own.radiance) light *= relative;
   const Blend blend(scene_, needs_, hits, reading, of_nodes, nullptr, own, place);
@@ -369,7 +370,7 @@ void SurfaceCache::find_nodes(const PrimaryHits& hits, HitReading& reading) cons
                       for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
                         int& levels = reading.levels[hit];
                         if (levels <= 0) continue;
-                        const std::uint32_t sided = hits.sided_triangle[hit];
+                        const std::uint32_t sided = hits.oriented_face[hit];
                         NodeBlend& blend = reading.blends[hit];
                         maps_.find(sided, hits.position[hit], blend, levels);
                         const bool seen = sight_.look(sided, hits.position[hit], blend);
@@ -380,13 +381,13 @@ void SurfaceCache::find_nodes(const PrimaryHits& hits, HitReading& reading) cons
                     });
 }
 
-PhotonBlotches SurfaceCache::blotches() const {
+PhotonNoise SurfaceCache::photon_noise() const {
   return {ends_ ? ends_->spacing() : maps_.charts().spacing(), 1 / std::sqrt(neighbours_)};
 }
 
 bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {
   const bool has_lobe = !hits.lobe.empty() && hits.lobe[hit].f90 > 0.0f;
-  const bool mapped = material_of(scene_, hits.sided_triangle[hit]).normal_texture != none;
+  const bool mapped = material_of(scene_, hits.oriented_face[hit]).normal_texture != none;
   return !has_lobe && (!mapped || ends_ != nullptr);
 }
 

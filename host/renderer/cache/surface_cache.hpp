@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/end_light.hpp"
-#include "cache/node_sight.hpp"
+#include "cache/node_visibility.hpp"
+#include "cache/secondary_light.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
@@ -18,7 +18,7 @@
 namespace photile::cache {
 
 /// What photon estimates show of their noise.
-struct PhotonBlotches {
+struct PhotonNoise {
   double width;  ///< metres, over which estimates err alike
   double noise;  ///< relative
 };
@@ -32,7 +32,7 @@ struct PhotonBlotches {
 ///   runs        of the samples of a pixel, as PrimaryHitParameters has them
 /// Returns 1 or 0 for each of `reflected`.
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
-                                        int runs, const PhotonBlotches& blotches);
+                                        int runs, const PhotonNoise& blotches);
 
 /// A sum of squared relative standard errors.
 struct ErrorSum {
@@ -73,7 +73,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
   ///               the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-               estimate::LightAtPoints& elsewhere, NodeSource& source, EndLight* ends);
+               estimate::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* ends);
 
   /// The light at points in any order.
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
@@ -85,12 +85,12 @@ class SurfaceCache : public estimate::LightAtPoints {
   Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes);
 
   /// The noise of the light that photons alone give.
-  PhotonBlotches blotches() const;
+  PhotonNoise photon_noise() const;
 
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
   NodeSource& source() { return source_; }
-  const NodeSight& sight() const { return sight_; }
+  const NodeVisibility& sight() const { return sight_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -118,9 +118,9 @@ class SurfaceCache : public estimate::LightAtPoints {
   const double neighbours_;  ///< of a photon estimate
   estimate::LightAtPoints& elsewhere_;
   NodeSource& source_;
-  EndLight* ends_;
+  SecondaryLight* ends_;
   LightMaps maps_;
-  NodeSight sight_;
+  NodeVisibility sight_;
   std::uint64_t hits_alone_ = 0;
   ErrorSum errors_read_;
   TimeTaken fill_time_;

@@ -29,7 +29,7 @@ void add(DenoisingGuides& guides, const Scene& scene, const PrimaryHitBatch& bat
     const bool glossy = !hits.lobe.empty();
     const glm::vec3 specular = glossy ? hits.lobe[i].specular : glm::vec3(0.0f);
     const glm::vec3 normal =
-        glossy ? hits.lobe[i].normal : glm::vec3(sided_normal(scene, hits.sided_triangle[i]));
+        glossy ? hits.lobe[i].normal : glm::vec3(face_normal(scene, hits.oriented_face[i]));
     guides.albedo[pixel] += hits.throughput[i] * (hits.diffuse_albedo[i] + specular);
     guides.normal[pixel] += mean(hits.throughput[i]) * normal;
   }

@@ -51,9 +51,9 @@ Scene unit_square(const SceneNeeds& needs) {
   return std::move(builder).build();
 }
 
-/// The sided triangle of unit_square that a point lies on, seen from above.
+/// The oriented face of unit_square that a point lies on, seen from above.
 std::uint32_t front_at(const glm::vec3& point) {
-  return point.x > point.y ? sided(0, 0) : sided(1, 1);
+  return point.x > point.y ? oriented(0, 0) : oriented(1, 1);
 }
 
 Photons random_photons(const SceneNeeds& needs, std::size_t count, std::mt19937_64& random) {
@@ -62,7 +62,7 @@ Photons random_photons(const SceneNeeds& needs, std::size_t count, std::mt19937_
     const float x = uniform(random), y = uniform(random);
     photons.position.emplace_back(x, y, 0.0f);
     photons.flux.emplace_back(1.0f / static_cast<float>(count));
-    photons.sided_triangle.push_back(front_at(photons.position.back()));
+    photons.oriented_face.push_back(front_at(photons.position.back()));
     if (needs.light_count > 1) {
       photons.light.push_back(static_cast<std::uint16_t>(random() % needs.light_count));
     }
@@ -71,7 +71,7 @@ Photons random_photons(const SceneNeeds& needs, std::size_t count, std::mt19937_
       photons.incoming.push_back(glm::normalize(glm::vec3(tilt_x, tilt_y, 1.0f)));
     }
   }
-  return sort_by_sided_triangle(std::move(photons), 4);
+  return sort_by_oriented_face(std::move(photons), 4);
 }
 
 /// Every second bit of a Morton code.
@@ -95,10 +95,10 @@ PrimaryHits grid_of_hits(const Scene& scene, const SceneNeeds& needs, int per_si
     hits.position.emplace_back(x, y, 0.0f);
   }
   std::stable_partition(hits.position.begin(), hits.position.end(),
-                        [](const glm::vec3& point) { return front_at(point) == sided(0, 0); });
+                        [](const glm::vec3& point) { return front_at(point) == oriented(0, 0); });
   const Material& material = scene.materials.front();
   for (const glm::vec3& position : hits.position) {
-    hits.sided_triangle.push_back(front_at(position));
+    hits.oriented_face.push_back(front_at(position));
     hits.pixel.push_back(0);
     hits.throughput.emplace_back(1.0f);
     hits.diffuse_albedo.push_back(material.diffuse);

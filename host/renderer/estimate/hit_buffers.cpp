@@ -42,16 +42,16 @@ void store(float (&to)[3], const glm::vec3& value) {
 }
 
 /// The surface at hits whose areas are clipped.
-PhotileHitSurface clipped_surface(const SurfaceBuffers& surface, std::uint32_t sided_triangle,
+PhotileHitSurface clipped_surface(const SurfaceBuffers& surface, std::uint32_t oriented_face,
                                   const glm::vec3& position) {
   const SurfaceIndex& index = surface.index;
-  const std::uint32_t triangle = triangle_of(index.original[sided_triangle]);
+  const std::uint32_t triangle = triangle_of(index.original[oriented_face]);
   PhotileHitSurface at{};
-  store(at.normal, index.normal[sided_triangle]);
+  store(at.normal, index.normal[oriented_face]);
   store(at.inwards, surface.centroid[triangle] - position);
   at.facet = index.facet[triangle];
   at.triangle = triangle;
-  at.sheet = index.sheet_at(sided_triangle, position);
+  at.sheet = index.sheet_at(oriented_face, position);
   return at;
 }
 
@@ -100,7 +100,7 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
   if (surface != nullptr || !normals.empty()) {
     std::vector<PhotileHitSurface> surfaces(count);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t own = hits.sided_triangle[first + i];
+      const std::uint32_t own = hits.oriented_face[first + i];
       if (surface != nullptr) {
         surfaces[i] = clipped_surface(*surface, own, hits.position[first + i]);
       } else {

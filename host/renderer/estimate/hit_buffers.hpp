@@ -42,7 +42,7 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 
 /// The hits [first, first + maps.size()).
 ///   maps      of those hits
-///   normals   per sided triangle, if a map is mixed (maps::MapStore::normals), else empty
+///   normals   per oriented face, if a map is mixed (maps::MapStore::normals), else empty
 ///   surface   where areas are clipped, else null
 ///   needs     of which `glossy` asks for lobes
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,

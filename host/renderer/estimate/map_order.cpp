@@ -57,7 +57,7 @@ PrimaryHits reordered(const PrimaryHits& hits, std::size_t first,
                       std::span<const std::uint32_t> order) {
   PrimaryHits result;
   result.position = gather(hits.position, order, first);
-  result.sided_triangle = gather(hits.sided_triangle, order, first);
+  result.oriented_face = gather(hits.oriented_face, order, first);
   result.diffuse_albedo = gather(hits.diffuse_albedo, order, first);
   result.outgoing = gather(hits.outgoing, order, first);
   result.lobe = gather(hits.lobe, order, first);

@@ -60,7 +60,7 @@ Estimates PhotonEstimate::at(const PrimaryHits& points, const Progress&) {
 }
 
 std::vector<std::uint32_t> PhotonEstimate::order_of(const PrimaryHits& points) const {
-  std::vector<std::uint32_t> maps = points.sided_triangle;
+  std::vector<std::uint32_t> maps = points.oriented_face;
   if (!map_of().empty()) {
     for (std::uint32_t& map : maps) map = map_of()[map];
   }

@@ -45,7 +45,7 @@ class PhotonEstimate : public LightAtPoints {
 
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
 
-  /// Per sided triangle, as PhotonMaps has it: points in this order are not put in another.
+  /// Per oriented face, as PhotonMaps has it: points in this order are not put in another.
   std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
 
   /// Each device's part of all points so far.

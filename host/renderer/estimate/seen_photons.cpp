@@ -13,7 +13,7 @@ namespace photile::estimate {
 SeenPhotons::SeenPhotons(const RayScene& rays, const Photons& photons)
     : rays_(rays),
       position_(photons.position),
-      sided_triangle_(photons.sided_triangle),
+      oriented_face_(photons.oriented_face),
       light_(photons.light) {
   flux_.reserve(photons.size());
   for (const glm::vec3& flux : photons.flux) {
@@ -45,17 +45,17 @@ void SeenPhotons::leave_out_hidden(const PrimaryHits& hits, std::span<const std:
     all.assign(lights, 0.0);
     seen.assign(lights, 0.0);
     const std::uint32_t hit = chosen[row];
-    const float lift = defaults::photon_sight_lift * std::sqrt(near.squared_radius[row]);
+    const float lift = defaults::photon_ray_offset * std::sqrt(near.squared_radius[row]);
     const trace::SurfacePlace here =
-        trace::place_on(scene, hits.sided_triangle[hit], hits.position[hit]);
+        trace::place_on(scene, hits.oriented_face[hit], hits.position[hit]);
     for (const std::uint32_t photon : std::span(near.photons).subspan(row * k, k)) {
       if (photon == none) break;
       const std::size_t layer = light_.empty() ? 0 : light_[photon];
       all[layer] += flux_[photon];
       const trace::SurfacePlace there =
-          trace::place_on(scene, sided_triangle_[photon], position_[photon]);
+          trace::place_on(scene, oriented_face_[photon], position_[photon]);
       // Nodes may lie on the foot of a wall: the line ends short of them.
-      if (trace::see_each_other(rays_, there, here, {lift, defaults::sight_left_out}))
+      if (trace::see_each_other(rays_, there, here, {lift, defaults::visibility_left_out}))
         seen[layer] += flux_[photon];
     }
     for_each_estimate(estimates, hit, lights, [&](std::size_t layer, std::size_t i) {

@@ -36,7 +36,7 @@ class SeenPhotons {
  private:
   const RayScene& rays_;
   std::vector<glm::vec3> position_;
-  std::vector<std::uint32_t> sided_triangle_;
+  std::vector<std::uint32_t> oriented_face_;
   std::vector<float> flux_;           ///< luminance
   std::vector<std::uint16_t> light_;  ///< empty for one alone
 };

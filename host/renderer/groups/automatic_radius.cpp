@@ -130,7 +130,7 @@ namespace photile {
 // The automatic search radius.
 //
 // Exact distances to the k-th of millions of photons would cost more than the default is worth. So
-// the photons are thinned to a subsample, regularly over their order by sided triangle, which keeps
+// the photons are thinned to a subsample, regularly over their order by oriented face, which keeps
 // the share of every surface; in it the m-th nearest photon stands for the k-th, m = k x kept
 // share. Photons on a surface are locally a Poisson process: pi rho r_k^2 has the distribution
 // Gamma(k), so r_k^2 = r_m^2 x share x median of Gamma(k) / median of Gamma(m).

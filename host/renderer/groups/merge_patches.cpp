@@ -87,7 +87,7 @@ PhotonSample::PhotonSample(std::span<const PatchShape> shapes, const NeighbourGr
     const std::size_t step = sample_step(photons.size());
     for (std::size_t i = step / 2; i < photons.size(); i += step) {
       position_.emplace_back(photons.position[i]);
-      triangles.push_back(photons.sided_triangle[i]);
+      triangles.push_back(photons.oriented_face[i]);
     }
   }
   std::vector<std::vector<std::uint32_t>> maps(position_.size());
@@ -128,7 +128,7 @@ constexpr double least_shared = 0.65;
 
 /// At least as large a part must those be of what the joined patch would hold around it. With less,
 /// the queries of either would look at too many photons of the other in vain: of the bright side of
-/// a light for a hit on its dark side.
+/// a light for a hit on its unlit side.
 constexpr double least_shared_around = 0.5;
 
 /// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map

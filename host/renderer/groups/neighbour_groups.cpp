@@ -78,7 +78,7 @@ TriangleBound ProximityTest::bound(std::uint32_t triangle) const {
   const TriangleCorners corners = corners_of(scene_, triangle);
   TriangleBound bound{};
   bound.triangle = triangle;
-  bound.normal = sided_normal(scene_, sided(triangle, 0));
+  bound.normal = face_normal(scene_, oriented(triangle, 0));
   bound.centre = smallest_ball_centre(corners);
   for (const glm::dvec3& corner : corners) {
     bound.radius = std::max(bound.radius, glm::distance(bound.centre, corner));
@@ -129,7 +129,7 @@ std::uint32_t members_of(std::uint32_t neighbour) {
 struct Chunk {
   std::vector<std::uint32_t> neighbours;
   std::vector<std::uint32_t> list_sizes;   ///< per triangle: neighbours
-  std::vector<std::uint64_t> group_sizes;  ///< per sided triangle: members
+  std::vector<std::uint64_t> group_sizes;  ///< per oriented face: members
 };
 
 std::vector<Chunk> find_chunks(std::size_t triangle_count, double radius,
@@ -188,8 +188,8 @@ void write_groups(const Chunk& chunk, std::uint32_t* members) {
         const std::uint32_t neighbour = list[i] / 4;
         const bool agrees_with_0 = list[i] & (side == 0 ? equal_sides : opposite_sides);
         const bool agrees_with_1 = list[i] & (side == 0 ? opposite_sides : equal_sides);
-        if (agrees_with_0) *members++ = sided(neighbour, 0);
-        if (agrees_with_1) *members++ = sided(neighbour, 1);
+        if (agrees_with_0) *members++ = oriented(neighbour, 0);
+        if (agrees_with_1) *members++ = oriented(neighbour, 1);
       }
     }
     list += size;

@@ -73,7 +73,7 @@ void check(const NeighbourGroupParameters& parameters);
 
 /// Groups of both sides of all triangles, searched in parallel. Errors: UsageError when they have
 /// more members than limits.hpp allows; Interrupted.
-///   landed   per sided triangle: 1 where a group is wanted, 0 where an empty one will do; empty:
+///   landed   per oriented face: 1 where a group is wanted, 0 where an empty one will do; empty:
 ///   all
 ///            are wanted
 NeighbourGroups collect_groups(std::size_t triangle_count,

@@ -62,7 +62,7 @@ class PatchSearch {
         boxes_(scene.triangle_count()),
         trees_(patches.count()) {
     tbb::parallel_for(std::size_t{0}, boxes_.size(), [&](std::size_t i) {
-      normals_[i] = sided_normal(scene, patches.members[i]);
+      normals_[i] = face_normal(scene, patches.members[i]);
       boxes_[i] = triangle_box(scene, triangle_of(patches.members[i]));
     });
     patch_boxes_.resize(patches.count());
@@ -79,9 +79,9 @@ class PatchSearch {
 
   void append_neighbours(std::uint32_t triangle, std::vector<std::uint32_t>& neighbours) const {
     const std::size_t first_of_list = neighbours.size();
-    const glm::dvec3 normal = sided_normal(scene_, sided(triangle, 0));
+    const glm::dvec3 normal = face_normal(scene_, oriented(triangle, 0));
     const Box box = triangle_box(scene_, triangle);
-    const std::uint32_t own_map = patches_.map_of[sided(triangle, 0)];
+    const std::uint32_t own_map = patches_.map_of[oriented(triangle, 0)];
     patch_tree_.visit_within(box, limit_, [&](std::uint32_t patch) {
       if (!(squared_distance(patch_boxes_[patch], box) <= limit_)) return false;
       std::uint32_t sides = 0;

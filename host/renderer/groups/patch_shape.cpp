@@ -54,7 +54,7 @@ TriangleFacts::TriangleFacts(const Scene& scene)
     : normal(scene.triangle_count()), area(scene.triangle_count()) {
   tbb::parallel_for(std::size_t{0}, normal.size(), [&](std::size_t t) {
     const auto triangle = static_cast<std::uint32_t>(t);
-    normal[t] = glm::vec3(sided_normal(scene, sided(triangle, 0)));
+    normal[t] = glm::vec3(face_normal(scene, oriented(triangle, 0)));
     area[t] = static_cast<float>(triangle_area(scene, triangle));
   });
 }

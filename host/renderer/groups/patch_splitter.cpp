@@ -255,7 +255,7 @@ class Collector {
   void add(std::span<const std::uint32_t> triangles, const groups::PatchShape& shape) {
     const auto patch = static_cast<std::uint32_t>(patches_.count());
     for (const std::uint32_t t : triangles) {
-      const std::uint32_t member = sided(t, side_of_member(t, shape));
+      const std::uint32_t member = oriented(t, side_of_member(t, shape));
       patches_.members.push_back(member);
       patches_.map_of[member] = 2 * patch;
       patches_.map_of[member ^ 1u] = 2 * patch + 1;

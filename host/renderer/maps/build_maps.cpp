@@ -159,11 +159,11 @@ void add_page(MapStore& store, MapPage page) {
   store.pages.add(std::move(page));
 }
 
-std::vector<glm::vec3> sided_normals(const Scene& scene) {
+std::vector<glm::vec3> face_normals(const Scene& scene) {
   std::vector<glm::vec3> normals(2 * scene.triangle_count());
   tbb::parallel_for(std::size_t{0}, scene.triangle_count(), [&](std::size_t triangle) {
-    const std::uint32_t front = sided(static_cast<std::uint32_t>(triangle), 0);
-    normals[front] = glm::vec3(sided_normal(scene, front));
+    const std::uint32_t front = oriented(static_cast<std::uint32_t>(triangle), 0);
+    normals[front] = glm::vec3(face_normal(scene, front));
     normals[front + 1] = -normals[front];
   });
   return normals;
@@ -176,12 +176,12 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
   MapPlan plan;
   plan.reach = reach_of(scene, store.parameters.radius);
   plan.normals = !patches.empty();
-  if (plan.normals) store.normals = sided_normals(scene);
+  if (plan.normals) store.normals = face_normals(scene);
   plan.candidates = find_candidate_maps(scene, photons, groups, plan.reach, wanted);
   MapNumbers numbers = number_maps(plan.candidates, patches, 2 * scene.triangle_count());
   store.map_of = std::move(numbers.map_of);
   plan.surfaces = map_shapes(scene, patches, numbers.pairs, glm::radians(groups.angle_degrees));
-  plan.crowding = of_numbered(numbers, photon_crowding(scene, photons, patches));
+  plan.density_ratio = of_numbered(numbers, photon_density_ratio(scene, photons, patches));
   plan.name_of = [&](std::uint32_t pair) { return surface_name(numbers.pairs[pair], patches); };
   build_maps(store, photons, spent, std::move(plan), progress);
 }
@@ -198,12 +198,13 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   build.corners = context.upload(std::span<const float>(plan.surfaces.corners), "triangle corners");
   build.shapes =
       context.upload(std::span<const PhotileMapShape>(plan.surfaces.shapes), "map shapes");
-  build.crowding = context.upload(std::span<const float>(plan.crowding), "density ratios");
+  build.density_ratio =
+      context.upload(std::span<const float>(plan.density_ratio), "density ratios");
   build.map_of = context.share(std::span(std::as_const(store.map_of)), "maps of triangles");
   build.normals = upload_normals(context, store);
   build.photon_pages = photon_pages(build, plan.candidates, photons, progress);
   plan.surfaces = {};
-  count_photons(build, plan.crowding.size());
+  count_photons(build, plan.density_ratio.size());
   const CountedMaps counted{read_all(context, build.counts.photons),
                             read_all(context, build.counts.mixed)};
 

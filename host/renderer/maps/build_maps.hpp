@@ -15,7 +15,7 @@
 
 namespace photile::maps {
 
-/// Builds one map per sided triangle or side of a patch. Fills the pages and statistics of `store`,
+/// Builds one map per oriented face or side of a patch. Fills the pages and statistics of `store`,
 /// whose device, needs and parameters are set.
 ///   spent    the same photons where their arrays may be given back on the way, else null
 ///   wanted   as PhotonMaps has it
@@ -26,10 +26,10 @@ void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& ph
 /// Where maps lie, and which photons may enter them.
 struct MapPlan {
   CandidateMaps candidates;
-  MapShapes surfaces;           ///< of pairs of maps
-  std::vector<float> crowding;  ///< per map, see photon_crowding
-  float reach = 0;              ///< metres: photons within it of a surface enter its maps
-  bool normals = false;         ///< normals of photons may disagree with those of hits
+  MapShapes surfaces;                ///< of pairs of maps
+  std::vector<float> density_ratio;  ///< per map, see photon_density_ratio
+  float reach = 0;                   ///< metres: photons within it of a surface enter its maps
+  bool normals = false;              ///< normals of photons may disagree with those of hits
   /// What messages call a pair.
   std::function<std::string(std::uint32_t pair)> name_of;
 };
@@ -47,7 +47,7 @@ void add_page(MapStore& store, MapPage page);
 /// rounding may do to positions as large as the scene's, so that no neighbour is lost.
 float reach_of(const Scene& scene, double radius);
 
-/// Unit normals of sided triangles.
-std::vector<glm::vec3> sided_normals(const Scene& scene);
+/// Unit normals of oriented faces.
+std::vector<glm::vec3> face_normals(const Scene& scene);
 
 }  // namespace photile::maps

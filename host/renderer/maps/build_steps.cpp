@@ -39,7 +39,7 @@ device::Launch photon_launch(const Build& build, const char* kernel, const Photo
   device::Launch launch = build.kernels.launch(kernel);
   launch.set("page", photon_page(photons, build.squared_reach))
       .set("position", photons.position)
-      .set("sided_triangle", photons.sided_triangle)
+      .set("oriented_face", photons.oriented_face)
       .set("map_of", build.map_of)
       .set("list", photons.list)
       .set("list_offsets", photons.list_offsets)
@@ -95,7 +95,7 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
       .set("first_map", page.first_map)
       .set("shapes", build.shapes)
       .set("map_count", build.counts.photons)
-      .set("map_crowding", build.crowding)
+      .set("map_density_ratio", build.density_ratio)
       .set("map_mixed", build.counts.mixed)
       .set("radius", build.radius)
       .set("photons_per_cell", build.store.parameters.photons_per_cell)
@@ -251,7 +251,7 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
     }
     if (gathering.normals != nullptr) {
       launch_of("gather_normals")
-          .set("sided_triangle", photons.sided_triangle)
+          .set("oriented_face", photons.oriented_face)
           .set("normal", *gathering.normals)
           .set("entry_normal", page.entry_normal)
           .run(page.entry_count, work_group_size);

@@ -35,10 +35,10 @@ struct Build {
   bool patches;         ///< maps may serve several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
-  device::Buffer<std::uint32_t> map_of = {};    ///< per sided triangle
-  device::Buffer<float> normals = {};           ///< 3 per sided triangle; only with patches
+  device::Buffer<std::uint32_t> map_of = {};    ///< per oriented face
+  device::Buffer<float> normals = {};           ///< 3 per oriented face; only with patches
   device::Buffer<PhotileMapShape> shapes = {};  ///< per pair of maps
-  device::Buffer<float> crowding = {};          ///< per map
+  device::Buffer<float> density_ratio = {};     ///< per map
   device::Buffer<float> corners = {};           ///< 9 floats per triangle that is alone in its maps
   std::unique_ptr<PhotonPages> photon_pages = {};
   MapCounts counts = {};
@@ -74,7 +74,7 @@ struct PhotonRelease {
 
 /// How entries are gathered.
 struct EntryGathering {
-  /// 3 floats per sided triangle, where the entries keep normals; else null.
+  /// 3 floats per oriented face, where the entries keep normals; else null.
   const device::Buffer<float>* normals = nullptr;
   /// Is called as soon as no kernel reads what it lets go of, where photons are one page; null:
   /// photons are needed for further pages of maps.

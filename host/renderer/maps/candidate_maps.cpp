@@ -21,7 +21,7 @@ constexpr std::size_t few_photons = 16;  ///< nor is one for this many photons
 
 constexpr std::size_t triangles_per_chunk = 1024;  ///< sided ones
 
-/// The lists of some sided triangles in a row.
+/// The lists of some oriented faces in a row.
 struct Lists {
   std::vector<std::uint32_t> lists_of_triangle;  ///< their number
   std::vector<std::uint32_t> list_of_photon;     ///< numbered from 0 in the chunk
@@ -93,7 +93,7 @@ class Splitter {
 std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches) {
   std::vector<geometry::Box> boxes(patches.empty() ? scene.triangle_count() : patches.count());
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    geometry::Box& box = boxes[patches.map(sided(t, 0)) / 2];
+    geometry::Box& box = boxes[patches.map(oriented(t, 0)) / 2];
     for (const glm::vec3& corner : scene.corners(t)) box.extend(corner);
   }
   return boxes;

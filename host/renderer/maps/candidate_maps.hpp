@@ -18,13 +18,13 @@ namespace photile::maps {
 /// reaches a few: without the lists the build would try them all.
 struct CandidateMaps {
   std::vector<std::uint32_t> list_of_photon;
-  std::vector<std::uint64_t> first_list_of;  ///< per sided triangle, and the number of lists
+  std::vector<std::uint64_t> first_list_of;  ///< per oriented face, and the number of lists
   std::vector<std::uint64_t> offsets;        ///< per list, and the number of members
   std::vector<std::uint32_t> members;        ///< maps
 };
 
 /// Every list of a photon holds each member of its group whose surface lies within `reach` metres
-/// of the photon, and seldom many more. Splits the photons of a sided triangle in halves until the
+/// of the photon, and seldom many more. Splits the photons of an oriented face in halves until the
 /// members near each half are few. Parallel; the result does not depend on the number of threads.
 ///   wanted   per map of the groups: 1 for those that lists name; empty: all. Which photons a list
 ///            is for does not depend on it
@@ -40,16 +40,16 @@ std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches)
 /// near has no map and takes no memory.
 struct MapNumbers {
   std::vector<std::uint32_t> pairs;   ///< per pair: its triangle; with patches, its patch
-  std::vector<std::uint32_t> map_of;  ///< per sided triangle: its map, or `none`
+  std::vector<std::uint32_t> map_of;  ///< per oriented face: its map, or `none`
 
   std::size_t map_count() const { return 2 * pairs.size(); }
 };
 
 /// Numbers the maps that are members of candidate lists, and renames the members.
-///   sided_count   sided triangles of the scene
+///   sided_count   oriented faces of the scene
 MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t sided_count);
 
-/// `values` of all sided triangles' or patches' maps: those of the numbered ones.
+/// `values` of all oriented faces' or patches' maps: those of the numbered ones.
 std::vector<float> of_numbered(const MapNumbers& numbers, std::span<const float> values);
 
 }  // namespace photile::maps

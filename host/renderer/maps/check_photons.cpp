@@ -29,17 +29,17 @@ bool all_finite(const std::vector<glm::vec3>& values) {
 
 bool has_all_arrays(const Photons& photons, const SceneNeeds& needs) {
   const std::size_t count = photons.size();
-  return photons.flux.size() == count && photons.sided_triangle.size() == count &&
+  return photons.flux.size() == count && photons.oriented_face.size() == count &&
          photons.incoming.size() == (needs.glossy ? count : 0) &&
          photons.light.size() == (needs.several_lights() ? count : 0);
 }
 
-/// Whether photons lie in the rows of their sided triangles.
+/// Whether photons lie in the rows of their oriented faces.
 bool are_in_their_rows(const Photons& photons) {
   return all_parts(photons.first_of.size() - 1, 1 << 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t sided = first; sided < last; ++sided) {
       for (std::uint32_t i = photons.first_of[sided]; i < photons.first_of[sided + 1]; ++i) {
-        if (photons.sided_triangle[i] != sided) return false;
+        if (photons.oriented_face[i] != sided) return false;
       }
     }
     return true;
@@ -49,9 +49,9 @@ bool are_in_their_rows(const Photons& photons) {
 }  // namespace
 
 std::string problem_of(const Photons& photons, const SceneNeeds& needs,
-                       std::uint64_t sided_triangles) {
+                       std::uint64_t oriented_faces) {
   if (!has_all_arrays(photons, needs)) return "arrays of different lengths";
-  if (!are_rows(photons.first_of, sided_triangles, photons.size()) || !are_in_their_rows(photons)) {
+  if (!are_rows(photons.first_of, oriented_faces, photons.size()) || !are_in_their_rows(photons)) {
     return "photons out of the order of their triangles";
   }
   if (!all_below(photons.light, needs.light_count)) return "photons of a light that is not there";

@@ -11,9 +11,9 @@
 
 namespace photile::maps {
 
-/// What is wrong with photons on a scene of so many sided triangles; "" = nothing.
+/// What is wrong with photons on a scene of so many oriented faces; "" = nothing.
 std::string problem_of(const Photons& photons, const SceneNeeds& needs,
-                       std::uint64_t sided_triangles);
+                       std::uint64_t oriented_faces);
 
 /// Rows of compressed sparse rows: from 0, ascending, to the number of elements.
 template <class T>

@@ -13,7 +13,7 @@ namespace photile::maps {
 
 static_assert(sizeof(PhotileGrid) == 20 * 4, "PhotileGrid must have no padding");
 
-/// What a page covers: maps [first_map, last_map). A map is a sided triangle's or one side of a
+/// What a page covers: maps [first_map, last_map). A map is an oriented face's or one side of a
 /// patch's.
 struct PageExtent {
   std::uint32_t first_map = 0, last_map = 0;
@@ -31,7 +31,7 @@ struct PageBuffers {
   device::Buffer<float> entry_flux;            ///< planes r, g, b
   device::Buffer<std::uint8_t> entry_light;    ///< bytes_per_light(needs) each
   device::Buffer<float> entry_incoming;        ///< planes x, y, z; only in glossy scenes
-  /// Planes x, y, z of the photon's sided triangle; only in pages with a map that serves triangles
+  /// Planes x, y, z of the photon's oriented face; only in pages with a map that serves triangles
   /// of different normals.
   device::Buffer<float> entry_normal;
 

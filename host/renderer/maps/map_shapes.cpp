@@ -37,7 +37,7 @@ bool has_float_distance(const Scene& scene, std::uint32_t triangle) {
          edge * edge <= most_heights * 2 * triangle_area(scene, triangle);
 }
 
-/// `members`: sided triangles of the map whose side the axis points from.
+/// `members`: oriented faces of the map whose side the axis points from.
 PhotileMapShape map_shape(const Scene& scene, const groups::TriangleFacts& facts,
                           std::span<const std::uint32_t> members, double angle, double margin) {
   std::vector<std::uint32_t> triangles(members.size());
@@ -100,7 +100,7 @@ MapShapes map_shapes(const Scene& scene, const Patches& patches,
   MapShapes result;
   result.shapes.resize(pairs.size());
   tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
-    const std::uint32_t own = sided(pairs[i], 0);
+    const std::uint32_t own = oriented(pairs[i], 0);
     const std::span<const std::uint32_t> members =
         patches.empty() ? std::span(&own, 1) : patches.of(pairs[i]);
     result.shapes[i] = map_shape(scene, facts, members, angle_radians, margin);
@@ -162,8 +162,8 @@ double squared_density(const std::array<glm::vec3, 3>& corners, double area,
 
 }  // namespace
 
-std::vector<float> photon_crowding(const Scene& scene, const Photons& photons,
-                                   const Patches& patches) {
+std::vector<float> photon_density_ratio(const Scene& scene, const Photons& photons,
+                                        const Patches& patches) {
   const std::size_t sided_count = 2 * scene.triangle_count();
   std::vector<double> squared(sided_count, 0);
   tbb::parallel_for(std::size_t{0}, sided_count, [&](std::size_t s) {
@@ -184,14 +184,14 @@ std::vector<float> photon_crowding(const Scene& scene, const Photons& photons,
     sum.photons += photons.first_of[s + 1] - photons.first_of[s];
     sum.squared += squared[s];
   }
-  std::vector<float> crowding(sums.size(), 1.0f);
+  std::vector<float> density_ratio(sums.size(), 1.0f);
   for (std::size_t map = 0; map < sums.size(); ++map) {
     const auto& [area, count, integral] = sums[map];
     if (count > 0) {
-      crowding[map] = static_cast<float>(std::max(1.0, integral * area / (count * count)));
+      density_ratio[map] = static_cast<float>(std::max(1.0, integral * area / (count * count)));
     }
   }
-  return crowding;
+  return density_ratio;
 }
 
 }  // namespace photile::maps

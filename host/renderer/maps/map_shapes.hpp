@@ -35,7 +35,7 @@ MapShapes map_shapes(const Scene& scene, const Patches& patches,
 /// It is found from counts n in bins of area A (small triangles, and parts of large ones): the sum
 /// of n (n - 1) / A is an unbiased estimate of the integral of the squared density, for n (n - 1)
 /// has the expectation (density x A)^2 when n is Poisson distributed.
-std::vector<float> photon_crowding(const Scene& scene, const Photons& photons,
-                                   const Patches& patches);
+std::vector<float> photon_density_ratio(const Scene& scene, const Photons& photons,
+                                        const Patches& patches);
 
 }  // namespace photile::maps

@@ -21,7 +21,7 @@ namespace photile::maps {
 
 std::vector<std::uint32_t> MapStore::maps_of(const PrimaryHits& hits, std::size_t first,
                                              std::size_t count) const {
-  const auto begin = hits.sided_triangle.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto begin = hits.oriented_face.begin() + static_cast<std::ptrdiff_t>(first);
   std::vector<std::uint32_t> maps(begin, begin + static_cast<std::ptrdiff_t>(count));
   if (!map_of.empty()) {
     for (std::uint32_t& map : maps) map = map_of[map];

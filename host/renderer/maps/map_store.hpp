@@ -29,13 +29,13 @@ struct MapStore {
   PhotonMapParameters parameters;
   PhotonMapStatistics statistics;
   mutable ResidentMaps pages;  ///< maps without photons may lie in none; using one moves others
-  /// Per sided triangle; `none` where no photon comes near. Empty where that is the map itself.
+  /// Per oriented face; `none` where no photon comes near. Empty where that is the map itself.
   std::vector<std::uint32_t> map_of;
   double angle_degrees = 0;           ///< largest angle between normals of neighbours
   double cos_angle = 0;               ///< its cosine
   bool naive = false;                 ///< maps hold the photons of their own triangle only
-  std::vector<std::uint32_t> landed;  ///< per sided triangle: photons that landed there
-  std::vector<glm::vec3> normals;     ///< per sided triangle; only if a page has entry_normal
+  std::vector<std::uint32_t> landed;  ///< per oriented face: photons that landed there
+  std::vector<glm::vec3> normals;     ///< per oriented face; only if a page has entry_normal
 
   /// Makes what answers queries on these maps where they are no grids: what grids are compared with
   /// is made so (bench/structures). Empty for grids.

@@ -50,10 +50,10 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
   const auto total = static_cast<std::uint32_t>(photons.size());
   std::vector<PhotonRange> pages;
   for (std::uint32_t first = 0; first < total;) {
-    const std::uint32_t first_map = photons.sided_triangle[first];
+    const std::uint32_t first_map = photons.oriented_face[first];
     const std::uint64_t most = std::min<std::uint64_t>(total, first + max_photons);
-    // The last sided triangle whose lists still fit.
-    std::uint32_t end_map = photons.sided_triangle[most - 1] + 1;
+    // The last oriented face whose lists still fit.
+    std::uint32_t end_map = photons.oriented_face[most - 1] + 1;
     while (end_map > first_map &&
            first_member_of(end_map) - first_member_of(first_map) > max_members) {
       --end_map;
@@ -83,8 +83,8 @@ PhotonPage upload_photon_records(device::Context& context, const Photons& photon
   page.count = range.last - range.first;
   page.position = context.share(floats(photons.position, range), "photon positions",
                                 device::SharedMemory::counted);
-  page.sided_triangle = context.share(part(photons.sided_triangle, range), "photons' triangles",
-                                      device::SharedMemory::counted);
+  page.oriented_face = context.share(part(photons.oriented_face, range), "photons' triangles",
+                                     device::SharedMemory::counted);
   page.flux =
       context.share(floats(photons.flux, range), "photon flux", device::SharedMemory::counted);
   page.light =
@@ -97,9 +97,9 @@ PhotonPage upload_photon_records(device::Context& context, const Photons& photon
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range) {
   PhotonPage page = upload_photon_records(context, photons, range);
-  const std::uint64_t first_list = candidates.first_list_of[photons.sided_triangle[range.first]];
+  const std::uint64_t first_list = candidates.first_list_of[photons.oriented_face[range.first]];
   const std::uint64_t end_list =
-      candidates.first_list_of[photons.sided_triangle[range.last - 1] + 1];
+      candidates.first_list_of[photons.oriented_face[range.last - 1] + 1];
   const std::uint64_t first_member = candidates.offsets[first_list];
   page.first_list = static_cast<std::uint32_t>(first_list);
   std::vector<std::uint32_t> offsets(end_list - first_list + 1);

@@ -21,7 +21,7 @@ struct PhotonPage {
   std::uint32_t count = 0;
 
   device::Buffer<float> position;  ///< 3 per photon
-  device::Buffer<std::uint32_t> sided_triangle;
+  device::Buffer<std::uint32_t> oriented_face;
   device::Buffer<float> flux;                  ///< 3 per photon
   device::Buffer<std::uint16_t> light;         ///< empty for a single light
   device::Buffer<float> incoming;              ///< 3 per photon; empty unless glossy
@@ -44,7 +44,7 @@ struct PhotonRange {
 };
 
 /// Splits photons so that no buffer of a page is larger than `max_bytes`, but for the lists of a
-/// sided triangle that alone are larger. Errors: DeviceError when those are beyond 32 bits.
+/// oriented face that alone are larger. Errors: DeviceError when those are beyond 32 bits.
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
@@ -104,7 +104,7 @@ class PhotonPages final : private Residents {
 
   /// Whether one page holds all photons.
   bool single() const { return ranges_.size() == 1; }
-  /// Let go of parts of the one page: of lists and `entered`, of all else but sided_triangle. It
+  /// Let go of parts of the one page: of lists and `entered`, of all else but oriented_face. It
   /// cannot be uploaded again afterwards.
   void release_lists();
   void release_records();

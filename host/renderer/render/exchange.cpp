@@ -21,7 +21,7 @@ namespace {
 std::vector<std::byte> bytes_of(const PrimaryHits& hits) {
   ByteWriter bytes;
   bytes.put(hits.position);
-  bytes.put(hits.sided_triangle);
+  bytes.put(hits.oriented_face);
   const bool glossy = !hits.outgoing.empty();
   bytes.put(glossy ? hits.diffuse_albedo : std::vector<glm::vec3>());
   bytes.put(hits.outgoing);
@@ -32,7 +32,7 @@ std::vector<std::byte> bytes_of(const PrimaryHits& hits) {
 void append_hits(std::span<const std::byte> bytes, PrimaryHits& hits) {
   ByteReader reader(bytes);
   reader.append_to(hits.position);
-  reader.append_to(hits.sided_triangle);
+  reader.append_to(hits.oriented_face);
   reader.append_to(hits.diffuse_albedo);
   reader.append_to(hits.outgoing);
   reader.append_to(hits.lobe);
@@ -149,7 +149,7 @@ Estimates Exchange::none_yet() const {
 std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& points) const {
   std::vector<std::vector<std::uint32_t>> of_owners(processes_.size());
   for (std::uint32_t point = 0; point < points.size(); ++point) {
-    of_owners[owners_->of(points.sided_triangle[point])].push_back(point);
+    of_owners[owners_->of(points.oriented_face[point])].push_back(point);
   }
   return of_owners;
 }

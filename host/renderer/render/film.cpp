@@ -270,12 +270,12 @@ struct Sums {
   }
 };
 
-void sum_hit(const LightPooling& pooling, const Estimates& estimates, std::size_t hit, Sums& sums) {
+void sum_hit(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hit, Sums& sums) {
   sums.clear();
-  estimate::for_each_estimate(estimates, hit, pooling.layer_of.size(),
+  estimate::for_each_estimate(estimates, hit, mixdown.layer_of.size(),
                               [&](std::size_t light, std::size_t i) {
-                                const std::uint32_t layer = pooling.layer_of[light];
-                                const float scale = pooling.scale[light];
+                                const std::uint32_t layer = mixdown.layer_of[light];
+                                const float scale = mixdown.scale[light];
                                 sums.irradiance[layer] += scale * estimates.irradiance[i];
                                 if (!estimates.radiance.empty())
                                   sums.radiance[layer] += scale * estimates.radiance[i];
@@ -295,11 +295,11 @@ void for_each_hit(std::size_t hits, std::size_t layers, const Work& work) {
 }
 
 /// Where each hit's layers lie among those that any light reaches.
-void place_layers(const LightPooling& pooling, const Estimates& estimates, std::size_t hits,
+void place_layers(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits,
                   Estimates& result) {
   result.first.assign(hits + 1, 0);
-  for_each_hit(hits, pooling.layers.size(), [&](std::size_t hit, Sums& sums) {
-    sum_hit(pooling, estimates, hit, sums);
+  for_each_hit(hits, mixdown.layers.size(), [&](std::size_t hit, Sums& sums) {
+    sum_hit(mixdown, estimates, hit, sums);
     result.first[hit + 1] = sums.lit.count();
   });
   std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
@@ -308,15 +308,15 @@ void place_layers(const LightPooling& pooling, const Estimates& estimates, std::
 
 }  // namespace
 
-Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::size_t hits) {
-  const std::size_t layers = pooling.layers.size();
+Estimates pooled(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits) {
+  const std::size_t layers = mixdown.layers.size();
   const bool sparse = layers > max_dense_lights, glossy = !estimates.radiance.empty();
   Estimates result;
-  if (sparse) place_layers(pooling, estimates, hits, result);
+  if (sparse) place_layers(mixdown, estimates, hits, result);
   result.irradiance.resize(sparse ? result.light.size() : hits * layers);
   if (glossy) result.radiance.resize(result.irradiance.size());
   for_each_hit(hits, layers, [&](std::size_t hit, Sums& sums) {
-    sum_hit(pooling, estimates, hit, sums);
+    sum_hit(mixdown, estimates, hit, sums);
     std::size_t next = sparse ? static_cast<std::size_t>(result.first[hit]) : hit * layers;
     for (const std::uint16_t layer : sums.lit.sorted()) {
       const std::size_t to = sparse ? next++ : next + layer;  // the others stay 0
@@ -328,12 +328,12 @@ Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::s
   return result;
 }
 
-void pool_emission(const LightPooling& pooling, PrimaryHitBatch& batch) {
+void pool_emission(const LayerMixdown& mixdown, PrimaryHitBatch& batch) {
   for (SeenEmission& seen : batch.emission) {
-    const float scale = pooling.scale[seen.light];
+    const float scale = mixdown.scale[seen.light];
     seen.radiance *= scale;
     seen.illuminance *= scale;
-    seen.light = pooling.layer_of[seen.light];
+    seen.light = mixdown.layer_of[seen.light];
   }
 }
 

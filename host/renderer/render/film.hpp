@@ -34,9 +34,9 @@ void raise_to_zero(LightLayers& layers);
 void add_sample_errors(LightLayers& errors, const LightLayers& runs);
 
 /// The estimates of the pooled layers; those of a hit are summed in its own order.
-Estimates pooled(const LightPooling& pooling, const Estimates& estimates, std::size_t hits);
+Estimates pooled(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits);
 
 /// Pools the emission of visible lights.
-void pool_emission(const LightPooling& pooling, PrimaryHitBatch& batch);
+void pool_emission(const LayerMixdown& mixdown, PrimaryHitBatch& batch);
 
 }  // namespace photile

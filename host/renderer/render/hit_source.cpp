@@ -59,7 +59,7 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
                                   std::span<const std::uint32_t> map_of) const {
   const PrimaryHits once = trace::sensor_hits(rays, sensors_);
   const auto map = [&](std::uint32_t hit) {
-    const std::uint32_t own = once.sided_triangle[hit];
+    const std::uint32_t own = once.oriented_face[hit];
     return map_of.empty() ? own : map_of[own];
   };
   std::vector<std::uint32_t> order(once.size());
@@ -71,7 +71,7 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
   for (const std::uint32_t hit : order) {
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       hits.position.push_back(once.position[hit]);
-      hits.sided_triangle.push_back(once.sided_triangle[hit]);
+      hits.oriented_face.push_back(once.oriented_face[hit]);
       hits.pixel.push_back(once.pixel[hit]);
       hits.throughput.push_back(once.throughput[hit] / static_cast<float>(film.samples_per_pixel));
       hits.diffuse_albedo.push_back(once.diffuse_albedo[hit]);

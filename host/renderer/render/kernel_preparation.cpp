@@ -26,8 +26,8 @@ bool may_mix_normals(const Scene& scene, double angle_degrees) {
   const double least_cosine = std::cos(glm::radians(angle_degrees));
   for (std::uint32_t a = 0; a < count; ++a) {
     for (std::uint32_t b = 0; b < a; ++b) {
-      const double cosine =
-          std::abs(glm::dot(sided_normal(scene, sided(a, 0)), sided_normal(scene, sided(b, 0))));
+      const double cosine = std::abs(
+          glm::dot(face_normal(scene, oriented(a, 0)), face_normal(scene, oriented(b, 0))));
       if (cosine >= least_cosine && cosine < alike) return true;
     }
   }

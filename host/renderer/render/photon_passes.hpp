@@ -61,7 +61,7 @@ class PassLight {
   /// Where rays value nodes; else null.
   const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
 
-  /// The order in which the light is found fastest: per sided triangle, the map of a hit; empty
+  /// The order in which the light is found fastest: per oriented face, the map of a hit; empty
   /// where the order does not matter.
   std::span<const std::uint32_t> map_of() const;
   /// Each device's part of all points so far; empty where that is not known.

@@ -23,21 +23,21 @@ void join_runs(PrimaryHitBatch& batch, int runs) {
   for (SeenEmission& seen : batch.emission) seen.pixel /= count;
 }
 
-/// Least number of batches of a pooled picture: estimates of many lights wait for their pooling.
+/// Least number of batches of a pooled picture: estimates of many lights wait for their mixdown.
 constexpr int pooled_batches = 16;
 
 }  // namespace
 
 Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device> devices,
-                 const Film& film, int passes, const LightPooling* pooling, RenderCosts& costs)
+                 const Film& film, int passes, const LayerMixdown* mixdown, RenderCosts& costs)
     : rays_(rays),
       scene_(rays.scene()),
       plan_(plan),
       devices_(devices),
       film_(plan.hits(film, passes)),
-      pooling_(pooling),
+      mixdown_(mixdown),
       costs_(costs),
-      layers_(pooling ? LightLayers(film_.width, film_.height, pooling->layers)
+      layers_(mixdown ? LightLayers(film_.width, film_.height, mixdown->layers)
                       : LightLayers(film_.width, film_.height, scene_)),
       shares_(devices.size(), 0.0) {
   costs_.start_picture();
@@ -119,7 +119,7 @@ Shard Picture::own_rows() const {
 int Picture::rows_per_batch() const {
   const std::int64_t hits_per_row =
       std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
-  const int most = pooling_ ? (film_.height - 1) / pooled_batches + 1 : film_.height;
+  const int most = mixdown_ ? (film_.height - 1) / pooled_batches + 1 : film_.height;
   // Where light maps are read, only their nodes take long.
   const int neighbours = plan_.reads_light_maps() ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(
@@ -141,9 +141,9 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
   const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
     Estimates estimates = light_at(light, seen.hits, progress);
     const Stopwatch film_watch;
-    if (pooling_) {
-      estimates = pooled(*pooling_, estimates, seen.hits.size());
-      pool_emission(*pooling_, seen);
+    if (mixdown_) {
+      estimates = pooled(*mixdown_, estimates, seen.hits.size());
+      pool_emission(*mixdown_, seen);
     }
     if (source.errors()) {
       add_to_film(runs_, seen, estimates, illuminance_weight);
@@ -159,8 +159,8 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
   };
   PrimaryHitBatch reflected;
   if (batch.reflected.size() > 0 && light.cache()) {
-    batch.reflected.coarse =
-        cache::suits_photons(batch.hits, batch.reflected, film_.runs, light.cache()->blotches());
+    batch.reflected.coarse = cache::suits_photons(batch.hits, batch.reflected, film_.runs,
+                                                  light.cache()->photon_noise());
   }
   reflected.hits = std::move(batch.reflected);
   add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));

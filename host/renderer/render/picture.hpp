@@ -20,9 +20,9 @@ class Picture {
  public:
   /// References are kept.
   ///   passes    that are added before `finish`
-  ///   pooling   of its layers, before they take memory; null = each for itself
+  ///   mixdown   of its layers, before they take memory; null = each for itself
   Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device> devices, const Film& film,
-          int passes, const LightPooling* pooling, RenderCosts& costs);
+          int passes, const LayerMixdown* mixdown, RenderCosts& costs);
 
   /// Adds what is seen by the light of the next pass. Errors: those of LightAtPoints.
   void add(const HitSource& source, PassLight& light, Progress& progress);
@@ -46,7 +46,7 @@ class Picture {
   const RenderPlan& plan_;
   std::span<Device> devices_;
   PrimaryHitParameters film_;
-  const LightPooling* pooling_;
+  const LayerMixdown* mixdown_;
   RenderCosts& costs_;
   LightLayers layers_;
   LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples

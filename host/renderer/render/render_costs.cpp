@@ -72,7 +72,7 @@ RunStatistics RenderCosts::statistics() const {
       stage("automatic radius", radius),
       stage("neighbour groups", group,
             {{"members", number(group_members)},
-             {"members per sided triangle", ratio(group_members, groups)},
+             {"members per oriented face", ratio(group_members, groups)},
              {"patches", number(patches)}}),
       stage("surface index", surface,
             {{"sheets", number(sheets)}, {"leaves", number(surface_leaves)}}),

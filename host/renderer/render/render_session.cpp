@@ -77,8 +77,8 @@ RenderSession::RenderSession(std::shared_ptr<const PreparedScene> scene, std::sp
 }
 
 RenderResult RenderSession::render(const HitSource& hits, const Film& film, Progress& progress,
-                                   const LightPooling* pooling) {
-  Picture picture(scene_->rays, plan_, devices_, film, plan_.passes(), pooling, costs_);
+                                   const LayerMixdown* mixdown) {
+  Picture picture(scene_->rays, plan_, devices_, film, plan_.passes(), mixdown, costs_);
   for (const auto& pass : passes_) picture.add(hits, *pass, progress);
   return picture.finish(photons_.radius());
 }
@@ -141,8 +141,8 @@ SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
 SceneRenderer::~SceneRenderer() = default;
 
 RenderResult SceneRenderer::render(const Camera& camera, const Film& film, Progress& progress,
-                                   const LightPooling* pooling) {
-  return impl_->render(CameraHits(camera), film, progress, pooling);
+                                   const LayerMixdown* mixdown) {
+  return impl_->render(CameraHits(camera), film, progress, mixdown);
 }
 
 DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
@@ -164,8 +164,8 @@ std::optional<LightMapContents> SceneRenderer::light_maps() const {
 }
 
 RenderResult SceneRenderer::render_reflections(const Camera& camera, const Film& film,
-                                               Progress& progress, const LightPooling* pooling) {
-  return impl_->render(ReflectedHits(camera), film, progress, pooling);
+                                               Progress& progress, const LayerMixdown* mixdown) {
+  return impl_->render(ReflectedHits(camera), film, progress, mixdown);
 }
 
 namespace {

@@ -34,7 +34,7 @@ class RenderSession {
                 const KeepPhotons& keep, Progress& progress);
 
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
-                      const LightPooling* pooling = nullptr);
+                      const LayerMixdown* mixdown = nullptr);
 
   bool reads_light_maps() const { return plan_.reads_light_maps(); }
   /// The light of the scene; where light maps are read there is one pass.

@@ -63,7 +63,7 @@ MapOwners::MapOwners(const Scene& scene, const Patches& patches,
     before += photons[pair];
   }
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    of_triangle_.push_back(of_pair_[patches.map(sided(t, 0)) / 2]);
+    of_triangle_.push_back(of_pair_[patches.map(oriented(t, 0)) / 2]);
   }
 }
 
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> MapOwners::triangles_of(std::uint32_t rank) const {
 
 namespace {
 
-/// Where the photons of a process stand among all, sorted by sided triangle.
+/// Where the photons of a process stand among all, sorted by oriented face.
 class Places {
  public:
   Places(Communicator& processes, const Photons& own) : own_(own) {
@@ -98,11 +98,11 @@ class Places {
   }
 
   std::uint64_t total() const { return first_of_.back(); }
-  std::uint64_t landed(std::size_t sided_triangle) const {
-    return first_of_[sided_triangle + 1] - first_of_[sided_triangle];
+  std::uint64_t landed(std::size_t oriented_face) const {
+    return first_of_[oriented_face + 1] - first_of_[oriented_face];
   }
 
-  /// Calls visit(i, sided_triangle, photon) for i from 0 up to `count`: `photon` is that of this
+  /// Calls visit(i, oriented_face, photon) for i from 0 up to `count`: `photon` is that of this
   /// process which has the place place_of(i) among all, or none. Places ascend.
   template <class PlaceOf, class Visit>
   void for_each(std::uint64_t count, const PlaceOf& place_of, const Visit& visit) const {
@@ -119,7 +119,7 @@ class Places {
 
  private:
   const Photons& own_;
-  std::vector<std::uint64_t> before_;    ///< per sided triangle: photons of the ranks before
+  std::vector<std::uint64_t> before_;    ///< per oriented face: photons of the ranks before
   std::vector<std::uint64_t> first_of_;  ///< as Photons has it, of all
 };
 
@@ -147,17 +147,17 @@ class Destinations {
     squared_reach_ = reach * reach;
   }
 
-  /// Appends the photons of a sided triangle, by number, to the lists of their ranks.
-  void append(std::uint32_t sided_triangle, const Photons& photons,
+  /// Appends the photons of an oriented face, by number, to the lists of their ranks.
+  void append(std::uint32_t oriented_face, const Photons& photons,
               std::vector<std::vector<std::uint32_t>>& of_rank) const {
-    const std::uint32_t home = owners_.of(sided_triangle);
+    const std::uint32_t home = owners_.of(oriented_face);
     std::vector<std::uint32_t> others;  // maps of other processes
-    for (const std::uint32_t map : groups_.of(sided_triangle)) {
+    for (const std::uint32_t map : groups_.of(oriented_face)) {
       if (owners_.of_map(map) != home) others.push_back(map);
     }
     std::vector<std::uint32_t> ranks;
-    for (std::uint32_t i = photons.first_of[sided_triangle];
-         i < photons.first_of[sided_triangle + 1]; ++i) {
+    for (std::uint32_t i = photons.first_of[oriented_face]; i < photons.first_of[oriented_face + 1];
+         ++i) {
       of_rank[home].push_back(i);
       if (others.empty()) continue;
       ranks.clear();
@@ -219,7 +219,7 @@ std::vector<std::byte> packed(const Photons& all, std::span<const std::uint32_t>
   bytes.put(chosen(all.flux, photons));
   bytes.put(chosen(all.incoming, photons));
   bytes.put(chosen(all.light, photons));
-  bytes.put(chosen(all.sided_triangle, photons));
+  bytes.put(chosen(all.oriented_face, photons));
   return bytes.take();
 }
 
@@ -230,7 +230,7 @@ void unpack(std::span<const std::byte> bytes, Photons& to) {
   reader.append_to(to.flux);
   reader.append_to(to.incoming);
   reader.append_to(to.light);
-  reader.append_to(to.sided_triangle);
+  reader.append_to(to.oriented_face);
 }
 
 std::uint64_t bytes_of_photon(const Photons& photons) {
@@ -241,7 +241,7 @@ std::uint64_t bytes_of_photon(const Photons& photons) {
 
 void set_first_of(Photons& photons, std::size_t sides) {
   photons.first_of.assign(sides + 1, 0);
-  for (const std::uint32_t s : photons.sided_triangle) ++photons.first_of[s + 1];
+  for (const std::uint32_t s : photons.oriented_face) ++photons.first_of[s + 1];
   for (std::size_t s = 0; s < sides; ++s) photons.first_of[s + 1] += photons.first_of[s];
 }
 

@@ -18,17 +18,17 @@ namespace photile {
 /// the middles of their boxes: each process has one run, with about as many photons as any other.
 class MapOwners {
  public:
-  ///   landed   per sided triangle: photons of all processes
+  ///   landed   per oriented face: photons of all processes
   MapOwners(const Scene& scene, const Patches& patches, std::span<const std::uint32_t> landed,
             std::uint32_t processes);
 
   /// The rank that has the maps of an oriented face.
-  std::uint32_t of(std::uint32_t sided_triangle) const { return of_triangle_[sided_triangle / 2]; }
+  std::uint32_t of(std::uint32_t oriented_face) const { return of_triangle_[oriented_face / 2]; }
   /// The rank that has a map of the groups.
   std::uint32_t of_map(std::uint32_t map) const { return of_pair_[map / 2]; }
   /// Per map of the groups: 1 for those of a rank.
   std::vector<std::uint8_t> maps_of(std::uint32_t rank) const;
-  /// Per sided triangle: the same.
+  /// Per oriented face: the same.
   std::vector<std::uint8_t> triangles_of(std::uint32_t rank) const;
 
  private:
@@ -49,7 +49,7 @@ struct PhotonsMoved {
 
 /// Sends photons to the processes whose maps they may enter, those near a border to several, in
 /// rounds of defaults::exchange_round_bytes. Returns those of the own maps as one process would
-/// have them: sorted by sided triangle, within it in the order light, path, bounce. Collective.
+/// have them: sorted by oriented face, within it in the order light, path, bounce. Collective.
 ///   own      as photons_of_all; `of_all` is set
 ///   radius   of the maps, metres
 Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGroups& groups,

@@ -51,7 +51,7 @@ class SurfacePath {
   std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
     glm::vec3 origin = from.origin_towards(direction);
     const auto point =
-        trace::next_surface(rays_, origin, direction, random_, Purpose::path_holes, holes_);
+        trace::next_surface(rays_, origin, direction, random_, Purpose::path_cutouts, cutouts_);
     if (!point) {
       add_what_lies_beyond(direction);
     } else if (trace::emits(scene_, *point)) {
@@ -145,7 +145,7 @@ class SurfacePath {
   glm::vec3 from_{0.0f};        ///< the last opaque point, metres
   float density_ = 0;           ///< of the direction from there; 0 after a mirror or glass
   std::uint32_t bounce_ = 1;
-  std::uint32_t holes_ = 0;
+  std::uint32_t cutouts_ = 0;
 };
 
 }  // namespace

@@ -58,9 +58,9 @@ Sensor in_scene(const Scene& scene, Sensor sensor) {
   return sensor;
 }
 
-glm::dvec3 sided_normal(const Scene& scene, std::uint32_t sided_triangle) {
-  const glm::dvec3 normal = glm::normalize(doubled_area_vector(scene, triangle_of(sided_triangle)));
-  return side_of(sided_triangle) == 0 ? normal : -normal;
+glm::dvec3 face_normal(const Scene& scene, std::uint32_t oriented_face) {
+  const glm::dvec3 normal = glm::normalize(doubled_area_vector(scene, triangle_of(oriented_face)));
+  return side_of(oriented_face) == 0 ? normal : -normal;
 }
 
 double triangle_area(const Scene& scene, std::uint32_t triangle) {

@@ -89,7 +89,7 @@ void add_needs(const Material& material, SceneNeeds& needs) {
   needs.textures |= material.textured();
   needs.specular_paths |= material.interaction != Interaction::opaque;
   needs.see_through |=
-      material.has_holes() || (material.interaction == Interaction::glass && material.thin);
+      material.has_cutouts() || (material.interaction == Interaction::glass && material.thin);
 }
 
 /// Cosine above which two normals are the same but for the rounding of files: 0.15 degrees.

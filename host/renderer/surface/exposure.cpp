@@ -139,7 +139,7 @@ class ExposureFinder {
         radius_(radius),
         cos_angle_(std::cos(glm::radians(angle_degrees))) {
     for (std::uint32_t t = 0; t < mesh.normal.size(); ++t) {
-      const bool front = is_dark(sided(t, 0)), back = is_dark(sided(t, 1));
+      const bool front = is_dark(oriented(t, 0)), back = is_dark(oriented(t, 1));
       if (!mesh.counts(t) || (!front && !back)) continue;
       dark_.push_back(
           {mesh.normal[t], geometry::corners_of(mesh.scene, t), facets.plane[t], front, back});

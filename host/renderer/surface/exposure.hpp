@@ -11,7 +11,7 @@
 
 namespace photile::surface {
 
-/// Per sided triangle: the fraction of its points above which, within a fifth of the radius, no
+/// Per oriented face: the fraction of its points above which, within a fifth of the radius, no
 /// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
 /// is covered in places counts as open, so that it is right where it is.
 ///   lit   per sheet

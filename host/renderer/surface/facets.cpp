@@ -40,8 +40,8 @@ const MeshEdge* continuation(const SurfaceMesh& mesh, std::span<const MeshEdge> 
 bool equally_dark(std::span<const std::uint8_t> dark, const MeshEdge& a, const MeshEdge& b) {
   if (dark.empty()) return true;
   const std::uint32_t flip = flip_between(a, b);
-  return dark[sided(a.triangle, 0)] == dark[sided(b.triangle, flip)] &&
-         dark[sided(a.triangle, 1)] == dark[sided(b.triangle, 1 ^ flip)];
+  return dark[oriented(a.triangle, 0)] == dark[oriented(b.triangle, flip)] &&
+         dark[oriented(a.triangle, 1)] == dark[oriented(b.triangle, 1 ^ flip)];
 }
 
 std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const std::uint8_t> dark) {

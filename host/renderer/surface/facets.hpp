@@ -29,7 +29,7 @@ struct Facets {
 
 /// Grows facets from the largest triangles on. Normals within a facet differ by less than the slack
 /// of normals_agree, heights by less than a thousandth of the radius.
-///   dark   per sided triangle: no facet goes on where that of one of its sides changes; or empty
+///   dark   per oriented face: no facet goes on where that of one of its sides changes; or empty
 Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark = {});
 
 /// A hierarchy over the triangles that count, whose nodes know whether all of theirs belong to one

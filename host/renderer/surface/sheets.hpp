@@ -1,4 +1,4 @@
-// Sheets: sided triangles that connect over edges which fold by no more than an angle.
+// Sheets: oriented faces that connect over edges which fold by no more than an angle.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace photile::surface {
 
 struct Sheets {
-  std::vector<std::uint32_t> of;  ///< per sided triangle
-  std::uint32_t count = 0;        ///< numbered in the order of their first sided triangles
+  std::vector<std::uint32_t> of;  ///< per oriented face
+  std::uint32_t count = 0;        ///< numbered in the order of their first oriented faces
 };
 
 /// Two triangles that go on across an edge: side i of the one as side i ^ flip of the other.
@@ -20,11 +20,11 @@ struct Connection {
   bool shared;  ///< the edge is one of both; else theirs run along each other
 };
 
-/// Calls visit(a, b) for the sided triangles that connect, each pair of a connection once.
+/// Calls visit(a, b) for the oriented faces that connect, each pair of a connection once.
 template <class Visit>
 void for_each_pair_of_sides(std::span<const Connection> connections, const Visit& visit) {
   for (const auto& [a, b, flip, shared] : connections) {
-    for (const std::uint32_t side : {0u, 1u}) visit(sided(a, side), sided(b, side ^ flip));
+    for (const std::uint32_t side : {0u, 1u}) visit(oriented(a, side), oriented(b, side ^ flip));
   }
 }
 
@@ -36,7 +36,7 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees);
 
 /// What connects, but for sides of which one is dark and the other is not.
-///   dark   per sided triangle, or empty
+///   dark   per oriented face, or empty
 Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connections,
                    std::span<const std::uint8_t> dark = {});
 

@@ -8,12 +8,12 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
-#include "surface/dark_sides.hpp"
 #include "surface/exposure.hpp"
 #include "surface/facets.hpp"
 #include "surface/sheets.hpp"
 #include "surface/surface_mesh.hpp"
 #include "surface/surface_tree.hpp"
+#include "surface/unlit_sides.hpp"
 
 namespace photile {
 namespace {
@@ -39,19 +39,19 @@ PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
   for (std::size_t lane = 0; lane < members.size(); ++lane) {
     const surface::SurfacePiece& piece = pieces[members[lane]];
     const std::uint32_t triangle = piece.triangle & ~PHOTILE_PIECE_BORDER;
-    const glm::vec3& normal = index.normal[sided(triangle, 0)];
+    const glm::vec3& normal = index.normal[oriented(triangle, 0)];
     leaf.a_x[lane] = piece.a.x, leaf.a_y[lane] = piece.a.y, leaf.a_z[lane] = piece.a.z;
     leaf.b_x[lane] = piece.b.x, leaf.b_y[lane] = piece.b.y, leaf.b_z[lane] = piece.b.z;
     leaf.c_x[lane] = piece.c.x, leaf.c_y[lane] = piece.c.y, leaf.c_z[lane] = piece.c.z;
     leaf.normal_x[lane] = normal.x, leaf.normal_y[lane] = normal.y, leaf.normal_z[lane] = normal.z;
     leaf.facet[lane] = piece.facet;
     leaf.triangle[lane] = piece.triangle;
-    leaf.front_sheet[lane] = index.sheet[sided(triangle, 0)];
-    leaf.back_sheet[lane] = index.sheet[sided(triangle, 1)];
-    leaf.front_exposure[lane] = index.exposure[sided(triangle, 0)];
-    leaf.back_exposure[lane] = index.exposure[sided(triangle, 1)];
-    if (piece.dark_side == none) continue;
-    const bool front = side_of(piece.dark_side) == 0;
+    leaf.front_sheet[lane] = index.sheet[oriented(triangle, 0)];
+    leaf.back_sheet[lane] = index.sheet[oriented(triangle, 1)];
+    leaf.front_exposure[lane] = index.exposure[oriented(triangle, 0)];
+    leaf.back_exposure[lane] = index.exposure[oriented(triangle, 1)];
+    if (piece.unlit_side == none) continue;
+    const bool front = side_of(piece.unlit_side) == 0;
     leaf.front_sheet[lane] = front ? index.sheets : PHOTILE_NO_SHEET;
     leaf.back_sheet[lane] = front ? PHOTILE_NO_SHEET : index.sheets;
     leaf.front_exposure[lane] = leaf.back_exposure[lane] = -1.0f;
@@ -59,7 +59,7 @@ PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
   return leaf;
 }
 
-/// Where photons are given, with dark parts.
+/// Where photons are given, with unlit regions.
 SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& landed,
                       const Photons* photons, double radius, double angle_degrees) {
   check_scene(scene);
@@ -72,7 +72,7 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
   surface::SurfaceMesh mesh(scene);
   const auto connections = surface::find_connections(mesh, radius, angle_degrees);
   index.dark =
-      surface::find_dark_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
+      surface::find_unlit_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
   const surface::Sheets sheets = surface::join_sheets(mesh, connections, index.dark);
   const surface::Facets facets = surface::find_facets(mesh, radius, index.dark);
   const surface::PlaneTree planes(mesh, facets);
@@ -87,19 +87,20 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
                                           angle_degrees);
   index.facet = facets.of_triangle;
   if (photons != nullptr) {
-    index.dark_parts = surface::find_dark_parts(mesh, *photons, index.dark, radius);
+    index.unlit_regions = surface::find_unlit_regions(mesh, *photons, index.dark, radius);
     // What counts in part for most hits has no holes for others.
-    std::erase_if(index.dark_parts,
-                  [&](const DarkPart& part) { return index.exposure[part.sided_triangle] < 1; });
-    index.first_dark_part.resize(2 * scene.triangle_count() + 1);
+    std::erase_if(index.unlit_regions,
+                  [&](const DarkPart& part) { return index.exposure[part.oriented_face] < 1; });
+    index.first_unlit_region.resize(2 * scene.triangle_count() + 1);
     std::size_t next = 0;
-    for (std::size_t s = 0; s < index.first_dark_part.size(); ++s) {
-      while (next < index.dark_parts.size() && index.dark_parts[next].sided_triangle < s) ++next;
-      index.first_dark_part[s] = static_cast<std::uint32_t>(next);
+    for (std::size_t s = 0; s < index.first_unlit_region.size(); ++s) {
+      while (next < index.unlit_regions.size() && index.unlit_regions[next].oriented_face < s)
+        ++next;
+      index.first_unlit_region[s] = static_cast<std::uint32_t>(next);
     }
   }
   const auto pieces =
-      surface::find_pieces(mesh, facets, planes, index.dark_parts, radius, angle_degrees);
+      surface::find_pieces(mesh, facets, planes, index.unlit_regions, radius, angle_degrees);
   index.original = std::move(mesh.original);
   surface::SurfaceTree tree = surface::build_surface_tree(pieces);
   index.nodes = std::move(tree.nodes);
@@ -124,16 +125,17 @@ SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double ra
 
 std::uint64_t SurfaceIndex::bytes() const {
   return (original.size() + facet.size() + sheet.size()) * sizeof(std::uint32_t) + dark.size() +
-         dark_parts.size() * sizeof(DarkPart) + first_dark_part.size() * sizeof(std::uint32_t) +
+         unlit_regions.size() * sizeof(DarkPart) +
+         first_unlit_region.size() * sizeof(std::uint32_t) +
          normal.size() * (sizeof(glm::vec3) + sizeof(float)) + nodes.size() * sizeof(nodes[0]) +
          leaves.size() * sizeof(leaves[0]);
 }
 
 std::uint32_t SurfaceIndex::sheet_at(std::uint32_t s, const glm::vec3& position) const {
   const std::uint32_t own = original[s];
-  if (first_dark_part.empty()) return sheet[own];
-  for (std::uint32_t i = first_dark_part[own]; i < first_dark_part[own + 1]; ++i) {
-    const auto& corner = dark_parts[i].corner;
+  if (first_unlit_region.empty()) return sheet[own];
+  for (std::uint32_t i = first_unlit_region[own]; i < first_unlit_region[own + 1]; ++i) {
+    const auto& corner = unlit_regions[i].corner;
     const glm::dvec3 n(normal[own]), p(position);
     int left = 0, right = 0;
     for (int c = 0; c < 3; ++c) {
@@ -149,9 +151,9 @@ std::uint32_t SurfaceIndex::sheet_at(std::uint32_t s, const glm::vec3& position)
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons) {
   if (photons.of_all) return photons.of_all->landed;
   std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
-  for (const std::uint32_t s : photons.sided_triangle) {
+  for (const std::uint32_t s : photons.oriented_face) {
     if (s >= landed.size()) {
-      throw InputError(fmt::format("{}: a photon lies on sided triangle {} of {}",
+      throw InputError(fmt::format("{}: a photon lies on oriented face {} of {}",
                                    scene.source.string(), s, landed.size()));
     }
     ++landed[s];

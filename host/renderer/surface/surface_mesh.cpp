@@ -50,7 +50,8 @@ std::vector<std::uint32_t> originals(const SurfaceMesh& mesh) {
     }
     const std::uint32_t flip = triangles[i].odd != triangles[first].odd ? 1 : 0;
     for (const std::uint32_t side : {0u, 1u}) {
-      original[sided(triangles[i].triangle, side)] = sided(triangles[first].triangle, side ^ flip);
+      original[oriented(triangles[i].triangle, side)] =
+          oriented(triangles[first].triangle, side ^ flip);
     }
   }
   return original;
@@ -64,7 +65,7 @@ SurfaceMesh::SurfaceMesh(const Scene& from)
   tbb::parallel_for(std::size_t{0}, corner.size(), [&](std::size_t t) {
     const glm::uvec3& vertices = scene.triangles[t];
     corner[t] = {welded[vertices.x], welded[vertices.y], welded[vertices.z]};
-    normal[t] = sided_normal(scene, sided(static_cast<std::uint32_t>(t), 0));
+    normal[t] = face_normal(scene, oriented(static_cast<std::uint32_t>(t), 0));
   });
   original = originals(*this);
   for (std::uint32_t t = 0; t < corner.size(); ++t) {

@@ -44,7 +44,7 @@ struct SurfaceMesh {
 
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 3>> corner;  ///< welded, per triangle
-  /// Per sided triangle: the first that coincides with it and stores photons as it does.
+  /// Per oriented face: the first that coincides with it and stores photons as it does.
   std::vector<std::uint32_t> original;
   std::vector<glm::dvec3> normal;  ///< of side 0, per triangle
   std::vector<MeshEdge> edges;     ///< of triangles that are their own originals

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "photile/device/surface.h"
-#include "surface/dark_sides.hpp"
+#include "surface/unlit_sides.hpp"
 
 namespace photile::surface {
 

@@ -12,7 +12,7 @@
 namespace photile::trace {
 namespace {
 
-/// Panes and holes that a ray may pass on its way to a light: each takes it on, but for rounding.
+/// Panes and cutouts that a ray may pass on its way to a light: each takes it on, but for rounding.
 constexpr int most_passed = 4096;
 
 class DirectLight {
@@ -37,7 +37,8 @@ class DirectLight {
     add(lamp->layer, receiver_.weights(lamp->direction) * (arrives * weight));
   }
 
-  /// Follows a direction through panes and holes until it meets a light, or what bends or stops it.
+  /// Follows a direction through panes and cutouts until it meets a light, or what bends or stops
+  /// it.
   void follow_direction(const LightSampleNumbers::Look& look) {
     const auto direction = receiver_.sample(look.lobe, look.direction);
     if (!direction) return;

@@ -57,7 +57,7 @@ enum class ReflectedPart : std::uint8_t {
 };
 
 /// Estimates what lights send straight to a point of an opaque surface, or through panes of thin
-/// glass and holes of cut-out surfaces: just what photons bring that are not scattered before.
+/// glass and cutouts: just what photons bring that are not scattered before.
 /// `count` times a light is sampled, and a direction of the surface's own is followed; what both
 /// would find is weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to
 /// `found` is unbiased.

@@ -68,7 +68,7 @@ void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scatt
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record) {
   const scene::Reflectance surface = reflectance(*rays.scene, point);
-  record.hits.push_back({point.position, point.sided_triangle(), ray.pixel, ray.radiance_weight(),
+  record.hits.push_back({point.position, point.oriented_face(), ray.pixel, ray.radiance_weight(),
                          surface.albedo, ray.share});
   if (!rays.needs.glossy) return;
   const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
@@ -91,8 +91,8 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
     const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly &&
                             (ray.straight || other == nullptr || !other->only);
     ++record.rays;
-    const auto met =
-        next_surface(*setup.rays, ray.origin, ray.direction, random, Purpose::eye_holes, ray.holes);
+    const auto met = next_surface(*setup.rays, ray.origin, ray.direction, random,
+                                  Purpose::eye_cutouts, ray.cutouts);
     if (!met) {
       if (!sees_lamps) return std::nullopt;
       setup.distant->for_each_shining(

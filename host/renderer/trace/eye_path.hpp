@@ -21,7 +21,7 @@ namespace photile::trace {
 /// What PrimaryHits keeps of each hit.
 struct EyeHit {
   glm::vec3 position;
-  std::uint32_t sided_triangle;
+  std::uint32_t oriented_face;
   std::uint32_t pixel;
   glm::vec3 throughput;
   glm::vec3 diffuse_albedo;
@@ -81,7 +81,7 @@ struct EyeRay {
   double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
   int depth = 0;               ///< mirrors and glass so far
   bool straight = true;        ///< but for panes of thin glass, which sampling lights sees through
-  std::uint32_t holes = 0;     ///< that were looked at so far
+  std::uint32_t cutouts = 0;   ///< that were looked at so far
   float share = 1.0f;          ///< of its sample, where glass parted it
 
   /// What radiance that the ray meets counts at its start.

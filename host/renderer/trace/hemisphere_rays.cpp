@@ -83,11 +83,11 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
        ++bounce) {
     EyeHit hit = ends.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
-    const std::uint32_t triangle = triangle_of(hit.sided_triangle);
+    const std::uint32_t triangle = triangle_of(hit.oriented_face);
     const EndReflection reflection = reflection_of(ends, ends.hits.size() - 1);
     const SurfacePoint point =
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
-                      side_of(hit.sided_triangle));
+                      side_of(hit.oriented_face));
     std::optional<OpaqueBsdf> bsdf;
     if (reflection.strong_lobe) bsdf.emplace(scene, point, -ends.glossy.back().outgoing);
     ends.hits.pop_back();

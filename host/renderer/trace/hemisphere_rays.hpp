@@ -59,7 +59,7 @@ struct EndReflection {
 };
 EndReflection reflection_of(const EyeRecord& ends, std::size_t end);
 
-/// Traces rays with the density of the cosine to the geometric normal, through holes, mirrors and
+/// Traces rays with the density of the cosine to the geometric normal, through cutouts, mirrors and
 /// glass to the next opaque surface. Lights in mirrors or behind glass that bends are not seen:
 /// their light is a caustic.
 /// Depends on the scene, each point, its number and the parameters only.

@@ -48,7 +48,7 @@ std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const ge
   tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t record) {
     std::uint32_t number = first[record];
     for (const EyeHit& hit : records[record].hits) {
-      const std::uint32_t own = hit.sided_triangle;
+      const std::uint32_t own = hit.oriented_face;
       const std::uint32_t map = std::min(map_of.empty() ? own : map_of[own], no_map);
       last_map[record] = std::max(last_map[record], map);
       keys[number] = {std::uint64_t{map} << code_bits | cells.morton_code(hit.position), number};
@@ -76,7 +76,7 @@ PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace
   });
   PrimaryHits hits;
   hits.position.resize(places.size());
-  hits.sided_triangle.resize(places.size());
+  hits.oriented_face.resize(places.size());
   hits.pixel.resize(places.size());
   hits.throughput.resize(places.size());
   hits.diffuse_albedo.resize(places.size());
@@ -89,7 +89,7 @@ PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace
     const EyeRecord& record = records[places[i].record];
     const EyeHit& hit = record.hits[places[i].index];
     hits.position[i] = hit.position;
-    hits.sided_triangle[i] = hit.sided_triangle;
+    hits.oriented_face[i] = hit.oriented_face;
     hits.pixel[i] = hit.pixel;
     hits.throughput[i] = hit.throughput;
     hits.diffuse_albedo[i] = hit.diffuse_albedo;

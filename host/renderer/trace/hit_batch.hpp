@@ -46,8 +46,8 @@ struct HitPlace {
 };
 
 /// All hits in the order map, Morton code of their cell of `box`, position.
-///   map_of   per sided triangle, `none`, which is the last, where it has no map; empty where a
-///            sided triangle is the map itself
+///   map_of   per oriented face, `none`, which is the last, where it has no map; empty where a
+///            oriented face is the map itself
 std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
                                     std::span<const std::uint32_t> map_of);
 

@@ -112,7 +112,7 @@ void LightClusters::enclose(const Scene& scene, Cluster& cluster) const {
     for (const glm::vec3& corner : scene.corners(triangle)) box.extend(glm::dvec3(corner));
     const double area = triangle_area(scene, triangle);
     if (area > 0)
-      normals += area * sided_normal(scene, sided(triangle, scene.front_side[triangle]));
+      normals += area * face_normal(scene, oriented(triangle, scene.front_side[triangle]));
   });
   cluster.center = glm::vec3(box.centre());
   double squared_radius = 0;
@@ -130,7 +130,7 @@ void LightClusters::enclose(const Scene& scene, Cluster& cluster) const {
   double cosine = 1;
   visit([&](std::uint32_t triangle) {
     if (!(triangle_area(scene, triangle) > 0)) return;
-    const glm::dvec3 normal = sided_normal(scene, sided(triangle, scene.front_side[triangle]));
+    const glm::dvec3 normal = face_normal(scene, oriented(triangle, scene.front_side[triangle]));
     cosine = std::min(cosine, glm::dot(axis, normal));
   });
   cluster.axis = glm::vec3(axis);

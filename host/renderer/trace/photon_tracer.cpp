@@ -33,7 +33,7 @@ void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& d
   run.position.push_back(point.position);
   run.flux.push_back(flux);
   if (setup.keep_incoming) run.incoming.push_back(-direction);
-  run.sided_triangle.push_back(point.sided_triangle());
+  run.oriented_face.push_back(point.oriented_face());
 }
 
 /// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
@@ -57,8 +57,8 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   if (!(largest(flux) > 0.0f)) return;
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
-  std::uint32_t holes = 0;
-  bool straight = true;  // but for panes and holes, which sampling lights sees through
+  std::uint32_t cutouts = 0;
+  bool straight = true;  // but for panes and cutouts, which sampling lights sees through
   bool specular = true;  // scattered by mirrors and glass alone, if at all
 
   for (int bounce = 1;;) {
@@ -69,15 +69,15 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     }
     const SurfacePoint point = surface_hit(scene, *hit, direction);
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
-    // In holes as well: the density is that of light on the whole triangle, by whose area the
-    // estimate divides, and does not fall where a hole is near.
+    // In cutouts as well: the density is that of light on the whole triangle, by whose area the
+    // estimate divides, and does not fall where a cutout is near.
     if (opaque && (setup.parameters->store_direct || !straight)) {
       store(setup, point, direction, flux, record.photons);
     }
     if (opaque && setup.parameters->keep_caustics && specular && !straight) {
       store(setup, point, direction, flux, record.caustics);
     }
-    if (passes_hole(scene, point, random, Purpose::photon_holes, holes)) {
+    if (passes_cutout(scene, point, random, Purpose::photon_cutouts, cutouts)) {
       origin = point.origin_towards(direction);
       continue;
     }
@@ -204,13 +204,13 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
 ///   groups   null where photons do not tell lights apart
 Photons photons_of(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
                    const std::vector<Chunk>& chunks, const LightGroups* groups,
-                   std::size_t sided_triangle_count) {
+                   std::size_t oriented_face_count) {
   std::vector<trace::LayerRun> runs;
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const std::uint32_t layer = groups == nullptr ? 0 : groups->group_of[chunks[c].light];
     runs.push_back({&(records[c].*run), static_cast<std::uint16_t>(layer)});
   }
-  return trace::sorted_photons(runs, groups != nullptr, sided_triangle_count);
+  return trace::sorted_photons(runs, groups != nullptr, oriented_face_count);
 }
 
 }  // namespace
@@ -245,11 +245,11 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
     result.absorbed_flux_per_light[light] += records[c].absorbed;
   }
   const LightGroups* several = needs.several_lights() ? &groups : nullptr;
-  const std::size_t sided_triangles = 2 * scene.triangle_count();
-  result.photons = photons_of(records, &PathRecord::photons, chunks, several, sided_triangles);
+  const std::size_t oriented_faces = 2 * scene.triangle_count();
+  result.photons = photons_of(records, &PathRecord::photons, chunks, several, oriented_faces);
   result.photons.emitted_per_light = paths_per_light;
   if (parameters.keep_caustics) {
-    result.caustics = photons_of(records, &PathRecord::caustics, chunks, several, sided_triangles);
+    result.caustics = photons_of(records, &PathRecord::caustics, chunks, several, oriented_faces);
     result.caustics.emitted_per_light = paths_per_light;
   }
   progress.end();

@@ -19,7 +19,7 @@ struct PhotonRun {
   std::vector<glm::vec3> position;
   std::vector<glm::vec3> flux;
   std::vector<glm::vec3> incoming;  ///< empty unless `keep_incoming`
-  std::vector<std::uint32_t> sided_triangle;
+  std::vector<std::uint32_t> oriented_face;
 
   std::size_t size() const { return position.size(); }
 };
@@ -53,10 +53,10 @@ struct LayerRun {
   std::uint16_t layer;
 };
 
-/// Photons in the order of their sided triangles, those of one triangle in the order of the runs.
+/// Photons in the order of their oriented faces, those of one triangle in the order of the runs.
 /// The runs are emptied on the way: beside them only the result exists, one array after the other.
 ///   tell_layers   fill Photons::light
 Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
-                       std::size_t sided_triangle_count);
+                       std::size_t oriented_face_count);
 
 }  // namespace photile::trace

@@ -54,13 +54,13 @@ void merge_arrays(std::vector<Photons>& runs, Photons& merged) {
 
 std::uint64_t Photons::bytes() const {
   return bytes_of(position) + bytes_of(flux) + bytes_of(incoming) + bytes_of(light) +
-         bytes_of(sided_triangle) + bytes_of(first_of) + bytes_of(emitted_per_light);
+         bytes_of(oriented_face) + bytes_of(first_of) + bytes_of(emitted_per_light);
 }
 
-Photons sort_by_sided_triangle(Photons photons, std::size_t sided_triangle_count) {
-  photons.first_of.assign(sided_triangle_count + 1, 0);
-  for (const std::uint32_t s : photons.sided_triangle) ++photons.first_of[s + 1];
-  for (std::size_t s = 0; s < sided_triangle_count; ++s)
+Photons sort_by_oriented_face(Photons photons, std::size_t oriented_face_count) {
+  photons.first_of.assign(oriented_face_count + 1, 0);
+  for (const std::uint32_t s : photons.oriented_face) ++photons.first_of[s + 1];
+  for (std::size_t s = 0; s < oriented_face_count; ++s)
     photons.first_of[s + 1] += photons.first_of[s];
 
   // The two passes over the keys are serial: they take a few nanoseconds a photon where tracing it
@@ -68,13 +68,13 @@ Photons sort_by_sided_triangle(Photons photons, std::size_t sided_triangle_count
   std::vector<std::uint32_t> next = photons.first_of;
   std::vector<std::uint32_t> destination(photons.size());
   for (std::size_t i = 0; i < photons.size(); ++i)
-    destination[i] = next[photons.sided_triangle[i]]++;
+    destination[i] = next[photons.oriented_face[i]]++;
 
   scatter(photons.position, destination);
   scatter(photons.flux, destination);
   scatter(photons.incoming, destination);
   scatter(photons.light, destination);
-  scatter(photons.sided_triangle, destination);
+  scatter(photons.oriented_face, destination);
   return photons;
 }
 
@@ -90,7 +90,7 @@ Photons merge_runs(std::vector<Photons> runs) {
   merge_arrays<&Photons::flux>(runs, merged);
   merge_arrays<&Photons::incoming>(runs, merged);
   merge_arrays<&Photons::light>(runs, merged);
-  merge_arrays<&Photons::sided_triangle>(runs, merged);
+  merge_arrays<&Photons::oriented_face>(runs, merged);
   return merged;
 }
 
@@ -103,17 +103,17 @@ namespace {
 /// Runs in a row that are counted by one task.
 struct Share {
   std::span<const LayerRun> runs;
-  std::vector<std::uint32_t> next;  ///< per sided triangle: its photons, then its next position
+  std::vector<std::uint32_t> next;  ///< per oriented face: its photons, then its next position
 };
 
 /// Parts of the runs, as many as there are threads, unless their counts would take more memory than
 /// the photons.
-std::vector<Share> shares_of(std::span<const LayerRun> runs, std::size_t sided_triangle_count) {
+std::vector<Share> shares_of(std::span<const LayerRun> runs, std::size_t oriented_face_count) {
   std::size_t photons = 0;
   for (const LayerRun& run : runs) photons += run.photons->size();
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t count =
-      std::clamp<std::size_t>(photons / (sided_triangle_count + 1), 1, threads);
+      std::clamp<std::size_t>(photons / (oriented_face_count + 1), 1, threads);
   std::vector<Share> shares(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = i * runs.size() / count, last = (i + 1) * runs.size() / count;
@@ -122,38 +122,38 @@ std::vector<Share> shares_of(std::span<const LayerRun> runs, std::size_t sided_t
   return shares;
 }
 
-/// Turns the runs' sided triangles into the positions of their photons; returns Photons::first_of.
+/// Turns the runs' oriented faces into the positions of their photons; returns Photons::first_of.
 std::vector<std::uint32_t> find_places(std::span<const LayerRun> runs,
-                                       std::size_t sided_triangle_count) {
-  std::vector<Share> shares = shares_of(runs, sided_triangle_count);
+                                       std::size_t oriented_face_count) {
+  std::vector<Share> shares = shares_of(runs, oriented_face_count);
   tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
-    shares[i].next.assign(sided_triangle_count, 0);
+    shares[i].next.assign(oriented_face_count, 0);
     for (const LayerRun& run : shares[i].runs) {
-      for (const std::uint32_t s : run.photons->sided_triangle) ++shares[i].next[s];
+      for (const std::uint32_t s : run.photons->oriented_face) ++shares[i].next[s];
     }
   });
-  std::vector<std::uint32_t> first_of(sided_triangle_count + 1);
+  std::vector<std::uint32_t> first_of(oriented_face_count + 1);
   std::uint32_t index = 0;
-  for (std::size_t s = 0; s < sided_triangle_count; ++s) {
+  for (std::size_t s = 0; s < oriented_face_count; ++s) {
     first_of[s] = index;
     for (Share& share : shares) index += std::exchange(share.next[s], index);
   }
   first_of.back() = index;
   tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
     for (const LayerRun& run : shares[i].runs) {
-      for (std::uint32_t& s : run.photons->sided_triangle) s = shares[i].next[s]++;
+      for (std::uint32_t& s : run.photons->oriented_face) s = shares[i].next[s]++;
     }
   });
   return first_of;
 }
 
-/// One array of all runs, whose sided triangles tell the positions now.
+/// One array of all runs, whose oriented faces tell the positions now.
 template <class T>
 std::vector<T> in_places(std::span<const LayerRun> runs, std::vector<T> PhotonRun::*array,
                          std::size_t count) {
   std::vector<T> all = touched_vector<T>(count);
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
-    const std::vector<std::uint32_t>& index = runs[r].photons->sided_triangle;
+    const std::vector<std::uint32_t>& index = runs[r].photons->oriented_face;
     const std::vector<T> own = std::move(runs[r].photons->*array);
     for (std::size_t i = 0; i < own.size(); ++i) all[index[i]] = own[i];
   });
@@ -163,11 +163,11 @@ std::vector<T> in_places(std::span<const LayerRun> runs, std::vector<T> PhotonRu
 }  // namespace
 
 Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
-                       std::size_t sided_triangle_count) {
+                       std::size_t oriented_face_count) {
   Photons photons;
   const bool keeps_incoming = std::any_of(
       runs.begin(), runs.end(), [](const LayerRun& run) { return !run.photons->incoming.empty(); });
-  photons.first_of = find_places(runs, sided_triangle_count);
+  photons.first_of = find_places(runs, oriented_face_count);
   const std::size_t count = photons.first_of.back();
   photons.position = in_places(runs, &PhotonRun::position, count);
   photons.flux = in_places(runs, &PhotonRun::flux, count);
@@ -175,7 +175,7 @@ Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
   if (tell_layers) {
     photons.light = touched_vector<std::uint16_t>(count);
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
-      for (const std::uint32_t index : runs[r].photons->sided_triangle) {
+      for (const std::uint32_t index : runs[r].photons->oriented_face) {
         photons.light[index] = runs[r].layer;
       }
     });
@@ -183,9 +183,9 @@ Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
   tbb::parallel_for(std::size_t{0}, runs.size(),
                     [&](std::size_t r) { *runs[r].photons = PhotonRun{}; });
   return_freed_memory();
-  photons.sided_triangle = touched_vector<std::uint32_t>(count);
-  tbb::parallel_for(std::size_t{0}, sided_triangle_count, [&](std::size_t s) {
-    const auto at = photons.sided_triangle.begin();
+  photons.oriented_face = touched_vector<std::uint32_t>(count);
+  tbb::parallel_for(std::size_t{0}, oriented_face_count, [&](std::size_t s) {
+    const auto at = photons.oriented_face.begin();
     std::fill(at + photons.first_of[s], at + photons.first_of[s + 1],
               static_cast<std::uint32_t>(s));
   });

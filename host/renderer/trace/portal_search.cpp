@@ -108,7 +108,7 @@ struct Plane {
 
 /// The normal of a triangle's plane, the same for whatever lies in it.
 glm::dvec3 plane_normal(const Scene& scene, std::uint32_t triangle) {
-  const glm::dvec3 normal = sided_normal(scene, sided(triangle, 0));
+  const glm::dvec3 normal = face_normal(scene, oriented(triangle, 0));
   constexpr double level = 1e-6;  // roundings of 0
   const double first = std::abs(normal.x) > level   ? normal.x
                        : std::abs(normal.y) > level ? normal.y
@@ -333,7 +333,7 @@ std::vector<std::vector<std::uint32_t>> panes_of(const Scene& scene,
 }
 
 Portal rectangle_around(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
-  const glm::dvec3 normal = sided_normal(scene, sided(triangles.front(), 0));
+  const glm::dvec3 normal = face_normal(scene, oriented(triangles.front(), 0));
   const Plane plane{normal, glm::dot(normal, glm::dvec3(scene.corners(triangles.front())[0])), 0};
   std::vector<Crossing> corners;
   for (const std::uint32_t triangle : triangles) {

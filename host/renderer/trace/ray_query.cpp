@@ -10,7 +10,7 @@ namespace photile::trace {
 
 glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) {
   const Material& material = material_of(scene, point);
-  const float there = material.has_holes() ? opacity(scene, point) : 1.0f;
+  const float there = material.has_cutouts() ? opacity(scene, point) : 1.0f;
   glm::vec3 surface(0.0f);
   if (material.interaction == Interaction::glass && material.thin) {
     surface = pane_transmittance(material, -glm::dot(direction, point.normal));
@@ -59,26 +59,26 @@ glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::
 
 namespace {
 
-/// Each hole takes a ray on, but for rounding: paths must end.
-constexpr std::uint32_t most_holes = 4096;
+/// Each cutout takes a ray on, but for rounding: paths must end.
+constexpr std::uint32_t most_cutouts = 4096;
 
 }  // namespace
 
-bool passes_hole(const Scene& scene, const SurfacePoint& point, const RandomStream& random,
-                 Purpose purpose, std::uint32_t& holes) {
-  if (!material_of(scene, point).has_holes() || holes >= most_holes) return false;
+bool passes_cutout(const Scene& scene, const SurfacePoint& point, const RandomStream& random,
+                   Purpose purpose, std::uint32_t& cutouts) {
+  if (!material_of(scene, point).has_cutouts() || cutouts >= most_cutouts) return false;
   const float there = opacity(scene, point);
   if (there >= 1.0f) return false;
-  const std::uint32_t number = holes++;
+  const std::uint32_t number = cutouts++;
   return there <= 0.0f || random.block(purpose, number).uniform(0) >= there;
 }
 
 std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& origin,
                                          const glm::vec3& direction, const RandomStream& random,
-                                         Purpose purpose, std::uint32_t& holes) {
+                                         Purpose purpose, std::uint32_t& cutouts) {
   while (const auto hit = rays.intersect(origin, direction)) {
     const SurfacePoint point = surface_hit(*rays.scene, *hit, direction);
-    if (!passes_hole(*rays.scene, point, random, purpose, holes)) return point;
+    if (!passes_cutout(*rays.scene, point, random, purpose, cutouts)) return point;
     origin = point.origin_towards(direction);
   }
   return std::nullopt;
@@ -86,8 +86,8 @@ std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& 
 
 std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin,
                                          const glm::vec3& direction, const RandomStream& random,
-                                         Purpose purpose, std::uint32_t& holes) {
-  return next_surface(impl_of(rays), origin, direction, random, purpose, holes);
+                                         Purpose purpose, std::uint32_t& cutouts) {
+  return next_surface(impl_of(rays), origin, direction, random, purpose, cutouts);
 }
 
 bool see_each_other(const RayScene& rays, const SurfacePlace& from, const SurfacePlace& to,

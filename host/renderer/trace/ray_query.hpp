@@ -60,33 +60,33 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
 
 /// What the straight line between two points lets through, per channel: black behind a surface that
 /// bends or stops light, the product of their transmittances behind panes of thin glass and
-/// surfaces with holes.
+/// surfaces with cutouts.
 glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
-/// Whether a ray passes the surface here as if it were not there: always in a hole, never where the
-/// surface is whole, by chance where it is partly there. Behind 4096 holes of a path all surfaces
-/// count as whole.
-///   holes   passed so far on the path; counts on
-bool passes_hole(const Scene& scene, const SurfacePoint& point, const RandomStream& random,
-                 Purpose purpose, std::uint32_t& holes);
+/// Whether a ray passes the surface here as if it were not there: always in a cutout, never where
+/// the surface is whole, by chance where it is partly there. Behind 4096 cutouts of a path all
+/// surfaces count as whole.
+///   cutouts   passed so far on the path; counts on
+bool passes_cutout(const Scene& scene, const SurfacePoint& point, const RandomStream& random,
+                   Purpose purpose, std::uint32_t& cutouts);
 
 /// Where a ray meets a surface that it does not pass, or nothing. `origin` moves behind the last
-/// hole.
+/// cutout.
 std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& origin,
                                          const glm::vec3& direction, const RandomStream& random,
-                                         Purpose purpose, std::uint32_t& holes);
+                                         Purpose purpose, std::uint32_t& cutouts);
 std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin,
                                          const glm::vec3& direction, const RandomStream& random,
-                                         Purpose purpose, std::uint32_t& holes);
+                                         Purpose purpose, std::uint32_t& cutouts);
 
 struct SurfacePlace {
   glm::vec3 position;  ///< metres
   glm::vec3 normal;    ///< unit, of the side
 };
 
-inline SurfacePlace place_on(const Scene& scene, std::uint32_t sided_triangle,
+inline SurfacePlace place_on(const Scene& scene, std::uint32_t oriented_face,
                              const glm::vec3& position) {
-  return {position, glm::vec3(sided_normal(scene, sided_triangle))};
+  return {position, glm::vec3(face_normal(scene, oriented_face))};
 }
 
 /// How a shadow ray differs from the straight way between two points.

@@ -15,7 +15,7 @@ namespace photile::trace {
 
 /// The point of its surface where a hit lies.
 inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit) {
-  const std::uint32_t sided = hits.sided_triangle[hit];
+  const std::uint32_t sided = hits.oriented_face[hit];
   return surface_point(
       scene, nearest_on_triangle(scene, triangle_of(sided), glm::dvec3(hits.position[hit])),
       side_of(sided));

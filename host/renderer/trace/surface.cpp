@@ -167,12 +167,12 @@ glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point) {
   return glm::dot(normal, point.normal) > 0.0f ? normal : point.normal;
 }
 
-glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
+glm::vec3 shading_normal(const Scene& scene, std::uint32_t oriented_face,
                          const glm::vec3& position) {
   return shading_normal(scene, surface_point(scene,
-                                             nearest_on_triangle(scene, triangle_of(sided_triangle),
+                                             nearest_on_triangle(scene, triangle_of(oriented_face),
                                                                  glm::dvec3(position)),
-                                             side_of(sided_triangle)));
+                                             side_of(oriented_face)));
 }
 
 ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,

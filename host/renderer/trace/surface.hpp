@@ -32,7 +32,7 @@ struct SurfacePoint {
   /// How far from the position a ray has to start so that it cannot meet its own triangle, metres.
   float clearance = 0;
 
-  std::uint32_t sided_triangle() const { return sided(where.triangle, side); }
+  std::uint32_t oriented_face() const { return oriented(where.triangle, side); }
   /// Origin of a ray that leaves in `direction`, to this side or the other.
   glm::vec3 origin_towards(const glm::vec3& direction) const {
     return position + (glm::dot(direction, normal) < 0.0f ? -clearance : clearance) * normal;
@@ -84,7 +84,7 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
 /// What an opaque surface reflects there, textured. Without a specular lobe F0 and F90 are 0.
 scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
 
-/// Share of the surface that is there, in [0, 1]; 1 where its material has no holes.
+/// Share of the surface that is there, in [0, 1]; 1 where its material has no cutouts.
 float opacity(const Scene& scene, const SurfacePoint& point);
 
 /// The unit interpolated normal of a point's corners, on its side: the same from wherever it is
@@ -92,7 +92,7 @@ float opacity(const Scene& scene, const SurfacePoint& point);
 /// apart.
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
 /// The shading normal at a position, metres, on a side of a triangle.
-glm::vec3 shading_normal(const Scene& scene, std::uint32_t sided_triangle,
+glm::vec3 shading_normal(const Scene& scene, std::uint32_t oriented_face,
                          const glm::vec3& position);
 
 /// Unit shading normals at a point where a ray arrives, on its side.

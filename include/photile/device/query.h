@@ -21,7 +21,7 @@ typedef struct {
 
 /* The surface at a hit, where normals are compared or discs are clipped. */
 typedef struct {
-  float normal[3];    /* of the hit's sided triangle */
+  float normal[3];    /* of the hit's oriented face */
   float inwards[3];   /* from the hit to the centroid of its triangle */
   unsigned int facet; /* as photile/device/surface.h has it, like those below */
   unsigned int triangle;

@@ -38,7 +38,7 @@ typedef struct {
   unsigned int back_sheet[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
   float front_exposure[PHOTILE_SURFACE_WIDTH];     /* that counts of its area: 1, or less where */
   float back_exposure[PHOTILE_SURFACE_WIDTH];      /* most of it lies under other surface; -1 of */
-                                                   /* dark parts, which lie on others */
+                                                   /* unlit regions, which lie on others */
 } PhotileSurfaceLeaf;
 
 #endif

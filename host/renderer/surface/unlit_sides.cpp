@@ -1,4 +1,4 @@
-#include "surface/dark_sides.hpp"
+#include "surface/unlit_sides.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -21,10 +21,10 @@ constexpr double least_of_a_triangle = 5;  ///< of them: e^-5 of such are empty 
 
 }  // namespace
 
-std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
-                                          std::span<const Connection> connections,
-                                          const Sheets& sheets,
-                                          std::span<const std::uint32_t> landed) {
+std::vector<std::uint8_t> find_unlit_sides(const SurfaceMesh& mesh,
+                                           std::span<const Connection> connections,
+                                           const Sheets& sheets,
+                                           std::span<const std::uint32_t> landed) {
   const std::size_t sides = mesh.original.size();
   std::vector<std::uint64_t> found(sides, 0);  // of originals, with what coincides with them
   for (std::size_t s = 0; s < sides; ++s) found[mesh.original[s]] += landed[s];
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
   for (std::uint32_t t = 0; t < area.size(); ++t) {
     if (!mesh.counts(t)) continue;
     area[t] = triangle_area(mesh.scene, t);
-    for (const std::uint32_t s : {sided(t, 0), sided(t, 1)}) {
+    for (const std::uint32_t s : {oriented(t, 0), oriented(t, 1)}) {
       area_of_sheet[sheets.of[s]] += area[t];
       found_on_sheet[sheets.of[s]] += found[s];
     }
@@ -124,7 +124,7 @@ class PartFinder {
   }
 
  private:
-  /// Looks for dark parts of a triangle.
+  /// Looks for unlit regions of a triangle.
   ///   density   of photons where light falls, to a square metre
   void halve(FlatCorners corner, std::span<glm::dvec2> points, double density,
              std::vector<FlatCorners>& found) const {
@@ -164,8 +164,8 @@ class PartFinder {
 
 }  // namespace
 
-std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
-                                      std::span<const std::uint8_t> dark, double radius) {
+std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons& photons,
+                                         std::span<const std::uint8_t> dark, double radius) {
   const std::size_t sides = mesh.original.size();
   // Photons on coincident triangles may lie on either: which part of one is empty says nothing.
   std::vector<std::uint8_t> shared(sides, 0);
@@ -184,7 +184,7 @@ std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& ph
   if (!photons.of_all) return parts;
   parts = photons.of_all->processes->gather_values<DarkPart>(parts);
   std::stable_sort(parts.begin(), parts.end(), [](const DarkPart& a, const DarkPart& b) {
-    return a.sided_triangle < b.sided_triangle;
+    return a.oriented_face < b.oriented_face;
   });
   return parts;
 }
@@ -232,8 +232,9 @@ SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
 }  // namespace
 
 std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
-                                      const PlaneTree& planes, std::span<const DarkPart> dark_parts,
-                                      double radius, double angle_degrees) {
+                                      const PlaneTree& planes,
+                                      std::span<const DarkPart> unlit_regions, double radius,
+                                      double angle_degrees) {
   const NearbyPlanes nearby(mesh, planes, radius, angle_degrees);
   std::vector<std::uint8_t> is_piece(mesh.normal.size(), 0);
   tbb::parallel_for(std::size_t{0}, is_piece.size(), [&](std::size_t i) {
@@ -245,14 +246,14 @@ std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& fac
   for (const BorderEdge& edge : facets.borders) {
     pieces.push_back(border_piece(edge, facets.of_triangle[edge.triangle]));
   }
-  for (const DarkPart& part : dark_parts) {
+  for (const DarkPart& part : unlit_regions) {
     const auto& [a, b, c] = part.corner;
     SurfacePiece piece{.a = a,
                        .b = b,
                        .c = c,
                        .facet = PHOTILE_NO_FACET,
-                       .triangle = triangle_of(part.sided_triangle),
-                       .dark_side = part.sided_triangle};
+                       .triangle = triangle_of(part.oriented_face),
+                       .unlit_side = part.oriented_face};
     for (const glm::vec3& corner : part.corner) piece.box.extend(corner);
     pieces.push_back(piece);
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cache/gathered_irradiance.hpp"
-#include "cache/node_sight.hpp"
+#include "cache/node_visibility.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_maps.hpp"
@@ -54,15 +54,15 @@ class ValuedBy : public NodeSource {
 
 /// Irradiance where rays end, read from light maps that photon estimates value when a ray first
 /// ends there.
-class EndLight {
+class SecondaryLight {
  public:
   /// References are kept.
   ///   photons   answers for ends that light maps do not serve, and `of_nodes` for nodes: the same
   ///             but where several processes have the photons. What a point gets does not depend on
   ///             the points beside it.
   ///   maps      of one level: a cell is known by its first node
-  EndLight(const RayScene& rays, estimate::LightAtPoints& photons,
-           estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
+  SecondaryLight(const RayScene& rays, estimate::LightAtPoints& photons,
+                 estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
       : rays_(rays), photons_(photons), nodes_(of_nodes), parameters_(maps) {}
 
   /// Finds an estimate for each end.
@@ -101,7 +101,7 @@ class EndLight {
   void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void fill(const PrimaryHits& hits, const Progress& progress);
-  bool find(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
+  bool find(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend) const;
   bool is_open(const NodeBlend& cell) const;
   EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen,
                             const Progress& progress);
@@ -116,7 +116,7 @@ class EndLight {
     Maps(const RayScene& rays, const LightMapParameters& parameters)
         : maps(rays.scene(), parameters), sight(rays, maps, any_contrast) {}
     LightMaps maps;
-    NodeSight sight;
+    NodeVisibility sight;
     /// Whether the middle of a cell sees all nodes, by the first node; known once an end asked.
     mutable std::vector<std::uint8_t> cells;
   };

@@ -16,12 +16,12 @@ namespace photile::cache {
 
 /// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
 /// the light of where they are, which is none of what the eye sees beside them.
-class NodeSight {
+class NodeVisibility {
  public:
   /// References are kept.
   ///   contrast   of nodes that are looked at, as LightMapParameters::contrast
-  NodeSight(const RayScene& rays, const LightMaps& maps,
-            double contrast = defaults::light_map_contrast)
+  NodeVisibility(const RayScene& rays, const LightMaps& maps,
+                 double contrast = defaults::light_map_contrast)
       : rays_(rays), maps_(maps), contrast_(contrast) {}
 
   /// Leaves out the nodes that something hides from the point, or covers and not the point, where
@@ -31,13 +31,13 @@ class NodeSight {
   /// (ray_query.hpp).
   ///   position   of an opaque surface, metres
   ///   blend      of LightMaps::find, which found all nodes
-  bool look(std::uint32_t sided_triangle, const glm::vec3& position, NodeBlend& blend) const;
+  bool look(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend) const;
 
   /// Whether the middle of the cell sees all of its nodes.
   bool is_open(const NodeBlend& cell) const;
 
   /// Whether nothing stands between two places, metres, on the plane of a triangle's side.
-  bool sees(std::uint32_t sided_triangle, const glm::vec3& from, const glm::vec3& to) const;
+  bool sees(std::uint32_t oriented_face, const glm::vec3& from, const glm::vec3& to) const;
 
   /// Whether something that lies on the surface covers `there`, closer than `reach`, but not
   /// `here`: the slit behind it sees the place beside it, but no light.

@@ -1,5 +1,5 @@
 // Nodes under things that stand on a floor: what is read beside these.
-#include "cache/node_sight.hpp"
+#include "cache/node_visibility.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -67,7 +67,7 @@ std::uint32_t floor_under(const Scene& scene, const glm::vec3& p) {
       return glm::cross(to - from, p - from).z * glm::cross(b - a, c - a).z >= 0.0f;
     };
     if (left(a, b) && left(b, c) && left(c, a)) {
-      return sided(t, sided_normal(scene, sided(t, 0)).z > 0 ? 0 : 1);
+      return oriented(t, face_normal(scene, oriented(t, 0)).z > 0 ? 0 : 1);
     }
   }
   return none;
@@ -81,7 +81,7 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
   const RayScene rays(scene);
   FormulaSource source(open_floor);
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeSight sight(rays, maps);
+  const cache::NodeVisibility sight(rays, maps);
   PrimaryHits hits;
   for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
     for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
@@ -95,11 +95,11 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
   std::size_t dark = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CAPTURE(hits.position[i].x, hits.position[i].y);
-    const std::uint32_t sided_triangle = hits.sided_triangle[i];
-    if (read(maps, hits.position[i], sided_triangle) < 9.0f) ++dark;
+    const std::uint32_t oriented_face = hits.oriented_face[i];
+    if (read(maps, hits.position[i], oriented_face) < 9.0f) ++dark;
     NodeBlend blend;
-    REQUIRE(maps.find(sided_triangle, hits.position[i], blend));
-    REQUIRE(sight.look(sided_triangle, hits.position[i], blend));
+    REQUIRE(maps.find(oriented_face, hits.position[i], blend));
+    REQUIRE(sight.look(oriented_face, hits.position[i], blend));
     float light = 0, weight = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
       light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
@@ -117,7 +117,7 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides") {
   const RayScene rays(scene);
   FormulaSource source(open_floor);
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeSight sight(rays, maps);
+  const cache::NodeVisibility sight(rays, maps);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     const glm::vec3 place(0.5f * (between_from + between_to), y, 0);
@@ -126,9 +126,9 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides") {
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     NodeBlend blend;
-    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
+    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend));
     const NodeBlend before = blend;
-    CHECK_FALSE(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    CHECK_FALSE(sight.look(hits.oriented_face[i], hits.position[i], blend));
     CHECK(blend.weight == before.weight);
   }
 }
@@ -140,7 +140,7 @@ TEST_CASE(
   const RayScene rays(scene);
   PlateSource source;
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeSight sight(rays, maps);
+  const cache::NodeVisibility sight(rays, maps);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
@@ -152,8 +152,8 @@ TEST_CASE(
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CAPTURE(hits.position[i].x, hits.position[i].y);
     NodeBlend blend;
-    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
-    CHECK(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend));
+    CHECK(sight.look(hits.oriented_face[i], hits.position[i], blend));
     float light = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
       light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
@@ -182,15 +182,15 @@ TEST_CASE("all nodes of open floor and of a bowl are seen") {
   // Uneven everywhere, so that all nodes are looked at.
   FormulaSource source([](const glm::vec3& p, std::uint32_t) { return std::exp(200 * p.y); });
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeSight sight(rays, maps);
+  const cache::NodeVisibility sight(rays, maps);
   const PrimaryHits hits = points_on(scene, 8);
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     NodeBlend blend;
-    REQUIRE(maps.find(hits.sided_triangle[i], hits.position[i], blend));
+    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend));
     const NodeBlend before = blend;
     REQUIRE(maps.uneven(blend, defaults::light_map_contrast));
-    REQUIRE(sight.look(hits.sided_triangle[i], hits.position[i], blend));
+    REQUIRE(sight.look(hits.oriented_face[i], hits.position[i], blend));
     for (std::size_t corner = 0; corner < 4; ++corner) {
       CHECK(blend.weight[corner] == Approx(before.weight[corner]).epsilon(1e-5));
     }

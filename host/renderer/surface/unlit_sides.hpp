@@ -19,40 +19,41 @@ namespace photile::surface {
 /// Photons on dark surface, at most, over those that are expected there.
 inline constexpr double most_found_in_the_dark = 0.005;
 
-/// Per sided triangle: 1 where its sheet's mean density leads to expect photons, and next to none
+/// Per oriented face: 1 where its sheet's mean density leads to expect photons, and next to none
 /// landed. Triangles of which so many are expected that chance alone leaves one in a hundred empty
 /// are judged together with those that they connect to, and are dark where all of them together
 /// are.
 ///   sheets   those of `connections`
-///   landed   per sided triangle: how many photons did
-std::vector<std::uint8_t> find_dark_sides(const SurfaceMesh& mesh,
-                                          std::span<const Connection> connections,
-                                          const Sheets& sheets,
-                                          std::span<const std::uint32_t> landed);
+///   landed   per oriented face: how many photons did
+std::vector<std::uint8_t> find_unlit_sides(const SurfaceMesh& mesh,
+                                           std::span<const Connection> connections,
+                                           const Sheets& sheets,
+                                           std::span<const std::uint32_t> landed);
 
 /// Halves triangles, across the middles of their longest edges, as long as a half would hold 12
 /// photons, were they as dense there as on the denser half of what it is a half of, and is not
 /// smaller than a thousandth of the largest disc. A half on which next to none landed is a dark
-/// part. In the order of the sided triangles.
-///   photons   sorted by sided triangle; several processes find those of all together
+/// part. In the order of the oriented faces.
+///   photons   sorted by oriented face; several processes find those of all together
 ///   dark      sides that are dark as a whole: have no parts
-std::vector<DarkPart> find_dark_parts(const SurfaceMesh& mesh, const Photons& photons,
-                                      std::span<const std::uint8_t> dark, double radius);
+std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons& photons,
+                                         std::span<const std::uint8_t> dark, double radius);
 
 /// A piece of surface as PhotileSurfaceLeaf describes it, with its box.
 struct SurfacePiece {
   geometry::Box box = {};
   glm::vec3 a{0.0f}, b{0.0f}, c{0.0f};
   std::uint32_t facet = 0;
-  std::uint32_t triangle = 0;      ///< with PHOTILE_PIECE_BORDER where it is a border edge
-  std::uint32_t dark_side = none;  ///< sided triangle of which it is a dark part
+  std::uint32_t triangle = 0;       ///< with PHOTILE_PIECE_BORDER where it is a border edge
+  std::uint32_t unlit_side = none;  ///< oriented face of which it is an unlit region
 };
 
-/// All border edges, dark parts, and those triangles that hits must look at: triangles of small
+/// All border edges, unlit regions, and those triangles that hits must look at: triangles of small
 /// facets, and those within the radius of a triangle in another plane whose normal agrees with
 /// theirs on one side or the other. The middle of a floor is neither.
 std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
-                                      const PlaneTree& planes, std::span<const DarkPart> dark_parts,
-                                      double radius, double angle_degrees);
+                                      const PlaneTree& planes,
+                                      std::span<const DarkPart> unlit_regions, double radius,
+                                      double angle_degrees);
 
 }  // namespace photile::surface

@@ -1,4 +1,4 @@
-#include "cache/end_light.hpp"
+#include "cache/secondary_light.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -24,7 +24,7 @@ constexpr std::size_t hits_per_task = 1024;
 
 }  // namespace
 
-IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
+IndirectLight SecondaryLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
   IndirectLight light{.rays = std::move(rays), .own_of = {}, .nodes = {}, .weight = {}, .own = {}};
   std::vector<std::uint8_t> has_own;
   classify(light, has_own);
@@ -33,7 +33,7 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
   for (std::size_t end = 0; end < has_own.size(); ++end) {
     if (has_own[end]) continue;
     served.position.push_back(ends.hits[end].position);
-    served.sided_triangle.push_back(ends.hits[end].sided_triangle);
+    served.oriented_face.push_back(ends.hits[end].oriented_face);
   }
   fill(served, progress);
   find_nodes(light, has_own);
@@ -51,33 +51,34 @@ IndirectLight EndLight::look_up(trace::HemisphereRays rays, const Progress& prog
   return light;
 }
 
-std::vector<NodeBlend> EndLight::nodes_around(const PrimaryHits& hits, const Progress& progress) {
+std::vector<NodeBlend> SecondaryLight::nodes_around(const PrimaryHits& hits,
+                                                    const Progress& progress) {
   fill(hits, progress);
   std::vector<NodeBlend> nodes(hits.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
                       for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
-                        find(hits.sided_triangle[hit], hits.position[hit], nodes[hit]);
+                        find(hits.oriented_face[hit], hits.position[hit], nodes[hit]);
                       }
                     });
   return nodes;
 }
 
-std::uint64_t EndLight::bytes() const {
+std::uint64_t SecondaryLight::bytes() const {
   if (!maps_) return 0;
   const LightMapStatistics statistics = maps_->maps.statistics();
   return statistics.value_bytes + statistics.index_bytes;
 }
 
-EndLight::Costs EndLight::costs() const {
+SecondaryLight::Costs SecondaryLight::costs() const {
   Costs costs = costs_;
   costs.estimated += nodes_.valued();
   return costs;
 }
 
-void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
-                         std::uint32_t rays_per_batch, BatchSums& sums) const {
+void SecondaryLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
+                               std::uint32_t rays_per_batch, BatchSums& sums) const {
   const std::size_t lights = rays_.needs().light_count;
   const Estimates& values = maps_->maps.values();
   for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
@@ -109,7 +110,7 @@ void EndLight::add_point(const IndirectLight& light, std::size_t point, std::uin
 }
 
 /// Finds which ends have estimates of their own, and what estimates weigh at each.
-void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
+void SecondaryLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   const trace::EyeRecord& ends = light.rays.ends;
   light.weight.resize(ends.hits.size());
   has_own.resize(ends.hits.size());
@@ -126,21 +127,21 @@ void EndLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own
 }
 
 /// Values the nodes that hits need.
-void EndLight::fill(const PrimaryHits& hits, const Progress& progress) {
+void SecondaryLight::fill(const PrimaryHits& hits, const Progress& progress) {
   if (!maps_) maps_.emplace(rays_, parameters_);
   maps_->maps.fill(hits, nodes_, progress);
   maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
 }
 
 /// The nodes around a place, of those that it sees. Returns false where it sees none; then all.
-bool EndLight::find(std::uint32_t sided_triangle, const glm::vec3& position,
-                    NodeBlend& blend) const {
-  maps_->maps.find(sided_triangle, position, blend);
-  return is_open(blend) || maps_->sight.look(sided_triangle, position, blend);
+bool SecondaryLight::find(std::uint32_t oriented_face, const glm::vec3& position,
+                          NodeBlend& blend) const {
+  maps_->maps.find(oriented_face, position, blend);
+  return is_open(blend) || maps_->sight.look(oriented_face, position, blend);
 }
 
 /// Whether the middle of a cell sees all of its nodes. All who ask at once find the same.
-bool EndLight::is_open(const NodeBlend& cell) const {
+bool SecondaryLight::is_open(const NodeBlend& cell) const {
   const std::atomic_ref<std::uint8_t> known(maps_->cells[cell.node[0]]);
   std::uint8_t state = known.load(std::memory_order_relaxed);
   if (state == unknown_cell) {
@@ -152,14 +153,14 @@ bool EndLight::is_open(const NodeBlend& cell) const {
 
 /// Finds the nodes of ends that have no estimates of their own. Ends that none of their nodes sees
 /// get one.
-void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
+void SecondaryLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   light.nodes.resize(has_own.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
     const trace::FlushDenormals flush_denormals;
     for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
       if (has_own[end]) continue;
       const trace::EyeHit& hit = light.rays.ends.hits[end];
-      if (find(hit.sided_triangle, hit.position, light.nodes[end])) continue;
+      if (find(hit.oriented_face, hit.position, light.nodes[end])) continue;
       has_own[end] = 1;
       // Estimates of ends are radiance.
       light.weight[end] = hit.throughput;
@@ -168,9 +169,9 @@ void EndLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_o
 }
 
 /// In the order of the ends that are chosen.
-EndEstimates EndLight::estimates_at(const trace::EyeRecord& ends,
-                                    std::span<const std::uint32_t> chosen,
-                                    const Progress& progress) {
+EndEstimates SecondaryLight::estimates_at(const trace::EyeRecord& ends,
+                                          std::span<const std::uint32_t> chosen,
+                                          const Progress& progress) {
   trace::EyeRecord record;
   for (const std::uint32_t end : chosen) {
     record.hits.push_back(ends.hits[end]);
