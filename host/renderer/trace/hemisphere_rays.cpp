@@ -79,19 +79,27 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
                      ShadowRays& looks, EyeRecord& ends) {
   const Scene& scene = run.rays.scene();
   const LightSampler& lamps = *run.parameters.lamps;
-  for (int bounce = 1; bounce <= defaults::most_near_surfaces && ends.hits.size() > before;
-       ++bounce) {
+  const auto remove_last = [&] {
+    ends.hits.pop_back();
+    if (!ends.glossy.empty()) ends.glossy.pop_back();
+  };
+  for (int bounce = 1; ends.hits.size() > before; ++bounce) {
     EyeHit hit = ends.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
     const std::uint32_t triangle = triangle_of(hit.oriented_face);
     const EndReflection reflection = reflection_of(ends, ends.hits.size() - 1);
+    if (bounce > defaults::most_near_surfaces) {
+      // Within a solid of metal, as at the rim of a board that its frame holds, hardly any light is
+      // left, but the few photons that found a seam would count for all of it.
+      if (reflection.strong_lobe) remove_last();
+      return;
+    }
     const SurfacePoint point =
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
                       side_of(hit.oriented_face));
     std::optional<OpaqueBsdf> bsdf;
     if (reflection.strong_lobe) bsdf.emplace(scene, point, -ends.glossy.back().outgoing);
-    ends.hits.pop_back();
-    if (!ends.glossy.empty()) ends.glossy.pop_back();
+    remove_last();
     const RandomStream random(run.parameters.seed, number,
                               stream + static_cast<std::uint32_t>(bounce) * streams);
     const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
