@@ -78,11 +78,6 @@ struct LightMapFrames::View {
     for (int i = 0; i < frame.samples_per_pixel; ++i) within_pixel.push_back(place_in_pixel(i));
   }
 
-  /// Where others show surface that has no nodes, each chart may come to its last level at once.
-  FillingOrder order() const {
-    return coarser ? FillingOrder::chart_by_chart : FillingOrder::coarse_first;
-  }
-
   std::size_t blocks() const {
     return static_cast<std::size_t>(blocks_across) *
            static_cast<std::size_t>((height + block_side - 1) / block_side);
@@ -176,9 +171,9 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
     }
     const Stopwatch of_filling;
     if (missing.coarser.empty()) {
-      fill(missing.places, view.order(), left, filling, progress);
+      fill(missing.places, left, filling, progress);
     } else {
-      coarser->fill(missing.coarser, FillingOrder::coarse_first, left, filling, progress);
+      coarser->fill(missing.coarser, left, filling, progress);
     }
     left -= of_filling.seconds();
     drawn.fill_seconds += of_filling.seconds();
@@ -232,8 +227,9 @@ void LightMapFrames::forget_unseen() {
   seen_.resize(former.size());
 }
 
-/// Draws blocks; leaves those that lack nodes. Returns places of the cells that are missing, in the
-/// order in which they are to be filled.
+/// Draws blocks; leaves those that lack nodes. Returns places of the cells that are missing, those
+/// without any level first, then chart by chart: that which changes most of the picture comes
+/// first, for a chart that is refined in part has steps between its cells.
 LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
                                                     std::vector<std::size_t>& blocks,
                                                     const FrameFilling& filling) const {
@@ -254,8 +250,7 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
     all.places.insert(all.places.end(), missing.places.begin(), missing.places.end());
     all.coarser.insert(all.coarser.end(), missing.coarser.begin(), missing.coarser.end());
   }
-  put_in_order(all.places, view.order());
-  put_in_order(all.coarser, FillingOrder::coarse_first);
+  for (std::vector<MissingPlace>* places : {&all.places, &all.coarser}) put_in_order(*places);
   std::size_t left = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (lacks[i] != 0) blocks[left++] = blocks[i];
@@ -264,32 +259,14 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
   return all;
 }
 
-/// Charts that take most of the picture come first, or those that change most of it by finer nodes.
-void LightMapFrames::put_in_order(std::vector<MissingPlace>& places, FillingOrder order) {
-  struct OfChart {
-    double gain[2] = {0, 0};  ///< of finer nodes, and of those that are the first
-    bool begun = false;
-  };
-  std::unordered_map<std::uint32_t, OfChart> charts;
-  for (const MissingPlace& place : places) {
-    OfChart& chart = charts[place.chart];
-    chart.gain[place.empty] += place.gain;
-    chart.begun |= !place.empty;
-  }
-  if (order == FillingOrder::chart_by_chart) {
-    const auto rank = [&](const MissingPlace& place) {
-      const OfChart& chart = charts[place.chart];
-      return std::tuple(!chart.begun, -chart.gain[1], -chart.gain[0], place.chart, place.cell);
-    };
-    std::sort(places.begin(), places.end(),
-              [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
-    return;
-  }
-  for (MissingPlace& place : places) place.gain = charts[place.chart].gain[place.empty];
+/// Leaves one place of each cell without a coarser level.
+void LightMapFrames::put_in_order(std::vector<MissingPlace>& places) {
+  std::unordered_map<std::uint32_t, std::array<double, 2>> gain_of_chart;
+  for (const MissingPlace& place : places) gain_of_chart[place.chart][place.empty] += place.gain;
+  for (MissingPlace& place : places) place.gain = gain_of_chart[place.chart][place.empty];
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
     return std::tie(b.empty, b.gain, a.chart, a.cell) < std::tie(a.empty, a.gain, b.chart, b.cell);
   });
-  // The first nodes of a cell are the same from wherever it is seen.
   const auto is_repeated = [](const MissingPlace& a, const MissingPlace& b) {
     return a.empty && a.cell == b.cell;
   };
@@ -323,12 +300,12 @@ bool LightMapFrames::soften(std::span<const MissingPlace> missing) {
   return lacking_.empty() == any_before;
 }
 
-/// Values nodes of places in their order, as long as there is time, of one at least: all that they
-/// lack, or where the coarsest come first and some places have none, those alone.
-void LightMapFrames::fill(std::span<const MissingPlace> places, FillingOrder order, double seconds,
+/// Values nodes of places in their order, as long as there is time, of one at least: the coarsest
+/// alone where there are places without any, else all finer ones.
+void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
                           const FrameFilling& filling, const Progress& progress) {
-  const bool coarsest = order == FillingOrder::coarse_first && places.front().empty;
-  if (coarsest) {
+  const bool empty = places.front().empty;
+  if (empty) {
     places = {places.begin(),
               std::partition_point(places.begin(), places.end(),
                                    [](const MissingPlace& place) { return place.empty; })};
@@ -350,7 +327,7 @@ void LightMapFrames::fill(std::span<const MissingPlace> places, FillingOrder ord
       hits.oriented_face.push_back(place.oriented_face);
     }
     const Stopwatch batch_watch;
-    maps_.fill(hits, source_, progress, coarsest ? 1 : limits::max_light_map_levels);
+    maps_.fill(hits, source_, progress, empty ? 1 : limits::max_light_map_levels);
     const double latest = batch_watch.seconds() / static_cast<double>(count);
     seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
     first += count;

@@ -41,9 +41,7 @@ class LightMapFrames {
   ///   powers    per layer: power x tint
   ///   filling   of nodes which pixels lack: the coarsest, on charts that take most of the picture
   ///             first, then finer ones where light differs most; their pixels are drawn again
-  ///   coarser   of the same scene, whose nodes are valued first; then each chart in turn gets all
-  ///   of
-  ///             its nodes here. Null = none
+  ///   coarser   of the same scene, whose nodes are valued first; null = none
   /// Errors: those of LightMaps::fill.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   const FrameFilling& filling, std::span<glm::vec3> picture,
@@ -62,14 +60,11 @@ class LightMapFrames {
     bool empty;  ///< without a coarser level
     std::uint32_t chart, packet;
     /// Without a coarser level, how often it is seen; else as often times the difference of the
-    /// coarser nodes around it. That of its chart, once the coarsest are first.
+    /// coarser nodes around it. Once in order, that of its chart.
     double gain;
     glm::vec3 position;
     std::uint32_t oriented_face;
   };
-  /// Either the coarsest nodes of all that is seen come first, and then finer ones, or each chart
-  /// gets all that it lacks before the next one does.
-  enum class FillingOrder { coarse_first, chart_by_chart };
   struct Missing {
     std::vector<MissingPlace> places;
     std::vector<MissingPlace> coarser;    ///< of the coarser light maps, where no level is valued
@@ -84,11 +79,11 @@ class LightMapFrames {
   void forget_unseen();
   Missing draw_blocks(const View& view, std::vector<std::size_t>& blocks,
                       const FrameFilling& filling) const;
-  static void put_in_order(std::vector<MissingPlace>& places, FillingOrder order);
+  static void put_in_order(std::vector<MissingPlace>& places);
   bool show_complete(std::span<const MissingPlace> missing);
   bool soften(std::span<const MissingPlace> missing);
-  void fill(std::span<const MissingPlace> places, FillingOrder order, double seconds,
-            const FrameFilling& filling, const Progress& progress);
+  void fill(std::span<const MissingPlace> places, double seconds, const FrameFilling& filling,
+            const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                  std::uint32_t triangle, std::uint32_t side, float u, float v, float distance,
