@@ -1,6 +1,6 @@
 #!/bin/bash
-# Installs the library, builds docs/examples with nothing but the installed files, and checks what
-# they print against values known in closed form.
+# Installs the library, builds docs/examples and two benches with nothing but the installed files, and
+# checks what they print, that of the examples against values known in closed form.
 #   examples.sh CMAKE BUILD-FOLDER SOURCE-FOLDER SCRATCH-FOLDER
 set -eu
 cmake=$1 build=$2 source=$3 scratch=$4
@@ -35,6 +35,16 @@ cp -r "$source/docs/examples" "$scratch/out/examples"
 "$cmake" -S "$scratch/out/examples" -B "$scratch/out/build" -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$scratch/installed" > "$scratch/out/configure.log"
 "$cmake" --build "$scratch/out/build" -j 2 > "$scratch/out/build.log"
+
+mkdir -p "$scratch/out/benches"
+cp -r "$source/bench/kernels" "$source/bench/support" "$scratch/out/benches"
+"$cmake" -S "$source/tests/package/benches" -B "$scratch/out/build_benches" \
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$scratch/installed" \
+  -DPHOTILE_BENCHES="$scratch/out/benches" > "$scratch/out/configure_benches.log"
+"$cmake" --build "$scratch/out/build_benches" -j 2 > "$scratch/out/build_benches.log"
+"$scratch/out/build_benches/relight_bench" --help > "$scratch/out/relight_bench.txt"
+"$scratch/out/build_benches/groups_bench" --benchmark_list_tests > "$scratch/out/groups_bench.txt"
+[ -s "$scratch/out/groups_bench.txt" ] || fail "the bench of groups lists nothing"
 
 photons=$("$scratch/out/build/own_photons")
 echo "$photons"
