@@ -17,8 +17,7 @@ namespace photile::cache {
 ///   - Nodes on the border of a larger cell show the mean which that cell has at their place,
 ///     whatever they hold: otherwise there would be a step along that border.
 ///   - A corner of a cell counts less where its surroundings are nearer than the next corner: it
-///   may
-///     stand behind a door, and tells little of the surface before that.
+///     may stand behind a door, and tells little of the surface before that.
 ///   - No corner of a cell is more than so many times as bright as all others: nodes beside lamps
 ///     would show as bright squares.
 class ShownNodes {
@@ -26,8 +25,7 @@ class ShownNodes {
   /// Brings the light up to date with what the maps hold. Work is shared by TBB.
   ///   powers       per layer: power x tint
   ///   lacking      cells that the picture lacked before the maps were last filled: light is
-  ///   softened
-  ///                around those that still lack their nodes
+  ///                softened around those that still lack their nodes
   ///   everywhere   light is softened at all cells, whether they lack nodes or not
   void mix(const LightMaps& maps, std::span<const glm::vec3> powers,
            std::span<const MissingCell> lacking, bool everywhere);
