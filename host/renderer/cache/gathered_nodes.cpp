@@ -83,9 +83,9 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 }  // namespace
 
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
-  // Shadow borders stand at the finer levels: there looks at lamps matter more than other rays.
+  // Shadow borders stand at the finer levels: there light samples matter more than rays.
   // Nine of these are averaged. In the open a shadow has a hundredth of the light of the sun beside
-  // it, and few looks find the sky through a window: there what single looks bring would show.
+  // it, and few light samples find the sky through a window: what single ones bring would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
   const int times = open ? defaults::times_in_the_open : 1;

@@ -13,7 +13,7 @@
 
 namespace photile::cache {
 
-/// Rays and looks at lamps of a node.
+/// Rays and light samples of a node.
 struct NodeRays {
   int rays, looks;
 };
@@ -27,7 +27,7 @@ struct GatheredNodesParameters {
 };
 
 /// So many rays at the coarsest level and a quarter at others, and defaults::looks_per_ray; where
-/// the sun or a sky shines more looks, and as many at all levels.
+/// the sun or a sky shines more light samples, and as many at all levels.
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise

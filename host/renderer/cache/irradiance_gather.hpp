@@ -21,11 +21,11 @@ struct IrradianceGatherParameters {
   int rays = 144;
   /// Light samples from each point; 0 = direct light is left out.
   int looks = 96;
-  /// Rays and looks are shared by so many independent batches, rounded up to a whole number in
-  /// each: their scatter is the error.
+  /// Rays and light samples are shared by so many independent batches, rounded up to a whole number
+  /// in each: their scatter is the error.
   int batches = 8;
-  /// Surface nearer than this, metres, is not read but gathered from by one ray and one look at
-  /// lamps, for photon estimates blur over such distances and miss what hides there. Not where
+  /// Surface nearer than this, metres, is not read but gathered from by one ray and one light
+  /// sample, for photon estimates blur over such distances and miss what hides there. Not where
   /// there are caustics, which only photons know. 0 = all is read.
   double near = 0;
   /// Photons of an estimate of caustics, which tell its error.
@@ -48,7 +48,7 @@ struct GatheredParts {
 };
 
 /// Gathers the light of each layer at points, in three parts that together are all light
-/// (docs/irradiance-gathering.md): straight from lamps, by looks at them and by the rays that meet
+/// (docs/irradiance-gathering.md): directly from lights, by light samples and by the rays that meet
 /// them; over mirrors or through glass that bends it and nothing else, by the photons that brought
 /// it; all other, by rays with the density of the cosine that read the photons of all light where
 /// they end.
@@ -93,7 +93,7 @@ class IrradianceGather {
   struct Costs {
     double ray_seconds = 0;       ///< tracing rays to surfaces
     double estimate_seconds = 0;  ///< photons, at ends and at points
-    double sum_seconds = 0;       ///< looks at lamps, and sums
+    double sum_seconds = 0;       ///< light samples, and sums
     std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
     std::uint64_t ends = 0;       ///< that met a surface
     std::uint64_t estimated = 0;  ///< places where photons were looked up

@@ -67,13 +67,13 @@ std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsd
   return Onward{*direction, bsdf.reflected(*direction) / density, density};
 }
 
-/// Replaces the last end by light that reaches it, as long as it is surface near the point. Photons
-/// around such an end would be those of a part of the hemisphere: of the faces of a narrow frame
-/// that lie at angles to it, for instance.
+/// Replaces the last end by light that reaches it, as long as it is surface near the point. A
+/// photon estimate there would show its blur, and on a narrow frame it would count the photons of
+/// faces that lie at angles to the end's.
 ///   from     the point
 ///   before   ends of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
-///   looks    at lights, to which those from near surface are added; their tag is the pixel
+///   looks    light samples, to which those from near surface are added; their tag is the pixel
 void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
                      std::size_t before, std::uint32_t stream, std::uint32_t streams,
                      ShadowRays& looks, EyeRecord& ends) {

@@ -23,9 +23,8 @@ struct HemisphereParameters {
   /// > 0: rays also see the lights that they meet at once or through panes, and light samples find
   /// the same: by the power heuristic. 0 = they see none.
   float rays_per_look = 0;
-  /// Surface nearer than this, metres, does not end a ray: what light falls
-  /// there is looked for by one more light sample and one more ray, a few times over. 0 = all
-  /// opaque surface does.
+  /// Surface nearer than this, metres, does not end a ray: one more light sample and one more ray
+  /// find what light falls there, a few times over. 0 = all opaque surface ends rays.
   float near = 0;
 };
 
