@@ -1,5 +1,5 @@
 // What the angle of neighbour groups does: the larger, the less a curved surface darkens at the
-// edges of its facets, and the more light bleeds around the edges between surfaces. Graglia et al.
+// edges of its regions, and the more light bleeds around the edges between surfaces. Graglia et al.
 // 2012 take 60 degrees without a figure.
 //
 // Photons lie evenly on lit surfaces, one watt a square metre, so that the truth is 1 there and 0
@@ -22,7 +22,7 @@ using namespace photile;
 using namespace photile::bench;
 
 /// A flat rectangle, seen from where its normal points.
-struct Facet {
+struct Region {
   glm::vec3 origin, u, v;
   bool lit;
   bool asked;  ///< hits lie here
@@ -30,12 +30,12 @@ struct Facet {
 
 struct Shape {
   std::string name;
-  std::vector<Facet> facets;
+  std::vector<Region> regions;
   /// Hits lie within the radius of the edge along v, where u = 0.
   bool near_edge;
 };
 
-/// Facets in a ring around z, 0.2 m wide each.
+/// Plane faces in a ring around z, 0.2 m wide each.
 Shape prism(int sides) {
   Shape shape{fmt::format("prism of {} sides", sides), {}, false};
   const float side = 0.2f, step = glm::two_pi<float>() / static_cast<float>(sides);
@@ -45,7 +45,7 @@ Shape prism(int sides) {
     return glm::vec3(radius * std::cos(angle), radius * std::sin(angle), 0);
   };
   for (int i = 0; i < sides; ++i) {
-    shape.facets.push_back({corner(i), corner(i + 1) - corner(i), {0, 0, 1}, true, true});
+    shape.regions.push_back({corner(i), corner(i + 1) - corner(i), {0, 0, 1}, true, true});
   }
   return shape;
 }
@@ -56,14 +56,14 @@ Shape wedge(double degrees, bool lit) {
   const double angle = glm::radians(degrees);
   const glm::vec3 away(-std::cos(angle), 0, -std::sin(angle));
   // Normals: cross(u, v) of each plate points up and outwards.
-  const Facet first{{0, 1, 0}, {1, 0, 0}, {0, 1, 0}, true, lit};
-  const Facet second{{0, 2, 0}, away, {0, -1, 0}, false, !lit};
+  const Region first{{0, 1, 0}, {1, 0, 0}, {0, 1, 0}, true, lit};
+  const Region second{{0, 2, 0}, away, {0, -1, 0}, false, !lit};
   return {fmt::format("edge of {:.0f} degrees, {} side", degrees, lit ? "lit" : "unlit"),
           {first, second},
           true};
 }
 
-glm::vec3 normal_of(const Facet& facet) { return glm::normalize(glm::cross(facet.u, facet.v)); }
+glm::vec3 normal_of(const Region& region) { return glm::normalize(glm::cross(region.u, region.v)); }
 
 class Subject {
  public:
@@ -71,7 +71,7 @@ class Subject {
     SceneBuilder builder(shape.name);
     builder.add(lamp_at({0, 0, 5}));
     const std::uint32_t white = builder.add(white_material());
-    for (const Facet& f : shape.facets) {
+    for (const Region& f : shape.regions) {
       builder.quad(f.origin, f.origin + f.u, f.origin + f.u + f.v, f.origin + f.v, white);
     }
     scene_ = std::move(builder).build();
@@ -82,10 +82,10 @@ class Subject {
   Photons photons(double per_square_metre) const {
     std::mt19937 random(1);
     Photons photons;
-    for (std::size_t i = 0; i < shape_.facets.size(); ++i) {
-      const Facet& facet = shape_.facets[i];
-      if (!facet.lit) continue;
-      const double area = glm::length(glm::cross(facet.u, facet.v));
+    for (std::size_t i = 0; i < shape_.regions.size(); ++i) {
+      const Region& region = shape_.regions[i];
+      if (!region.lit) continue;
+      const double area = glm::length(glm::cross(region.u, region.v));
       const auto count = static_cast<std::size_t>(area * per_square_metre);
       for (std::size_t n = 0; n < count; ++n) {
         add_point(i, 1.0f, random, photons.position, photons.oriented_face);
@@ -101,8 +101,8 @@ class Subject {
     std::mt19937 random(2);
     PrimaryHits hits;
     std::vector<std::size_t> asked;
-    for (std::size_t i = 0; i < shape_.facets.size(); ++i) {
-      if (shape_.facets[i].asked) asked.push_back(i);
+    for (std::size_t i = 0; i < shape_.regions.size(); ++i) {
+      if (shape_.regions[i].asked) asked.push_back(i);
     }
     for (std::size_t n = 0; n < count; ++n) {
       add_point(asked[n % asked.size()], shape_.near_edge ? static_cast<float>(reach) : 1.0f,
@@ -116,23 +116,23 @@ class Subject {
 
   /// Whether hits lie on lit surfaces.
   bool lit() const {
-    return std::any_of(shape_.facets.begin(), shape_.facets.end(),
-                       [](const Facet& f) { return f.lit && f.asked; });
+    return std::any_of(shape_.regions.begin(), shape_.regions.end(),
+                       [](const Region& f) { return f.lit && f.asked; });
   }
 
  private:
-  /// A point of a facet, up to `most_u` of the way along u, and the side that its normal is on.
-  void add_point(std::size_t facet, float most_u, std::mt19937& random,
+  /// A point of a region, up to `most_u` of the way along u, and the side that its normal is on.
+  void add_point(std::size_t region, float most_u, std::mt19937& random,
                  std::vector<glm::vec3>& positions, std::vector<std::uint32_t>& sides) const {
     std::uniform_real_distribution<float> uniform(0, 1);
-    const Facet& f = shape_.facets[facet];
+    const Region& f = shape_.regions[region];
     const float u = most_u * uniform(random);
     // Ends of the edges are left out: there the surface ends.
     const float v =
         shape_.near_edge && most_u < 1 ? 0.2f + 0.6f * uniform(random) : uniform(random);
     positions.push_back(f.origin + u * f.u + v * f.v);
     // A quad's triangles are those below its diagonal and above it.
-    const auto triangle = static_cast<std::uint32_t>(2 * facet + (v <= u ? 0 : 1));
+    const auto triangle = static_cast<std::uint32_t>(2 * region + (v <= u ? 0 : 1));
     const std::uint32_t front = oriented(triangle, 0);
     const bool faces = glm::dot(face_normal(scene_, front), glm::dvec3(normal_of(f))) > 0;
     sides.push_back(faces ? front : oriented(triangle, 1));
@@ -169,7 +169,7 @@ bool run(const BenchOptions& options) {
     const double radius = automatic_radius(photons, defaults::neighbours);
     const PrimaryHits hits = subject.hits(hit_count, radius);
     for (int angle = 0; angle <= 90; angle += options.quick ? 30 : 5) {
-      // Facets that meet at just the angle belong together: not left to rounding.
+      // Plane faces that meet at just the angle belong together: not left to rounding.
       const double degrees = std::min(angle + 0.01, 90.0);
       const NeighbourGroups groups =
           find_map_groups(subject.scene(), photons, MapMode::automatic, {radius, degrees});

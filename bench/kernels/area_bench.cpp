@@ -18,7 +18,7 @@ namespace {
 using namespace photile;
 using namespace photile::bench;
 
-struct Place {
+struct TestPoints {
   std::string name;
   PrimaryHits hits;
 };
@@ -26,7 +26,7 @@ struct Place {
 struct Subject {
   std::shared_ptr<const Scene> scene;
   Photons photons;
-  std::vector<Place> places;
+  std::vector<TestPoints> places;
 };
 
 /// The plate's hits: those in the middle, and those whose discs cross one edge, or a corner.
@@ -80,7 +80,7 @@ class AreaBench {
     const PhotonMaps maps(device_, *subject.scene, subject.photons, groups, {.radius = radius});
     const auto surface = std::make_shared<const SurfaceIndex>(
         index_surface(*subject.scene, subject.photons, radius, defaults::group_angle_degrees));
-    for (const Place& place : subject.places) {
+    for (const TestPoints& place : subject.places) {
       run(subject, place.name, in_map_order(place.hits, groups), radius, maps, surface);
     }
   }

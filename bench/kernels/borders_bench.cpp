@@ -26,9 +26,9 @@ struct Line {
 };
 
 double illuminance(const glm::dvec3& lamp, const Sensor& sensor) {
-  const glm::dvec3 to_lamp = lamp - sensor.position;
-  const double squared = glm::dot(to_lamp, to_lamp);
-  return 1000 * glm::dot(to_lamp, sensor.normal) / (squared * std::sqrt(squared));
+  const glm::dvec3 to_light = lamp - sensor.position;
+  const double squared = glm::dot(to_light, to_light);
+  return 1000 * glm::dot(to_light, sensor.normal) / (squared * std::sqrt(squared));
 }
 
 /// Sensors at corner + distance x away, over 1 m along `along`.

@@ -45,7 +45,7 @@ MANY = {"LIGHT_BYTES": 1, "LIGHT_SLOTS": 20, "LIGHT_TABLE": 32, "CLIPPED": 1}
 # (name, file, kernel, symbols, work-items of a group)
 VARIANTS = [
     *((kernel, "grid/build.cl", kernel, {"IN_GROUPS": 1}, GROUP)
-      for kernel in ("find_entered", "count_cells", "scatter", "sort_cells", "gather_entries")),
+      for kernel in ("find_insertions", "count_cells", "scatter", "sort_cells", "copy_records")),
     ("sort_crowded", "grid/build.cl", "sort_crowded", {"IN_GROUPS": 1}, 256),
     ("one work-item a hit, k = 50, disc", "estimate/estimate.cl", "estimate_by_selection", estimate(50), GROUP),
     ("the same, clipped", "estimate/estimate.cl", "estimate_by_selection", estimate(50, CLIPPED=1), GROUP),
@@ -99,7 +99,7 @@ class Nvidia:
         self.compiler.compile(source, symbols, "nvptx64-nvidia-nvcl", "sm_80",
                               "nvptx64--nvidiacl.bc", ptx)
         log = run([self.ptxas, "-v", f"-arch={self.architecture}", ptx, "-o", f"{folder}/code"])
-        own = log[log.index(f"Compiling entry function '{kernel}'"):]
+        own = log[log.index(f"Compiling record function '{kernel}'"):]
         number = lambda pattern: int((re.search(pattern, own) or [0, 0])[1])  # noqa: E731
         registers = number(r"Used (\d+) registers")
         stack = number(r"(\d+) bytes stack frame")

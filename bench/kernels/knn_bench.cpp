@@ -160,7 +160,7 @@ class KnnBench {
         if (k == defaults::neighbours) run_host(c, "nanoflann-morton", *list, morton_order);
         run_host(c, "embree", *embree, given_order);
         for (const structures::Structure& structure : structures::all()) {
-          if (!wanted(structure) || !worth_running(structure, photons.size(), k)) continue;
+          if (!requested(structure) || !worth_running(structure, photons.size(), k)) continue;
           run_device(c, structure);
         }
       }
@@ -182,7 +182,7 @@ class KnnBench {
     return order;
   }
 
-  bool wanted(const structures::Structure& structure) const {
+  bool requested(const structures::Structure& structure) const {
     return structures_.empty() ||
            std::find(structures_.begin(), structures_.end(), structure.name) != structures_.end();
   }
@@ -290,10 +290,11 @@ std::optional<Workload> workload_of(const std::string& name, const Settings& set
 bool run(Settings& settings) {
   if (settings.common.quick) settings.make_quick();
   KnnBench bench(settings);
-  const auto& wanted = settings.workloads;
+  const auto& requested = settings.workloads;
   for (const Plan& plan : plans()) {
-    const bool chosen = std::find(wanted.begin(), wanted.end(), plan.workload) != wanted.end();
-    if (!wanted.empty() && !chosen) continue;
+    const bool chosen =
+        std::find(requested.begin(), requested.end(), plan.workload) != requested.end();
+    if (!requested.empty() && !chosen) continue;
     const std::optional<Workload> workload = workload_of(plan.workload, settings);
     if (workload) bench.run(*workload, plan.restricted(settings));
   }

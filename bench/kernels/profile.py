@@ -42,7 +42,7 @@ STAGES = {
     "edge_above": "selection",
     "reach_for": "block of cells",
     "block_within": "block of cells",
-    "entries_in": "block of cells",
+    "records_in": "block of cells",
     "project": "block of cells",
     "cell_of": "block of cells",
     "find_neighbourhood": "selection",
@@ -54,7 +54,7 @@ STAGES = {
     "add_listed": "sums of flux",
     "end_near": "sums of flux",
     "add_reflected": "sums of flux",
-    "add_entry": "sums of flux",
+    "add_record": "sums of flux",
     "begin_sums": "sums of flux",
     "end_sums": "sums of flux",
     "estimate_hit": "sums of flux",
@@ -110,9 +110,9 @@ def functions_at(shared_object, places):
     address = {line.split()[2]: int(line.split()[0], 16)
                for line in table.splitlines() if len(line.split()) == 3}
     known = [place for place in places if place[0] in address]
-    wanted = sorted({address[symbol] + offset for symbol, offset in known})
+    requested = sorted({address[symbol] + offset for symbol, offset in known})
     answer = subprocess.run(["addr2line", "-a", "-f", "-i", "-e", shared_object],
-                            input="\n".join(hex(a) for a in wanted), capture_output=True,
+                            input="\n".join(hex(a) for a in requested), capture_output=True,
                             text=True, check=True).stdout
     inlined = collections.defaultdict(list)
     current = None

@@ -49,16 +49,16 @@ def estimate_cost(k):
 # Least bytes that a kernel of the build moves, per photon, reference, cell and map
 # (docs/kernels.md), for the records of a diffuse scene with one light. A shape serves two maps.
 BUILD_BYTES = {
-    "find_entered": (24, 0, 0, 0),   # position, triangle, list; bits
+    "find_insertions": (24, 0, 0, 0),   # position, triangle, list; bits
     "count_photons": (12, 4, 0, 0),  # triangle, list, bits
     "size_grids": (0, 0, 0, 130),    # half a shape, count, density_ratio; grid, cells
-    "place_grids": (0, 0, 0, 8),
+    "lay_out_grids": (0, 0, 0, 8),
     "count_cells": (24, 8, 0, 0),
     "sum_blocks": (0, 0, 4, 0),
     "scan_blocks": (0, 0, 8, 0),
     "scatter": (24, 12, 0, 0),
     "sort_cells": (0, 8, 4, 0),
-    "gather_entries": (0, 52, 0, 0),  # reference, position and flux; position and flux
+    "copy_records": (0, 52, 0, 0),  # reference, position and flux; position and flux
     "gather_normals": (0, 20, 0, 0),  # reference, triangle; normal
 }
 # What maps of patches add: a flag per map.

@@ -22,8 +22,8 @@ def curves(result):
 
 def points_of(axis, rows, stage):
     """(size, seconds) of a stage."""
-    return [(row[axis], entry["seconds"]) for row in rows if "failure" not in row
-            for entry in row["stages"] if entry["stage"] == stage]
+    return [(row[axis], record["seconds"]) for row in rows if "failure" not in row
+            for record in row["stages"] if record["stage"] == stage]
 
 
 def slope(points):
@@ -44,8 +44,8 @@ def exponent(points):
 
 
 def stages_of(result):
-    return list(dict.fromkeys(entry["stage"] for row in result["results"] if "failure" not in row
-                              for entry in row["stages"]))
+    return list(dict.fromkeys(record["stage"] for row in result["results"] if "failure" not in row
+                              for record in row["stages"]))
 
 
 def faster_than_n_log_n(result):

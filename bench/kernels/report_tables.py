@@ -127,7 +127,7 @@ def build(result):
              times(row["groups"])] + [times(row[name]) if name in row else ""
                                       for name in BUILD_COLUMNS]
             for row in result["results"]]
-    text = (f"Milliseconds, R for k = {result['settings']['k']}. References are entries of the "
+    text = (f"Milliseconds, R for k = {result['settings']['k']}. References are records of the "
             "uniform grids a photon, duplicates in neighbouring maps included; groups, in which "
             "finding and joining patches is counted, come before all maps but the structures over all photons. "
             "Maps are those of `--set maps=auto`, the default, unless a row says otherwise. nanoflann "

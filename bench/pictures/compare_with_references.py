@@ -83,7 +83,7 @@ def section(name, record, figures):
 
 {parameters['photons_emitted']:,} photon paths left {record['photons_stored']:,} photons; \
 R = {parameters['radius']:.3f} m.
-{100 * figures['lamp_share']:.1f}% of the pixels see a lamp and \
+{100 * figures['lamp_fraction']:.1f}% of the pixels see a lamp and \
 are left out of the figures.
 
 {stage_table(record)}

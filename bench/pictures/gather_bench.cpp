@@ -42,7 +42,7 @@ std::vector<std::uint64_t> numbers(std::size_t count) {
 }
 
 /// Hits of the scene's first camera, spread over all that it sees.
-PrimaryHits seen_points(const RayScene& rays, std::size_t count) {
+PrimaryHits visible_points(const RayScene& rays, std::size_t count) {
   PrimaryHitParameters film;
   film.width = 256;
   film.height = 192;
@@ -151,12 +151,12 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
   const double set_up = timed([&] {
     maps.emplace(rays, std::span(&device, 1), parameters_of(sizes.gathered_photons, 100));
   });
-  const PrimaryHits many = seen_points(rays, sizes.timed_points);
+  const PrimaryHits many = visible_points(rays, sizes.timed_points);
   for (const auto& [gathering, looks] : {std::pair{144, 96}, std::pair{25, 32}, std::pair{324, 216},
                                          std::pair{144, 0}, std::pair{0, 96}}) {
     cache::IrradianceGatherParameters parameters;
     parameters.rays = gathering;
-    parameters.looks = looks;
+    parameters.light_samples = light_samples;
     cache::IrradianceGather gather = maps->gather(parameters);
     cache::GatheredIrradiance light =
         gather.gather(points, numbers(points.size()));  // compiles kernels
@@ -168,14 +168,14 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
                        {"method", "gathering"},
                        {"paths", sizes.gathered_photons},
                        {"rays", gathering},
-                       {"looks", looks},
+                       {"looks", light_samples},
                        {"set_up_processor_seconds", set_up},
                        {"processor_seconds_a_point", seconds},
                        {"wall_seconds",
                         {{"rays", costs.ray_seconds},
                          {"estimates", costs.estimate_seconds},
                          {"looks and sums", costs.sum_seconds}}},
-                       {"ends", costs.ends},
+                       {"hits", costs.hits},
                        {"estimated", costs.estimated}};
     double stated = 0, squares = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -186,7 +186,7 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
     }
     const auto count = static_cast<double>(points.size());
     row["stated_error_of_all_light"] = stated / count;
-    if (gathering > 0 && looks > 0) {
+    if (gathering > 0 && light_samples > 0) {
       row["rms_of_stated_errors"] = std::sqrt(squares / count);
       row.update(errors_of(totals(light.mean, points.size(), maps->layer_powers()), truth));
     }
@@ -197,7 +197,7 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
 void measure_photons(const std::string& name, const RayScene& rays, Device& device,
                      const PrimaryHits& points, const Truth& truth, const Sizes& sizes,
                      BenchRecord& record) {
-  const PrimaryHits many = seen_points(rays, sizes.timed_points);
+  const PrimaryHits many = visible_points(rays, sizes.timed_points);
   for (const int neighbours : {250, 1000}) {
     std::optional<test::GatheringPhotons> maps;
     const double set_up = timed([&] {
@@ -226,7 +226,7 @@ bool run(BenchOptions& options, const std::vector<std::string>& files, Sizes siz
   record.set("reference paths a point", sizes.paths);
   const auto measure_scene = [&](const std::string& name, const Scene& scene) {
     const RayScene rays(scene);
-    const PrimaryHits points = seen_points(rays, sizes.points);
+    const PrimaryHits points = visible_points(rays, sizes.points);
     const Truth truth = by_paths(rays, points, estimate::layer_powers(scene), sizes.paths);
     measure_gathering(name, rays, device, points, truth, sizes, record);
     measure_photons(name, rays, device, points, truth, sizes, record);

@@ -78,7 +78,7 @@ void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camer
       const auto hit = trace::intersect(rays, glm::vec3(camera.position), direction);
       if (!hit) continue;
       const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, direction);
-      NodeBlend blend{};
+      BilinearWeights blend{};
       if (maps.charts().chart_of()[point.oriented_face()] == none ||
           !maps.find(point.oriented_face(), point.position, blend)) {
         continue;
@@ -274,17 +274,17 @@ bool run(BenchOptions& options, Settings settings, const std::string& only) {
   BenchRecord record("light_maps", options);
   Device device({.selector = options.device});
   record.set_device(device.info());
-  const auto wanted = [&](const char* name) { return only.empty() || only == name; };
-  if (wanted("mixing")) {
+  const auto requested = [&](const char* name) { return only.empty() || only == name; };
+  if (requested("mixing")) {
     for (const std::size_t lights : {1, 7, 64, 256}) {
       measure_mixing(settings.mixed_nodes, lights, options, record);
     }
   }
-  if (wanted("living room")) {
+  if (requested("living room")) {
     measure_scene("living room", living_room(), device, settings, options, record);
   }
   for (const char* name : {"classroom", "kitchen"}) {
-    if (options.quick || !wanted(name)) continue;
+    if (options.quick || !requested(name)) continue;
     if (const auto scene = shared_interior(name)) {
       measure_scene(name, *scene, device, settings, options, record);
     }

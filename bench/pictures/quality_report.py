@@ -8,7 +8,7 @@ import numpy as np
 from tools import plots
 from tools.report_section import replace_section
 
-WANTED = 0.02  # relMSE that first pictures and frames are timed for
+REQUESTED = 0.02  # relMSE that first pictures and frames are timed for
 REFINED_SECONDS = 10  # of all cores
 STYLES = {"photile": ("#009E73", "D"), "photile, photons alone": ("#D55E00", "o"),
           "photile, photons in passes": ("#E69F00", "s"),
@@ -76,7 +76,7 @@ def tools(rows):
 
 def summary(rows, cores):
     """One view: a line a tool."""
-    lines = [f"| tool | first picture of relMSE {WANTED} | each further frame of it "
+    lines = [f"| tool | first picture of relMSE {REQUESTED} | each further frame of it "
              f"| relMSE after {REFINED_SECONDS} s | FLIP after {REFINED_SECONDS} s |",
              "|---|--:|--:|--:|--:|"]
     for tool in tools(rows):
@@ -86,8 +86,8 @@ def summary(rows, cores):
             continue
         first, frame = curve(rows, tool, "first", "rel_mse"), curve(rows, tool, "frame", "rel_mse")
         budget = REFINED_SECONDS * cores
-        frame_text = seconds(time_to(WANTED, *frame)) if frame[0] else "-"
-        lines.append(f"| {tool} | {seconds(time_to(WANTED, *first))} | {frame_text} "
+        frame_text = seconds(time_to(REQUESTED, *frame)) if frame[0] else "-"
+        lines.append(f"| {tool} | {seconds(time_to(REQUESTED, *first))} | {frame_text} "
                      f"| {figure(error_at(budget, *first))} "
                      f"| {figure(error_at(budget, *curve(rows, tool, 'first', 'flip')))} |")
     return "\n".join(lines)

@@ -21,7 +21,7 @@ from pictures import trade_plot
 from tools.report_section import read_section, replace_section
 
 PAGE = ROOT / "docs/trade.md"
-WANTED = (0.10, 0.05, 0.02, 0.01)
+REQUESTED = (0.10, 0.05, 0.02, 0.01)
 
 
 def arguments():
@@ -54,9 +54,9 @@ def table(record):
     points = record["renderings"]
     lines = ["| error | first picture | each frame | memory | fastest settings |",
              "|--:|--:|--:|--:|---|"]
-    for wanted in WANTED:
-        within = [p for p in points if p["relative_error"] <= wanted]
-        label = f"{100 * wanted:.0f}%"
+    for requested in REQUESTED:
+        within = [p for p in points if p["relative_error"] <= requested]
+        label = f"{100 * requested:.0f}%"
         if within:
             lines.append(row(label, min(within, key=lambda p: p["first_picture_seconds"])))
         else:

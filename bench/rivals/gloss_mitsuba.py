@@ -50,7 +50,7 @@ class Coat(mitsuba.BSDF):
         mitsuba.BSDF.__init__(self, properties)
         self.albedo, self.f0 = (mitsuba.Color3f(properties[key]) for key in ("albedo", "f0"))
         self.f90, self.alpha = properties["f90"], max(LEAST_ALPHA, properties["alpha"])
-        self.facets = mitsuba.MicrofacetDistribution(mitsuba.MicrofacetType.GGX, self.alpha,
+        self.regions = mitsuba.MicrofacetDistribution(mitsuba.MicrofacetType.GGX, self.alpha,
                                                      self.alpha, True)
         a = self.alpha
         self.weights = [quadratics(a, rows) for rows in (
@@ -60,14 +60,14 @@ class Coat(mitsuba.BSDF):
             ((1.0, 15.94, 41.26), (0.2281, -55.83, 300.2), (13.08, 54.9, -285.1)))]
         self.mean = (np.polyval([-0.7034, 2.0736, -1.9283, 0.0150, 0.9524], a),
                      np.polyval([0.0968, -0.2979, 0.3510, -0.1978, 0.0505], a))
-        # Half of the directions by facets, half by the cosine: only the noise depends on it.
-        self.facet_share = 0.5 if self.f90 > 0 else 0.0
+        # Half of the directions by regions, half by the cosine: only the noise depends on it.
+        self.region_fraction = 0.5 if self.f90 > 0 else 0.0
         flags = mitsuba.BSDFFlags
         self.m_components = [flags.GlossyReflection | flags.DiffuseReflection | flags.FrontSide]
         self.m_flags = self.m_components[0]
 
     def facet_albedo(self, cosine):
-        """Shares of F0 and F90 that one facet reflects."""
+        """Shares of F0 and F90 that one region reflects."""
         f0_above, f0_below, f90_above, f90_below = self.weights
         f90 = quotient(f90_above, f90_below, cosine)
         return dr.minimum(quotient(f0_above, f0_below, cosine), 1 - f90), f90
@@ -81,10 +81,10 @@ class Coat(mitsuba.BSDF):
         schlick = (1 - dr.clip(dr.dot(i, half), 0, 1)) ** 5
         a2 = self.alpha ** 2
         below = mitsuba.Frame3f.cos_theta(half) ** 2 * (a2 - 1) + 1
-        facet = a2 / (math.pi * below * below) * 0.5 / (
+        region = a2 / (math.pi * below * below) * 0.5 / (
             cos_o * dr.sqrt(cos_i * cos_i * (1 - a2) + a2) +
             cos_i * dr.sqrt(cos_o * cos_o * (1 - a2) + a2))
-        one = (self.f0 + (self.f90 - self.f0) * schlick) * facet
+        one = (self.f0 + (self.f90 - self.f0) * schlick) * region
 
         e1_mean = min(self.mean[0] + self.mean[1], 1.0)
         f_mean = self.f0 + (self.f90 - self.f0) / 21
@@ -102,15 +102,15 @@ class Coat(mitsuba.BSDF):
 
     def density(self, i, o):
         half = dr.normalize(i + o)
-        by_facets = self.facets.pdf(o, half) / (4 * dr.dot(o, half)) if self.facet_share else 0
-        return (self.facet_share * by_facets +
-                (1 - self.facet_share) * mitsuba.warp.square_to_cosine_hemisphere_pdf(i))
+        by_regions = self.regions.pdf(o, half) / (4 * dr.dot(o, half)) if self.region_fraction else 0
+        return (self.region_fraction * by_regions +
+                (1 - self.region_fraction) * mitsuba.warp.square_to_cosine_hemisphere_pdf(i))
 
     def sample(self, context, interaction, sample1, sample2, active=True):
         o = interaction.wi
-        normal, _ = self.facets.sample(o, sample2)
-        by_facet = mitsuba.reflect(o, normal)
-        i = dr.select(sample1 < self.facet_share, by_facet,
+        normal, _ = self.regions.sample(o, sample2)
+        by_region = mitsuba.reflect(o, normal)
+        i = dr.select(sample1 < self.region_fraction, by_region,
                       mitsuba.warp.square_to_cosine_hemisphere(sample2))
         active &= (mitsuba.Frame3f.cos_theta(o) > 0) & (mitsuba.Frame3f.cos_theta(i) > 0)
         made = mitsuba.BSDFSample3f()

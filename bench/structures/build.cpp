@@ -38,17 +38,17 @@ class Builder {
                                    3 * store.normals.size()),
             "normals of triangles")) {}
 
-  /// A page of what `lists` hold. `normals`: whether its entries keep theirs.
+  /// A page of what `lists` hold. `normals`: whether its records keep theirs.
   void add(std::uint32_t first_map, std::uint32_t last_map, const PhotonLists& lists,
            bool normals) {
     MapPage page;
     page.first_map = first_map;
     page.last_map = last_map;
-    page.entry_count = static_cast<std::uint32_t>(lists.members.size());
+    page.record_count = static_cast<std::uint32_t>(lists.members.size());
     page.grids =
         context_.upload(std::span<const PhotileGrid>(lists.planes), "planes of photon maps");
     Index index = structure_.build(lists);
-    page.entry_photon = std::move(index.entry_photon);
+    page.record_photon = std::move(index.record_photon);
     maps::PhotonPages all_photons(
         context_,
         [&](std::uint64_t) {
@@ -59,8 +59,8 @@ class Builder {
           return maps::upload_photon_records(context_, photons_, range);
         },
         context_.largest_buffer());
-    maps::gather_entries(maps::build_kernels(store_, false), store_.needs, all_photons,
-                         {.normals = normals ? &normals_ : nullptr}, page);
+    maps::copy_records(maps::build_kernels(store_, false), store_.needs, all_photons,
+                       {.normals = normals ? &normals_ : nullptr}, page);
     context_.finish();
     store_.statistics.device_bytes +=
         index.root.bytes() + index.nodes.bytes() + index.cell_start.bytes();
@@ -97,7 +97,7 @@ std::vector<T> read_all(device::Context& context, const device::Buffer<T>& buffe
 PhotonLists lists_of(const MapPage& page, device::Context& context, const Photons& photons,
                      float radius) {
   PhotonLists lists{context, photons,
-                    radius,  read_all(context, page.entry_photon),
+                    radius,  read_all(context, page.record_photon),
                     {0},     read_all(context, page.grids)};
   const std::vector<std::uint32_t> cell_start = read_all(context, page.cell_start);
   for (const PhotileGrid& grid : lists.planes) {
@@ -125,13 +125,13 @@ PhotonMaps build_each(const Structure& structure, const PhotonMaps& grids, const
   store->normals = of_grids.normals;
   store->statistics.photons = photons.size();
   store->statistics.maps = of_grids.statistics.maps;
-  store->statistics.mixed_maps = of_grids.statistics.mixed_maps;
+  store->statistics.normal_filtered_maps = of_grids.statistics.normal_filtered_maps;
   store->statistics.largest_map = of_grids.statistics.largest_map;
   store->statistics.map_sizes = of_grids.statistics.map_sizes;
   Builder builder(structure, *store, photons);
   for (std::size_t i = 0; i < of_grids.pages.size(); ++i) {
     const MapPage& page = of_grids.pages.use(i);
-    const bool normals = page.entry_normal.size() > 0;
+    const bool normals = page.record_normal.size() > 0;
     const PhotonLists lists = lists_of(page, device::context_of(*store->device), photons,
                                        static_cast<float>(store->parameters.radius));
     of_grids.pages.release();  // leaves its memory to the page that is made of it
@@ -151,7 +151,7 @@ PhotonMaps build_global(const Structure& structure, std::unique_ptr<MapStore> st
     throw DeviceError(
         fmt::format("{} of {} photons, more than the {} that the device's largest buffer holds; "
                     "use fewer photons or another structure",
-                    structure.name, count, limits.most_entries()));
+                    structure.name, count, limits.most_records()));
   }
   store->statistics.photons = count;
   Builder builder(structure, *store, photons);

@@ -49,17 +49,17 @@ Index build_hashed_grid(const PhotonLists& lists) {
   const auto words = std::bit_cast<std::array<std::uint32_t, sizeof grid / 4>>(grid);
   auto nodes = context.upload(std::span<const std::uint32_t>(words), "hashed grid");
   maps::MapPage page;
-  page.entry_count = static_cast<std::uint32_t>(photons.size());
+  page.record_count = static_cast<std::uint32_t>(photons.size());
   page.cell_count = grid.mask + 1;
   page.cell_start = context.allocate<std::uint32_t>(std::size_t{page.cell_count} + 1,
                                                     "bucket offsets", device::MemoryPages::large);
   context.fill(page.cell_start, 0u);
-  page.entry_photon = context.allocate<std::uint32_t>(photons.size(), "photon references");
+  page.record_photon = context.allocate<std::uint32_t>(photons.size(), "photon references");
   const auto position =
       context.share(std::span(&photons.position.front().x, 3 * photons.size()), "photon positions");
   const auto over_photons = [&](const char* kernel) {
     device::Launch launch = kernels.launch(kernel);
-    launch.set("photon_count", page.entry_count)
+    launch.set("photon_count", page.record_count)
         .set("position", position)
         .set("grid", nodes)
         .set("cell_start", page.cell_start);
@@ -68,11 +68,11 @@ Index build_hashed_grid(const PhotonLists& lists) {
   over_photons("count_buckets").run(photons.size(), maps::work_group_size);
   maps::exclusive_prefix_sum(kernels, page.cell_start);
   over_photons("fill_buckets")
-      .set("entry_photon", page.entry_photon)
+      .set("record_photon", page.record_photon)
       .run(photons.size(), maps::work_group_size);
   maps::sort_cells(kernels, page);
   context.finish();  // `position` may lie over the host's memory
-  return {.entry_photon = std::move(page.entry_photon),
+  return {.record_photon = std::move(page.record_photon),
           .nodes = std::move(nodes),
           .cell_start = std::move(page.cell_start)};
 }

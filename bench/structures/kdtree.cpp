@@ -20,19 +20,19 @@ constexpr std::size_t leaf_size = 8;
 
 /// Appends the nodes of a tree over points[order[i]] to `nodes` and brings `order` into the order
 /// of the leaves. Leaves hold up to leaf_size points (more where points coincide or the depth is
-/// used up) and refer to entries first_entry + position in `order`. Splits the longest side of the
+/// used up) and refer to records first_record + position in `order`. Splits the longest side of the
 /// points' box at its middle, slid to the nearest point where one side would be empty
 /// (Maneewongvatana and Mount, "It's okay to be skinny, if your friends are fat", 1999).
 struct TreeBuilder {
   std::span<const glm::vec3> points;
   int dimensions;  ///< 2 ignores z
-  std::uint32_t first_entry;
+  std::uint32_t first_record;
   std::vector<PhotileTreeNode>& nodes;
 
   /// Returns the index of the root.
   std::uint32_t build(std::span<std::uint32_t> order, std::uint32_t offset, int depth) {
     const auto node = static_cast<std::uint32_t>(nodes.size());
-    const std::uint32_t first = first_entry + offset;
+    const std::uint32_t first = first_record + offset;
     nodes.push_back(
         {0, PHOTILE_TREE_LEAF, first, first + static_cast<std::uint32_t>(order.size())});
     if (order.size() <= leaf_size || depth == PHOTILE_TREE_DEPTH) return node;
@@ -63,9 +63,9 @@ glm::vec2 project(const glm::vec3& p, const PhotileGrid& grid) {
           glm::dot(local, glm::vec3(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z))};
 }
 
-/// The tree of one list, whose part of `entries` it brings into the order of its leaves.
+/// The tree of one list, whose part of `records` it brings into the order of its leaves.
 std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list, int dimensions,
-                                     std::vector<std::uint32_t>& entries) {
+                                     std::vector<std::uint32_t>& records) {
   const auto members = lists.of(list);
   std::vector<glm::vec3> points(members.size());
   for (std::size_t i = 0; i < members.size(); ++i) {
@@ -76,16 +76,16 @@ std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list,
   std::iota(order.begin(), order.end(), 0u);
   std::vector<PhotileTreeNode> nodes;
   TreeBuilder{points, dimensions, lists.first[list], nodes}.build(order, 0, 0);
-  for (std::size_t i = 0; i < order.size(); ++i) entries[lists.first[list] + i] = members[order[i]];
+  for (std::size_t i = 0; i < order.size(); ++i) records[lists.first[list] + i] = members[order[i]];
   return nodes;
 }
 
 template <int dimensions>
 Index build_trees(const PhotonLists& lists) {
-  std::vector<std::uint32_t> entries(lists.members.size());
+  std::vector<std::uint32_t> records(lists.members.size());
   std::vector<std::vector<PhotileTreeNode>> trees(lists.size());
   tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t list) {
-    if (!lists.of(list).empty()) trees[list] = tree_of(lists, list, dimensions, entries);
+    if (!lists.of(list).empty()) trees[list] = tree_of(lists, list, dimensions, records);
   });
   std::vector<std::uint32_t> root(lists.size(), none);
   std::vector<PhotileTreeNode> nodes;
@@ -100,7 +100,7 @@ Index build_trees(const PhotonLists& lists) {
   constexpr std::size_t words = sizeof(PhotileTreeNode) / sizeof(std::uint32_t);
   device::Context& context = lists.context;
   return {
-      .entry_photon = context.upload(std::span<const std::uint32_t>(entries), "photon references"),
+      .record_photon = context.upload(std::span<const std::uint32_t>(records), "photon references"),
       .root = context.upload(std::span<const std::uint32_t>(root), "tree roots"),
       .nodes = context.upload(
           std::span(reinterpret_cast<const std::uint32_t*>(nodes.data()), words * nodes.size()),

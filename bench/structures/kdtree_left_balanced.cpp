@@ -51,8 +51,8 @@ Index build_left_balanced(const PhotonLists& lists) {
   for (std::size_t i = 0; i < count; ++i) {
     words[i / 16] |= std::uint32_t{builder.axis[i]} << (2 * (i % 16));
   }
-  return {.entry_photon = lists.context.upload(std::span<const std::uint32_t>(builder.order),
-                                               "photon references"),
+  return {.record_photon = lists.context.upload(std::span<const std::uint32_t>(builder.order),
+                                                "photon references"),
           .nodes = lists.context.upload(std::span<const std::uint32_t>(words), "nodes")};
 }
 

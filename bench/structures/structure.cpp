@@ -27,9 +27,9 @@ const Registration brute_force({.name = "brute-force", .photons_per_cell = 1e12f
 /// The library has no kernels but those it uses: these become known to it.
 void register_kernels() {
   const std::filesystem::path root = std::filesystem::path(PHOTILE_SOURCE_DIR) / "kernels";
-  for (const auto& entry : std::filesystem::directory_iterator(root / "structures")) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    device::register_kernel_source(std::filesystem::relative(entry.path(), root).string(),
+  for (const auto& record : std::filesystem::directory_iterator(root / "structures")) {
+    std::ifstream file(record.path(), std::ios::binary);
+    device::register_kernel_source(std::filesystem::relative(record.path(), root).string(),
                                    {std::istreambuf_iterator<char>(file), {}});
   }
 }

@@ -35,13 +35,13 @@ struct PhotonLists {
 
 /// The lists in a structure, on the device. What a structure does not have is empty.
 struct Index {
-  /// Indices of photons, in the order in which the structure keeps them: its entries. Those of a
+  /// Indices of photons, in the order in which the structure keeps them: its records. Those of a
   /// list stay where they were among all members.
-  device::Buffer<std::uint32_t> entry_photon = {};
+  device::Buffer<std::uint32_t> record_photon = {};
   device::Buffer<std::uint32_t> root = {};   ///< per list: its first node; none without photons
   device::Buffer<std::uint32_t> nodes = {};  ///< words, as the structure's kernel reads them
   device::Buffer<std::uint32_t> cell_start =
-      {};  ///< per cell its first entry, and the end of the last
+      {};  ///< per cell its first record, and the end of the last
 };
 
 /// A way to find the k nearest photons. All find the same.

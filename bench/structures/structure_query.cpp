@@ -40,14 +40,14 @@ StructureQuery::StructureQuery(const Structure& structure, std::shared_ptr<const
     const std::uint64_t bytes = std::min(global_list_bytes, context_.memory_limit() / 8);
     work_items_ = std::max(group, bytes / bytes_per_item / group * group);
     list_distance_ = context_.allocate<float>(work_items_ * neighbours, "candidate lists");
-    list_entry_ = context_.allocate<std::uint32_t>(work_items_ * neighbours, "candidate lists");
+    list_record_ = context_.allocate<std::uint32_t>(work_items_ * neighbours, "candidate lists");
   }
 }
 
 void StructureQuery::estimate(const estimate::PageHits& hits,
                               estimate::EstimateBuffers& estimates) {
   device::Defines defines = page_defines(hits.page);
-  maps::set_entry_defines(defines, store_.needs);
+  maps::set_record_defines(defines, store_.needs);
   sums_.set_defines(defines);
   if (store_.needs.normal_maps) defines.set("NORMAL_MAPS");
   estimate::set_density_defines(defines, parameters_.surface != nullptr, parameters_.kernel);
@@ -82,19 +82,19 @@ void StructureQuery::run_nearest(const estimate::PageHits& hits, device::Defines
 
 device::Defines StructureQuery::page_defines(const maps::MapPage& page) const {
   device::Defines defines = defines_;
-  if (page.entry_normal.size() > 0) defines.set("NORMALS");
+  if (page.record_normal.size() > 0) defines.set("NORMALS");
   return defines;
 }
 
 void StructureQuery::run(device::Launch& launch, const estimate::PageHits& hits) {
   const Index& index = indices_->at(hits.page.first_map);
-  launch.set("entry_count", hits.page.entry_count)
+  launch.set("record_count", hits.page.record_count)
       .set("root", index.root)
       .set("frames", hits.page.grids)
       .set("nodes", index.nodes)
       .set("cell_start", index.cell_start)
       .set("list_distance", list_distance_)
-      .set("list_entry", list_entry_);
+      .set("list_record", list_record_);
   PhotileQuery query = estimate::query_of(store_, hits, parameters_);
   pace_.run(hits.count, 1, [&](std::uint32_t first, std::uint32_t count) {
     query.first_hit = hits.first + first;

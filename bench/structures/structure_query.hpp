@@ -49,7 +49,7 @@ class StructureQuery final : public estimate::Query {
   device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
   device::Buffer<float> list_distance_;
-  device::Buffer<std::uint32_t> list_entry_;
+  device::Buffer<std::uint32_t> list_record_;
 };
 
 }  // namespace photile::structures

@@ -95,7 +95,7 @@ Index build_wide_bvh(const PhotonLists& lists) {
   const std::size_t nodes = std::max<std::size_t>(count_nodes(leaves_of(order.size())), 1);
   std::vector<std::uint32_t> words(nodes * PHOTILE_WIDE_NODE_WORDS);
   WideBvhBuilder(lists.photons.position, words).build(0, 0, order);
-  return {.entry_photon =
+  return {.record_photon =
               lists.context.upload(std::span<const std::uint32_t>(order), "photon references"),
           .nodes = lists.context.upload(std::span<const std::uint32_t>(words), "nodes")};
 }

@@ -31,9 +31,9 @@ std::vector<std::uint32_t> indices(std::size_t count) {
 
 /// Evenly spaced.
 std::vector<std::uint32_t> some_of(std::span<const std::uint32_t> index, std::size_t photons) {
-  const std::size_t wanted = std::clamp(affordable_photons / std::max<std::size_t>(photons, 1),
-                                        least_checked, most_checked);
-  const std::size_t step = std::max<std::size_t>((index.size() + wanted - 1) / wanted, 1);
+  const std::size_t requested = std::clamp(affordable_photons / std::max<std::size_t>(photons, 1),
+                                           least_checked, most_checked);
+  const std::size_t step = std::max<std::size_t>((index.size() + requested - 1) / requested, 1);
   std::vector<std::uint32_t> chosen;
   for (std::size_t i = 0; i < index.size(); i += step) chosen.push_back(index[i]);
   return chosen;

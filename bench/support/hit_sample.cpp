@@ -26,8 +26,8 @@ HitSample block_sample(const PrimaryHits& hits, std::size_t stride) {
   return hits_at(hits, std::move(index));
 }
 
-HitSample thinned(const HitSample& sample, std::size_t wanted) {
-  const std::size_t step = (sample.index.size() + wanted - 1) / wanted;
+HitSample thinned(const HitSample& sample, std::size_t requested) {
+  const std::size_t step = (sample.index.size() + requested - 1) / requested;
   std::vector<std::uint32_t> chosen;
   for (std::size_t i = 0; i < sample.index.size(); i += step) {
     chosen.push_back(static_cast<std::uint32_t>(i));

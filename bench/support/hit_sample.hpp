@@ -20,7 +20,7 @@ HitSample hits_at(const PrimaryHits& hits, std::vector<std::uint32_t> index);
 /// where `stride` is 1. A sample contains those of every multiple of its stride.
 HitSample block_sample(const PrimaryHits& hits, std::size_t stride);
 
-/// Every n-th hit of a sample, so that at most `wanted` are left.
-HitSample thinned(const HitSample& sample, std::size_t wanted);
+/// Every n-th hit of a sample, so that at most `requested` are left.
+HitSample thinned(const HitSample& sample, std::size_t requested);
 
 }  // namespace photile::bench

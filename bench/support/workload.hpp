@@ -1,4 +1,4 @@
-// What the benches search: scenes with photons and the points where density is wanted.
+// What the benches search: scenes with photons and the points where density is requested.
 #pragma once
 
 #include <cstdint>

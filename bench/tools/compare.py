@@ -40,9 +40,9 @@ def with_range(time):
     return f"{time['median']:.4g} [{time['min']:.4g}, {time['max']:.4g}]"
 
 
-def for_as_many_queries(time, of, wanted):
-    """What as many queries as `wanted` has would take: slow cases answer fewer."""
-    ratio = wanted.get("queries", 1) / (of.get("queries", 1) or 1) if "queries" in of else 1
+def for_as_many_queries(time, of, requested):
+    """What as many queries as `requested` has would take: slow cases answer fewer."""
+    ratio = requested.get("queries", 1) / (of.get("queries", 1) or 1) if "queries" in of else 1
     return {part: ratio * time[part] for part in ("median", "min", "max")}
 
 

@@ -67,9 +67,9 @@ class Builder:
 
     def objects_with(self, folders):
         """The archives' objects that hold source files of folders of the parts of host/."""
-        wanted = re.compile(rf"{ROOT}/host/\w+/({'|'.join(folders)})/")
+        requested = re.compile(rf"{ROOT}/host/\w+/({'|'.join(folders)})/")
         return [object_ for object_, words in self.commands.items() if object_.startswith(ARCHIVES)
-                and any(map(wanted.match, self._sources(words[-1])))]
+                and any(map(requested.match, self._sources(words[-1])))]
 
     def test_objects(self, folders):
         return [object_ for object_ in self.commands
@@ -80,8 +80,8 @@ class Builder:
         text = output_of(["ninja", "-t", "deps"], self.build)
         path = f"    {ROOT / file}\n"
         candidates = {block.split(":", 1)[0] for block in text.split("\n\n") if path in block + "\n"}
-        wanted = {object_ for object_ in self.commands if object_.startswith(ARCHIVES)}
-        return sorted(candidates & (wanted | set(self.test_objects(folders))))
+        requested = {object_ for object_ in self.commands if object_.startswith(ARCHIVES)}
+        return sorted(candidates & (requested | set(self.test_objects(folders))))
 
     @staticmethod
     def _sources(source):

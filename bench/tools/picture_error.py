@@ -61,7 +61,7 @@ def measure(picture, reference):
         "mean_ratio": a.mean() / b.mean(),
         "rel_mse": errors.mean(),
         "rel_mse_without_worst": kept.mean(),
-        "lamp_share": 1 - mask.mean(),
+        "lamp_fraction": 1 - mask.mean(),
     }
 
 

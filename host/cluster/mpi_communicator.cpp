@@ -36,13 +36,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Looks without a sleep between them: most answers are there soon.
-constexpr int quick_looks = 200;
+constexpr int quick_polls = 200;
 constexpr auto first_sleep = std::chrono::microseconds(20);
 constexpr auto longest_sleep = std::chrono::microseconds(500);
 
 /// How often the thread that beats looks at news; every tenth time it sends a beat.
 constexpr auto watch_period = std::chrono::milliseconds(100);
-constexpr int looks_between_beats = 10;
+constexpr int polls_between_beats = 10;
 constexpr int aborting = -1;  ///< in place of the code that a process tells
 
 /// Seconds for which a rank may be silent; 0: for ever.
@@ -66,10 +66,10 @@ void call(const Call& made) {
 void wait(MPI_Request& request) {
   auto sleep = first_sleep;
   int done = 0;
-  for (int look = 0;; ++look) {
+  for (int poll = 0;; ++poll) {
     call([&] { MPI_Test(&request, &done, MPI_STATUS_IGNORE); });
     if (done) return;
-    if (look < quick_looks) continue;
+    if (poll < quick_polls) continue;
     std::this_thread::sleep_for(sleep);
     sleep = std::min(2 * sleep, std::chrono::microseconds(longest_sleep));
   }
@@ -228,7 +228,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   bool other_failed() {
-    if (std::this_thread::get_id() == thread_ && !heard_ && !broken_) look_for_news();
+    if (std::this_thread::get_id() == thread_ && !heard_ && !broken_) poll_for_news();
     return heard_;
   }
 
@@ -265,7 +265,7 @@ class MpiCommunicator final : public Communicator {
     }
   }
 
-  void look_for_news() {
+  void poll_for_news() {
     int there = 0;
     call([&] { MPI_Request_get_status(news_request_, &there, MPI_STATUS_IGNORE); });
     if (there != 0) heard_ = true;
@@ -280,10 +280,11 @@ class MpiCommunicator final : public Communicator {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     const auto before = static_cast<int>((rank_ + size_ - 1) % size_);
     const auto after = static_cast<int>((rank_ + 1) % size_);
-    const int most_looks = patience() * static_cast<int>(std::chrono::seconds(1) / watch_period);
+    const int most_silent_polls =
+        patience() * static_cast<int>(std::chrono::seconds(1) / watch_period);
     int silent = 0;
-    for (int look = 0; !stop.stop_requested(); ++look) {
-      look_for_news();
+    for (int poll = 0; !stop.stop_requested(); ++poll) {
+      poll_for_news();
       call([&] {
         int heard = 1, sent = 1;
         if (beat_heard_ != MPI_REQUEST_NULL) MPI_Test(&beat_heard_, &heard, MPI_STATUS_IGNORE);
@@ -291,12 +292,12 @@ class MpiCommunicator final : public Communicator {
           MPI_Irecv(nullptr, 0, MPI_BYTE, before, tag, news_, &beat_heard_);
           silent = 0;
         }
-        if (look % looks_between_beats != 0) return;
+        if (poll % polls_between_beats != 0) return;
         // One on its way is enough: whoever does not take it is not to be sent more.
         if (beat_sent_ != MPI_REQUEST_NULL) MPI_Test(&beat_sent_, &sent, MPI_STATUS_IGNORE);
         if (sent != 0) MPI_Isend(nullptr, 0, MPI_BYTE, after, tag, news_, &beat_sent_);
       });
-      if (++silent > most_looks && most_looks > 0) give_up(before);
+      if (++silent > most_silent_polls && most_silent_polls > 0) give_up(before);
       std::this_thread::sleep_for(watch_period);
     }
   }

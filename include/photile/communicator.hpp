@@ -82,14 +82,14 @@ struct Shard {
   std::uint32_t index = 0, count = 1;
 
   /// This part has, of n elements, those from `begin(n)` up to, but without, `end(n)`.
-  std::uint64_t begin(std::uint64_t n) const { return place(index, n); }
-  std::uint64_t end(std::uint64_t n) const { return place(index + std::uint64_t{1}, n); }
+  std::uint64_t begin(std::uint64_t n) const { return begin_of_part(index, n); }
+  std::uint64_t end(std::uint64_t n) const { return begin_of_part(index + std::uint64_t{1}, n); }
 
   bool operator==(const Shard&) const = default;
 
  private:
   /// n * i / count, where the product may need more than 64 bits.
-  std::uint64_t place(std::uint64_t i, std::uint64_t n) const {
+  std::uint64_t begin_of_part(std::uint64_t i, std::uint64_t n) const {
     return n / count * i + n % count * i / count;
   }
 };

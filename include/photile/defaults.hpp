@@ -55,31 +55,32 @@ inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on 
 inline constexpr float survival_of_reflectance = 1.5f;
 /// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
 inline constexpr float strong_lobe = 0.2f;
-/// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lamps would
+/// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lights would
 /// be mottled.
 inline constexpr int least_rays = 16;
 /// Light samples for each ray of a node.
-inline constexpr int looks_per_ray = 2;
+inline constexpr int light_samples_per_ray = 2;
 /// Times as many rays where a sun or a sky shines, and light samples for each: what they bring,
 /// sunlit floor or a window, varies more.
 inline constexpr int times_in_the_open = 2;
-/// Where looks leave an error of more than this share of all light, as in penumbrae, a point looks
-/// so many times as often, but at most `most_looks_again` times: 2% shows as ragged borders.
-inline constexpr double tolerated_look_error = 0.02;
-inline constexpr int looks_again = 4, most_looks_again = 256;
+/// Where light samples leave an error of more than this fraction of all light, as in penumbrae, a
+/// point takes so many times as many, but at most `most_light_samples_again` times: 2% shows as
+/// ragged borders.
+inline constexpr double tolerated_light_sample_error = 0.02;
+inline constexpr int light_samples_again = 4, most_light_samples_again = 256;
 /// What a ray of a node counts for normals at a right angle to the node's is its light over the
 /// cosine, whose variance has no bound: up to so many times. Surface less than 2 degrees above the
 /// horizon then counts less for them, by 2% of what light of all heights alike does.
 inline constexpr float most_inverse_cosine = 32;
 /// Points on each side that a point is averaged with, and so many times: fewer at finer levels,
-/// where light changes from one place to the next.
+/// where light changes from one point to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
 /// Standard errors by which points may differ, and by which standard errors of direct light may.
 inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
 /// A light is judged apart from the others where the square of its own difference exceeds so many
 /// tolerated ones: 4.2 standard errors, which scatter in eight batches seldom brings about.
 inline constexpr double parting_difference = 2;
-/// Errors above this share of the light that they are of are not known: few rays found any.
+/// Errors above this fraction of the light that they are of are not known: few rays found any.
 inline constexpr double known_error = 0.5;
 /// What coarser nodes say of a point counts as much as so many nodes of its own few rays: it is a
 /// mean over many.
@@ -87,15 +88,15 @@ inline constexpr double weight_of_parents = 3;
 /// Shadow rays between points of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
 /// on the foot of a wall.
-inline constexpr float sight_lift = 0x1p-9f, visibility_left_out = 0x1p-5f;
+inline constexpr float visibility_ray_offset = 0x1p-9f, visibility_left_out = 0x1p-5f;
 /// Rays from a hit to the photons of its estimate are offset from the surface by this part of the
 /// radius.
 inline constexpr float photon_ray_offset = 0x1p-4f;
 
 // Glass
-/// Share of a pixel's sample from which on reflection and refraction are both followed. Glass seen
-/// from the front reflects 0.04.
-inline constexpr float least_glass_share = 0.02f;
+/// Fraction of a pixel's sample from which on reflection and refraction are both followed. Glass
+/// seen from the front reflects 0.04.
+inline constexpr float least_glass_fraction = 0.02f;
 
 // Gloss by rays
 /// What counts less than this in its sample goes on by chance, and counts this much then. A smooth
@@ -154,10 +155,10 @@ inline constexpr int validation_paths = 500'000;  ///< of each seed, over the se
 inline constexpr double sun_diameter_degrees = 0.533;  ///< as seen from the Earth, the mean
 
 // Portals
-/// Photons of a sun or a sky that start through portals; the others bring what comes another way.
+/// Photons of a sun or a sky that start through portals; the others carry what comes another way.
 inline constexpr double portal_photons = 0.85;
-/// Looks through portals, of those at suns and skies.
-inline constexpr double portal_looks = 0.6;
+/// Light samples that go through portals, of those of suns and skies.
+inline constexpr double portal_sample_fraction = 0.6;
 
 // Daylight
 inline constexpr int sky_patches = 577;            ///< Reinhart's, of a year of daylight
@@ -183,7 +184,7 @@ inline constexpr double glare_limit = 5;  ///< times the mean luminance, as eval
 inline constexpr double eye_height = 1.2;           ///< metres, seated (EN 12464-1)
 inline constexpr int glare_directions = 4;          ///< of view at each point of a grid
 inline constexpr int glare_picture_side = 512;      ///< pixels of a fisheye
-inline constexpr int luminaire_looks = 256;         ///< at the luminous openings of a luminaire
+inline constexpr int samples_of_luminaire = 256;    ///< at the luminous openings of a luminaire
 inline constexpr double small_source_area = 0.005;  ///< m2 projected: CIE 147, small sources
 inline constexpr double large_source_area = 1.5;    ///< m2: CIE 147, large sources
 /// cd/m2 of a glare source in a picture, the angle (radians) within which its pixels are one

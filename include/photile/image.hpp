@@ -42,7 +42,7 @@ struct Image : PictureHeader {
 PictureHeader read_header(const std::filesystem::path& file);
 
 /// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs), a PNG,
-/// JPEG, TIFF, WebP, BMP, GIF, Targa, PNM or Radiance picture. Integers become shares of the
+/// JPEG, TIFF, WebP, BMP, GIF, Targa, PNM or Radiance picture. Integers become fractions of the
 /// largest, as they are stored. Checks limits.hpp before decoding.
 /// Errors: InputError naming the file.
 Image read_image(const std::filesystem::path& file);
@@ -110,7 +110,7 @@ struct PictureError {
   /// Where that is: its upper left corner and size, pixels; empty where no tile counts.
   struct Region {
     int x = 0, y = 0, width = 0, height = 0;
-  } worst_place;
+  } worst_area;
   /// Peak signal-to-noise ratio of the displayed pictures, decibel: both exposed so that m becomes
   /// mid grey, and clipped at white. Infinite where they are equal.
   double psnr = 0;

@@ -25,7 +25,7 @@ struct LightGroups {
   std::vector<std::uint32_t> group_of;  ///< per light
   /// Per light: its part of its group's power; exactly 1 for a light alone. Lights of a group that
   /// is off share equally.
-  std::vector<double> share;
+  std::vector<double> fraction;
 };
 
 /// Lights with the same non-empty Light::group share a layer; every other light has its own.

@@ -91,7 +91,7 @@ class NodeSource {
 struct LightMapParameters {
   double spacing = defaults::light_map_spacing;  ///< metres, > 0: of the coarsest nodes, at most
   int levels = defaults::light_map_levels;       ///< the finest is spacing / 2^(levels - 1)
-  double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours on a sheet
+  double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours in a smooth component
   /// Cells are split where their corners differ by this part of the brightest, and by its noise.
   double contrast = defaults::light_map_contrast;
   /// Where the source knows how far away the surroundings are: cells larger than this part of it
@@ -117,14 +117,14 @@ struct LightMapStatistics {
 };
 
 /// Four nodes and their weights, which sum to 1.
-struct NodeBlend {
+struct BilinearWeights {
   std::array<std::uint32_t, 4> node;
   std::array<float, 4> weight;
 };
 
 /// All that light maps hold beside what follows from the scene and the parameters.
 struct LightMapContents {
-  struct Place {
+  struct Coordinates {
     std::uint32_t chart, x, y;  ///< in cells of the finest level
   };
   struct Tile {
@@ -132,7 +132,7 @@ struct LightMapContents {
     std::uint32_t chart, level, x, y;
   };
   std::string settings;  ///< in words: what the light depends on beside the scene and the photons
-  std::vector<Place> nodes;
+  std::vector<Coordinates> nodes;
   Estimates values;                    ///< of the nodes
   std::vector<float> error, distance;  ///< of the nodes, as NodeValues has them
   std::vector<Tile> tiles;             ///< each after the one that it refines
@@ -160,16 +160,16 @@ class LightMaps {
   /// The nodes around a point of an opaque surface. Thread-safe between fills. Where nodes are not
   /// valued yet it returns false, and the nodes of the finest level that is there; the first is
   /// `none` where no level is.
-  bool find(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend,
+  bool find(std::uint32_t oriented_face, const glm::vec3& position, BilinearWeights& bilinear,
             int levels = all_rounds) const;
 
   /// Standard error of the light of all lights between nodes, relative; 0 where the source does not
   /// tell it, or without light. Errors of neighbours are taken for the same.
-  double relative_error(const NodeBlend& blend) const;
+  double relative_error(const BilinearWeights& bilinear) const;
 
   /// Whether what stands between a position and its nodes matters: they differ by more than this
   /// part of the brightest, or all are dark, or something is close to one.
-  bool uneven(const NodeBlend& blend, double contrast) const;
+  bool uneven(const BilinearWeights& bilinear, double contrast) const;
 
   /// The point of the surface that a node stands for.
   struct NodePoint {

@@ -99,8 +99,8 @@ struct LuminousPanel {
 
 /// The reflectance of materials; parsed from MATERIAL=SHARE.
 struct ReflectanceChange {
-  std::string glob;  ///< of material names: *, ? and [...] as in a shell
-  double share = 0;  ///< luminous, of light from all directions, 0 to 1
+  std::string glob;     ///< of material names: *, ? and [...] as in a shell
+  double fraction = 0;  ///< luminous, of light from all directions, 0 to 1
   /// Splits at the last '='. SHARE is 0.5 or 50%. Errors: UsageError.
   static ReflectanceChange parse(const std::string& text);
 };

@@ -46,8 +46,7 @@ inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
 inline constexpr double max_coordinate = 1e12;
 inline constexpr std::uint64_t max_materials = 1'000'000;
 inline constexpr std::uint64_t max_lights = 10'000;
-inline constexpr std::uint64_t max_polygon_corners =
-    65'536;  ///< triangulated in a second or two
+inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulated in a second or two
 inline constexpr int max_node_depth = 512;
 /// Each takes 600 bytes and 2 us before a triangle of it is seen.
 inline constexpr std::uint64_t max_nodes = 250'000;
@@ -80,7 +79,7 @@ inline constexpr double max_light_power = 1e30;
 /// Lux of a sun or a sky: floats hold the radiance of all of its parts.
 inline constexpr double min_illuminance = 1e-30, max_illuminance = 1e30;
 inline constexpr double max_irradiance = 10'000;  ///< W/m2 of a sun or a sky, seven times the sun's
-/// Each line of photons and each look at the sky is held against all of them.
+/// Each line of photons and each light sample of the sky is held against all of them.
 inline constexpr std::size_t max_portals = 64;
 /// Degrees of a sun's disc: the light of a wider one is that of an environment.
 inline constexpr double max_sun_diameter_degrees = 90;

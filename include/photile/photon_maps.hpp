@@ -26,11 +26,11 @@ struct PhotonMapParameters {
 
 struct PhotonMapStatistics {
   std::uint64_t photons = 0;
-  std::uint64_t references = 0;  ///< entries over all maps; references / photons = copies
-  std::uint64_t maps = 0;        ///< that hold a photon
-  std::uint64_t mixed_maps = 0;  ///< of them, those whose queries filter by normal
+  std::uint64_t references = 0;            ///< records over all maps; references / photons = copies
+  std::uint64_t maps = 0;                  ///< that hold a photon
+  std::uint64_t normal_filtered_maps = 0;  ///< of them, those whose queries filter by normal
   std::uint64_t cells = 0;
-  std::uint64_t largest_map = 0;              ///< entries
+  std::uint64_t largest_map = 0;              ///< records
   std::vector<std::uint32_t> map_sizes = {};  ///< photons of each map that holds one, ascending
   std::uint64_t pages = 0;          ///< runs of maps that are moved to and from the device
   std::uint64_t device_bytes = 0;   ///< of all pages, wherever they lie
@@ -53,16 +53,16 @@ class PhotonMaps {
  public:
   /// Builds on the device. Errors: UsageError for a radius beyond the groups'; DeviceMemoryError
   /// when the device's memory does not suffice even page by page; Interrupted.
-  ///   wanted   per map of the groups: 1 for those to make, which hold what they would among all;
-  ///            empty: all
+  ///   requested   per map of the groups: 1 for those to make, which hold the same as among all;
+  ///               empty: all
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-             Progress& progress = Progress::none(), std::span<const std::uint8_t> wanted = {});
+             Progress& progress = Progress::none(), std::span<const std::uint8_t> requested = {});
   /// Builds the maps of photons that nobody else needs: their arrays are given back as soon as the
   /// maps hold copies, so that they do not lie in memory beside all of those.
   PhotonMaps(Device& device, const Scene& scene, Photons&& photons, const NeighbourGroups& groups,
              const PhotonMapParameters& parameters, Progress& progress = Progress::none(),
-             std::span<const std::uint8_t> wanted = {});
+             std::span<const std::uint8_t> requested = {});
   ~PhotonMaps();
   PhotonMaps(PhotonMaps&&) noexcept;
   PhotonMaps& operator=(PhotonMaps&&) noexcept;
@@ -70,7 +70,7 @@ class PhotonMaps {
   const PhotonMapStatistics& statistics() const;
   const PhotonMapParameters& parameters() const;
   Device& device() const;
-  /// Per oriented face: the map that serves it, `none` where no photon comes near. Empty where
+  /// Per oriented face: its map, `none` where no photon comes near. Empty where
   /// that is the oriented face itself.
   std::span<const std::uint32_t> map_of() const;
 
@@ -78,10 +78,10 @@ class PhotonMaps {
   friend const maps::MapStore& maps::store_of(const PhotonMaps& maps);
   friend PhotonMaps maps::maps_in(std::unique_ptr<maps::MapStore> store);
   explicit PhotonMaps(std::unique_ptr<maps::MapStore> store);
-  /// `spent`: the same photons where they may be given back, else null.
-  void build(Device& device, const Scene& scene, const Photons& photons, Photons* spent,
+  /// `consumed`: the same photons where they may be given back, else null.
+  void build(Device& device, const Scene& scene, const Photons& photons, Photons* consumed,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-             std::span<const std::uint8_t> wanted, Progress& progress);
+             std::span<const std::uint8_t> requested, Progress& progress);
 
   std::unique_ptr<maps::MapStore> store_;
 };

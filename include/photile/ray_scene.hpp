@@ -54,7 +54,7 @@ struct PrimaryHits {
   std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy
-  std::vector<float> share;  ///< of its sample, for its illuminance; empty where all are whole
+  std::vector<float> fraction;  ///< of its sample, for its illuminance; empty where all are whole
   /// Whether a coarse answer suffices, for its noise will not show (reflection_noise.hpp); empty
   /// where it does nowhere.
   std::vector<std::uint8_t> coarse;
@@ -63,8 +63,8 @@ struct PrimaryHits {
 };
 
 /// Light that needs no estimate: a light seen directly or through mirrors and glass, or what a hit
-/// gets straight from one. Adds to the layer of its light.
-struct SeenEmission {
+/// gets directly from one. Adds to the layer of its light.
+struct VisibleEmission {
   std::uint32_t pixel;
   std::uint32_t light;    ///< layer, into LightGroups::groups
   glm::vec3 radiance;     ///< throughput x radiance where the layer's power is 1
@@ -80,16 +80,16 @@ struct PrimaryHitParameters {
   /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
   int pass = 0;
   int passes = 1;
-  /// > 0: each hit gets the light that comes directly from lights by so many looks at them, and so
-  /// many directions of its own, and photons have to bring the rest alone
+  /// > 0: each hit gets the light that comes directly from lights by so many light samples, and so
+  /// many directions of its own, and photons have to carry the rest alone
   /// (PhotonTracerParameters::store_direct).
   int direct_rays = 0;
   /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
   /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
   bool lobe_rays = false;
   /// Samples follow both the reflection and the refraction of glass, as long as both count
-  /// (defaults::least_glass_share), and have a hit for each; else one by chance.
-  bool part_at_glass = false;
+  /// (defaults::least_glass_fraction), and have a hit for each; else one by chance.
+  bool split_at_glass = false;
   /// > 1: samples of a pixel belong to so many runs, and the pixel of what they see is that of a
   /// film so many times as wide, y * width * runs + x * runs + run. Runs follow each other in the
   /// sequence of the pixel.
@@ -99,7 +99,7 @@ struct PrimaryHitParameters {
 struct PrimaryHitBatch {
   PrimaryHits hits;
   PrimaryHits reflected;  ///< on surfaces seen in lobes; their illuminance is not the pixel's
-  std::vector<SeenEmission> emission;
+  std::vector<VisibleEmission> emission;
   std::uint64_t rays = 0;
 };
 
@@ -114,8 +114,8 @@ PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    int last_row, std::span<const std::uint32_t> map_of = {});
 
 /// Radiance that each light emits towards the front of its triangles where its layer's power is 1:
-/// its share of the layer / (pi A) x colour, A counting both sides of two-sided lights; of textured
-/// lights that of a white texel. Zero for lights without area.
+/// its fraction of the layer / (pi A) x colour, A counting both sides of two-sided lights; of
+/// textured lights that of a white texel. Zero for lights without area.
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene);
 
 }  // namespace photile

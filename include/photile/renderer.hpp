@@ -79,8 +79,8 @@ struct RenderParameters {
   float photons_per_cell = defaults::photons_per_cell;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
-  /// > 0: light directly from lights is found by so many looks at them from each hit. 0 = photons
-  /// bring it.
+  /// > 0: light directly from lights is found by so many light samples at each hit. 0 = photons
+  /// carry it.
   int direct_rays = 0;
   GlossMode gloss = GlossMode::automatic;
   LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/light-maps.md
@@ -104,8 +104,8 @@ struct RenderResult {
   /// What the picture was made with: as asked, and where that leaves a choice or cannot be had,
   /// what was found (the radius, of the first pass). Asked for these, `render` gives it again.
   RenderParameters used;
-  std::uint64_t stored_photons = 0;   ///< over all passes
-  std::vector<double> device_shares;  ///< each device's part of the hits, in [0, 1]
+  std::uint64_t stored_photons = 0;      ///< over all passes
+  std::vector<double> device_fractions;  ///< each device's part of the hits, in [0, 1]
 };
 
 /// Renders the picture of `camera`, one layer per light, on one device or several at once. Each
@@ -136,7 +136,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
                              Progress& progress = Progress::none());
 
 /// Whether lights of the scene have such caustics, which path tracing leaves out.
-bool has_unseen_caustics(const Scene& scene);
+bool has_hidden_caustics(const Scene& scene);
 
 /// What all settings of a rendering follow, where nothing else is said.
 enum class Quality {
@@ -168,7 +168,7 @@ void set_by_name(RenderParameters& parameters, std::string_view name,
                  const std::variant<std::uint64_t, double, std::string_view>& value);
 
 /// What photon maps are built from: all that depends on random numbers or takes long on the host.
-struct PreparedPhotons {
+struct TracedPhotons {
   Photons photons;
   NeighbourGroups groups;  ///< empty: found when maps are built
   double radius = 0;       ///< metres: of the maps; 0 where groups are not there
@@ -180,16 +180,16 @@ struct PreparedPhotons {
 
   bool has_groups() const { return radius > 0; }
 };
-using KeepPhotons = std::function<void(const PreparedPhotons&)>;
+using KeepPhotons = std::function<void(const TracedPhotons&)>;
 
 /// What a quick frame shows.
 struct DrawnFrame {
   /// Cells of light maps that it shows coarser than they should be.
   std::size_t lacking = 0;
-  std::size_t empty = 0;     ///< of them, those without any light: they have that of what is around
-  double lacking_share = 0;  ///< of the surface that is seen, in [0, 1]
-  double fill_seconds = 0;   ///< that went into nodes which were lacking
-  double draw_seconds = 0;   ///< that drawing the latest picture took
+  std::size_t empty = 0;  ///< of them, those without any light: they have that of what is around
+  double lacking_fraction = 0;  ///< of the surface that is seen, in [0, 1]
+  double fill_seconds = 0;      ///< that went into nodes which were lacking
+  double draw_seconds = 0;      ///< that drawing the latest picture took
 };
 
 /// How long a quick frame may value nodes that it lacks.
@@ -223,7 +223,7 @@ class SceneRenderer {
   /// Errors: those of `render`, and of `keep`; UsageError where the photons do not fit in memory at
   /// once, or where rays gather and `prepared` has no caustics apart.
   SceneRenderer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
-                PreparedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
+                TracedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
                 Progress& progress = Progress::none());
   ~SceneRenderer();
 

@@ -40,7 +40,7 @@ class EnvironmentMap {
   double solid_angle(int row) const;
   /// Index of the texel that a unit direction points to.
   std::size_t texel_towards(const glm::vec3& direction) const;
-  /// Direction of a point of the picture; `column` in [0, width], and the share `v` in [0, 1] of
+  /// Direction of a point of the picture; `column` in [0, width], and the fraction `v` in [0, 1] of
   /// the solid angle of its row that lies above.
   glm::dvec3 direction_at(double column, int row, double v) const;
 
@@ -60,7 +60,7 @@ class EnvironmentMap {
   glm::dvec3 integral_{0.0};
 };
 
-/// Axes of the spherical coordinates in which a lamp was measured, in the space of the lamp: its
+/// Axes of the spherical coordinates in which a luminaire was measured, in its own space: its
 /// -z axis is where it is aimed, as for lights of glTF.
 struct PhotometricAxes {
   glm::dvec3 pole{0.0, 0.0, -1.0};    ///< unit; polar angle 0
@@ -68,8 +68,9 @@ struct PhotometricAxes {
   glm::dvec3 quarter{0.0, 1.0, 0.0};  ///< unit; polar angle 90 degrees, azimuth 90 degrees
 };
 
-/// The part of a lamp that shines, as its photometric file gives it: a box, or an upright cylinder
-/// on a circle or an ellipse, around the lamp's axis. All zero where the file says nothing.
+/// The part of a luminaire that shines, as its photometric file gives it: a box, or an upright
+/// cylinder on a circle or an ellipse, around the luminaire's axis. All zero where the file says
+/// nothing.
 struct LuminousOpening {
   double along_zero = 0;     ///< metres along PhotometricAxes::zero; of a round one a diameter
   double along_quarter = 0;  ///< metres along PhotometricAxes::quarter
@@ -77,13 +78,13 @@ struct LuminousOpening {
   bool round = false;
 
   /// m2 of its projection onto a plane that faces `direction`.
-  ///   direction   unit, in the lamp's space, away from it
+  ///   direction   unit, in the luminaire's space, away from it
   double projected_area(const PhotometricAxes& axes, const glm::dvec3& direction) const;
 };
 
 /// Intensities on a grid of polar angles and azimuths, bilinear in the two angles between them and
-/// zero beyond the outermost. One point emits all light: the lamp's own size is left out, which is
-/// the approximation of the files themselves (far-field photometry).
+/// zero beyond the outermost. One point emits all light: the luminaire's own size is left out,
+/// which is the approximation of the files themselves (far-field photometry).
 class IntensityDistribution {
  public:
   /// `polar`, `azimuth`: degrees, strictly ascending, at least two of each; polar angles within
@@ -93,7 +94,7 @@ class IntensityDistribution {
                         const std::vector<double>& polar, const std::vector<double>& azimuth,
                         std::vector<float> intensity);
 
-  /// cd in a unit direction of the lamp's space.
+  /// cd in a unit direction of the luminaire's space.
   double intensity(const glm::dvec3& direction) const;
 
   /// lm: the integral of `intensity` over the sphere, in closed form.
@@ -113,11 +114,11 @@ class IntensityDistribution {
 
   /// A point in a cell; `u` of the way from its first azimuth to its last, `v` of the way between
   /// the cosines of its polar angles, each in [0, 1].
-  struct Place {
-    glm::dvec3 direction;  ///< unit, in the lamp's space
+  struct Sample {
+    glm::dvec3 direction;  ///< unit, in the luminaire's space
     double intensity;      ///< cd
   };
-  Place in_cell(std::size_t column, std::size_t row, double u, double v) const;
+  Sample in_cell(std::size_t column, std::size_t row, double u, double v) const;
   /// Largest intensity in a cell, cd.
   double cell_maximum(std::size_t column, std::size_t row) const;
 
@@ -215,7 +216,7 @@ struct Material {
   /// reflectance; `diffuse`, `specular` and `roughness` are then those of white texels.
   std::uint32_t metallic_roughness = none;
 
-  /// Share of the surface that is there, times the alpha of a texture.
+  /// Fraction of the surface that is there, times the alpha of a texture.
   float opacity = 1.0f;
   std::uint32_t opacity_texture = none;
   /// Where above 0, all of the surface is there from this opacity on, and nothing below.
@@ -246,7 +247,7 @@ struct Light {
   double power = 0;
 
   // Area lights: radiance over the triangles' front sides, or both sides, uniform or textured; with
-  // a `distribution` each point sends its share of the intensities, and less or more of radiance
+  // a `distribution` each point sends its part of the intensities, and less or more of radiance
   // by direction.
   std::vector<std::uint32_t> triangles;
   bool two_sided = false;
@@ -285,8 +286,8 @@ struct Light {
   }
 };
 
-/// A rectangle through which light from beyond the scene comes in: a window. Photons and looks at
-/// the sky prefer lines through portals; what is estimated does not depend on them.
+/// A rectangle through which light from beyond the scene comes in: a window. Photons and light
+/// samples of the sky prefer lines through portals; what is estimated does not depend on them.
 struct Portal {
   glm::vec3 corner{0.0f};  ///< metres
   glm::vec3 u{0.0f};       ///< its sides, at a right angle; light comes in along u x v
@@ -384,7 +385,7 @@ inline constexpr std::uint32_t side_of(std::uint32_t oriented_face) { return ori
 
 /// A point, and a direction, of the file's world in the scene's own coordinates, and back.
 glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world);
-glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& place);
+glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& position);
 glm::dvec3 direction_in_scene(const Scene& scene, const glm::dvec3& world);
 glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction);
 

@@ -28,7 +28,7 @@ struct Sensor {
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from
   /// `gather` only. False: light directly from lights within the scene, or through panes, is left
   /// out: what remains is indirect light, and that of sun and sky.
-  bool sees_lamps = true;
+  bool sees_lights = true;
   std::optional<SensorResponse> response = std::nullopt;  ///< `gather` only; none = its own
   glm::dvec3 facing{1.0, 0.0, 0.0};  ///< of half a cylinder: unit, at a right angle to `normal`
 };
@@ -57,7 +57,7 @@ struct GatherParameters {
 /// "Realistic image synthesis using photon mapping", 2001, chapter 9). The result's layers are one
 /// pixel wide, sensor i is row i: `radiance` is irradiance / pi, W/(m2 sr) or cd/m2 of a white
 /// plate there, and `illuminance` the luminance of irradiance. What mirrors and refracting glass
-/// throw onto a sensor from point, spot and directional lights is missing, see has_unseen_caustics.
+/// throw onto a sensor from point, spot and directional lights is missing, see has_hidden_caustics.
 /// `parameters.film` does not count. Errors: those of `render`; UsageError for rays out of
 /// limits.hpp.
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,

@@ -1,4 +1,5 @@
-// The surface that a density estimate divides by: sheets, facets, and a tree over what bounds them.
+// The surface that a density estimate divides by: components, regions, and a tree over what bounds
+// them.
 #pragma once
 
 #include <array>
@@ -20,21 +21,22 @@ struct DarkPart {
 
 /// What the area of a disc clipped to the surface needs to know of a scene.
 ///
-/// A *sheet* is a set of oriented faces that connect over edges which fold by no more than the
-/// angle of the neighbour groups; coplanar pieces that touch connect, too. Light reaches a sheet as
-/// a whole or not at all: the inside of a thin plate is a sheet on which no photon lands. So where
-/// photons are to be expected and next to none landed (behind a cabinet, above a ceiling),
-/// triangles are *dark*, and sheets and facets of their own.
+/// A *component* is a set of oriented faces that connect over edges which fold by no more than the
+/// angle of the neighbour groups; coplanar pieces that touch connect, too. Light reaches a
+/// component as a whole or not at all: the inside of a thin plate is a component on which no photon
+/// lands. So where photons are to be expected and next to none landed (behind a cabinet, above a
+/// ceiling), triangles are *dark*, and components and regions of their own.
 ///
-/// A *facet* is a set of connected triangles in one plane. A hit on a facet wider than twice the
-/// radius looks at the edges that bound it, and not at its triangles. Smaller facets, and those of
+/// A *region* is a set of connected triangles in one plane. A hit on a region wider than twice the
+/// radius looks at the edges that bound it, and not at its triangles. Smaller regions, and those of
 /// curved surfaces, are looked at triangle by triangle.
 ///
-/// Triangles that store no photons (mirrors, glass) have sheets and facets of their own, which stay
-/// dark. Coincident triangles count once.
+/// Triangles that store no photons (mirrors, glass) have components and regions of their own, which
+/// stay dark. Coincident triangles count once.
 ///
-/// A lit sheet may lie under others for the most part: the wall behind tiles is lit in the joints.
-/// Its triangles count with the fraction of their area that lies open, but for hits on that sheet.
+/// A lit component may lie under others for the most part: the wall behind tiles is lit in the
+/// joints. Its triangles count with the fraction of their area that lies open, but for hits on that
+/// component.
 ///
 /// *Unlit regions* of lit triangles count as holes in them, but for hits that lie in an unlit
 /// region: those are seen, and dark.
@@ -43,20 +45,20 @@ struct SurfaceIndex {
   double angle_degrees = 0;  ///< largest angle between the normals of neighbours
 
   std::vector<std::uint32_t> original;  ///< per oriented face: the first that coincides with it
-  /// Per triangle: its facet where hits look at the facet's border, else PHOTILE_NO_FACET.
-  std::vector<std::uint32_t> facet;
-  std::vector<std::uint32_t> sheet;  ///< per oriented face
-  std::vector<glm::vec3> normal;     ///< per oriented face, unit
-  std::vector<std::uint8_t> dark;    ///< per oriented face: 1 where next to no photon lands
-  std::vector<float> exposure;       ///< per oriented face, in [0, 1]
-  std::uint32_t sheets = 0;
+  /// Per triangle: its region where hits look at the region's border, else PHOTILE_NO_REGION.
+  std::vector<std::uint32_t> region;
+  std::vector<std::uint32_t> component;  ///< per oriented face
+  std::vector<glm::vec3> normal;         ///< per oriented face, unit
+  std::vector<std::uint8_t> dark;        ///< per oriented face: 1 where next to no photon lands
+  std::vector<float> open_fraction;      ///< per oriented face, in [0, 1]
+  std::uint32_t components = 0;
   std::vector<DarkPart> unlit_regions;            ///< in the order of their oriented faces
   std::vector<std::uint32_t> first_unlit_region;  ///< per oriented face, and their number; or empty
 
-  /// The sheet of a hit: of its triangle, or `sheets`, which stands for all unlit regions.
-  std::uint32_t sheet_at(std::uint32_t oriented_face, const glm::vec3& position) const;
+  /// The component of a hit: of its triangle, or `components`, which stands for all unlit regions.
+  std::uint32_t component_at(std::uint32_t oriented_face, const glm::vec3& position) const;
 
-  /// Border edges of facets, and triangles near other facets of similar normal, in a tree whose
+  /// Border edges of regions, and triangles near other regions of similar normal, in a tree whose
   /// root is node 0; no node where there are none.
   std::vector<PhotileSurfaceNode> nodes;
   std::vector<PhotileSurfaceLeaf> leaves;
@@ -64,7 +66,7 @@ struct SurfaceIndex {
   std::uint64_t bytes() const;
 };
 
-/// Finds sheets and facets and builds the tree. The result does not depend on the number of
+/// Finds components and regions and builds the tree. The result does not depend on the number of
 /// threads.
 ///   radius          metres, > 0: of the largest disc
 ///   landed          per oriented face: photons that landed there; what faces lit surface unlit
@@ -82,10 +84,10 @@ SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double ra
 /// Photons on each oriented face, those of other processes among them (Photons::of_all).
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons);
 
-/// Per sheet: 1 where a photon landed that is not one of the few on dark triangles, else 0; and 1
-/// for the unlit regions.
+/// Per component: 1 where a photon landed that is not one of the few on dark triangles, else 0; and
+/// 1 for the unlit regions.
 ///   landed   per oriented face: photons that landed there
-std::vector<std::uint8_t> lit_sheets(const SurfaceIndex& surface,
-                                     const std::vector<std::uint32_t>& landed);
+std::vector<std::uint8_t> lit_components(const SurfaceIndex& surface,
+                                         const std::vector<std::uint32_t>& landed);
 
 }  // namespace photile

@@ -5,13 +5,13 @@
 #include "estimate/estimate_hit.clh"
 
 // One worker per HITS_PER_ITEM hits of one map page, each of which expects the radius of the one
-// before. Photon records lie in planes of query.entry_stride; what no surface of the scene needs is
-// empty.
+// before. Photon records lie in planes of query.record_stride; what no surface of the scene needs
+// is empty.
 //   hit_surfaces                   with CLIPPED or NORMALS
-//   hit_lobes, entry_incoming      with GLOSSY
+//   hit_lobes, record_incoming      with GLOSSY
 //   grids                          per map of the page
-//   entry_light                    where there are several lights
-//   entry_normal                   with NORMALS
+//   record_light                    where there are several lights
+//   record_normal                   with NORMALS
 //   surface_nodes, surface_leaves  with CLIPPED
 //   radiance                       with GLOSSY
 //   slot_light, slots_taken        with many lights
@@ -23,15 +23,15 @@ __kernel WORKER_GROUP void estimate_by_selection(
     const PhotileQuery query, __global const PhotileHit* hits,
     __global const PhotileHitSurface* hit_surfaces, __global const PhotileHitLobe* hit_lobes,
     __global const PhotileGrid* grids, __global const uint* cell_start,
-    __global const uint* entry_photon, __global const float* entry_position,
-    __global const float* entry_flux, __global const LightIndex* entry_light,
-    __global const float* entry_incoming, __global const float* entry_normal,
+    __global const uint* record_photon, __global const float* record_position,
+    __global const float* record_flux, __global const LightIndex* record_light,
+    __global const float* record_incoming, __global const float* record_normal,
     __global const PhotileSurfaceNode* surface_nodes,
     __global const PhotileSurfaceLeaf* surface_leaves, __global float* irradiance,
     __global float* radiance, __global ushort* slot_light, __global uint* slots_taken) {
   WORKER_SPACE WorkerMemory memory;
-  const Entries entries = {query.entry_stride, entry_photon, entry_position,
-                           entry_flux,         entry_light,  entry_incoming};
+  const PhotonRecords records = {query.record_stride, record_photon, record_position,
+                                 record_flux,         record_light,  record_incoming};
   const Surface surface = {surface_nodes, surface_leaves, query.least_cosine};
   const Estimates estimates = {irradiance, radiance, slot_light, slots_taken};
   EmptyRadius empty = NO_EMPTY_RADIUS;
@@ -48,8 +48,8 @@ __kernel WORKER_GROUP void estimate_by_selection(
     Hit hit;
     load_hit(index, hits, hit_surfaces, hit_lobes, &hit);
     Candidates candidates;
-    begin_candidates(&candidates, &query, grid, cell_start, entry_position, entry_normal, &hit);
-    expected = estimate_hit(&candidates, &entries, grid, &surface, &hit, &query, expected, &empty,
+    begin_candidates(&candidates, &query, grid, cell_start, record_position, record_normal, &hit);
+    expected = estimate_hit(&candidates, &records, grid, &surface, &hit, &query, expected, &empty,
                             &estimates, &memory);
   }
 }

@@ -9,8 +9,8 @@
 __kernel WORKER_GROUP void nearest_by_selection(
     const PhotileQuery query, __global const PhotileHit* hits,
     __global const PhotileHitSurface* hit_surfaces, __global const PhotileGrid* grids,
-    __global const uint* cell_start, __global const uint* entry_photon,
-    __global const float* entry_position, __global const float* entry_normal,
+    __global const uint* cell_start, __global const uint* record_photon,
+    __global const float* record_position, __global const float* record_normal,
     __global uint* neighbours, __global float* squared_radius) {
   WORKER_SPACE WorkerMemory memory;
   const uint k = query.k;
@@ -29,7 +29,7 @@ __kernel WORKER_GROUP void nearest_by_selection(
     hit.position = vload3(0, hits[index].position);
     if (NORMALS) hit.face_normal = vload3(0, hit_surfaces[index].normal);
     Candidates candidates;
-    begin_candidates(&candidates, &query, grid, cell_start, entry_position, entry_normal, &hit);
+    begin_candidates(&candidates, &query, grid, cell_start, record_position, record_normal, &hit);
     Chunks chunks;
     Neighbourhood near;
     find_neighbourhood(&candidates, &chunks, k, k, query.radius, 0.0f, grid, &near, &memory);
@@ -41,18 +41,18 @@ __kernel WORKER_GROUP void nearest_by_selection(
       uint cell = candidates.block.first_cell;
       for (uint row = 0; row < candidates.block.height; ++row, cell += candidates.block.columns) {
         const uint end = cell_start[cell + candidates.block.width];
-        for (uint entry = cell_start[cell]; entry < end; ++entry) {
-          const float d = squared_distance(&candidates, entry);
+        for (uint record = cell_start[cell]; record < end; ++record) {
+          const float d = squared_distance(&candidates, record);
           const bool is_near =
-              pass == 0 ? d < near.below : d == near.below && entry_photon[entry] <= last_tied;
+              pass == 0 ? d < near.below : d == near.below && record_photon[record] <= last_tied;
           if (!is_near) continue;
-          if (LANE == 0) list[found] = entry_photon[entry];
+          if (LANE == 0) list[found] = record_photon[record];
           ++found;
           farthest = fmax(farthest, d);
         }
       }
       if (near.tied == 0) break;
-      last_tied = last_tied_photon(&candidates, near.below, near.tied, entry_photon);
+      last_tied = last_tied_photon(&candidates, near.below, near.tied, record_photon);
     }
     // The k-th is the farthest of the neighbours.
     if (LANE == 0) {

@@ -1,59 +1,60 @@
 // Build, step 1: which maps photons enter, and how many photons each map will hold.
 
-#include "grid/entry.clh"
+#include "grid/insertion.clh"
 #include "shared/symbols.clh"
 
-// One work-item per photon of a page; arguments as members of EnteringPhotons.
-// After: bit m of entered[i] says whether photon i enters its m-th candidate.
-__kernel void find_entered(const PhotilePhotonPage page, __global const float* position,
-                           __global const uint* oriented_face, __global const uint* map_of,
-                           __global const uint* list, __global const uint* list_offsets,
-                           __global const uint* list_members,
-                           __global const PhotileMapShape* shapes, __global const float* corners,
-                           __global uint* entered) {
-  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
+// One work-item per photon of a page; arguments as members of InsertedPhotons.
+// After: bit m of inserted[i] says whether photon i enters its m-th candidate.
+__kernel void find_insertions(const PhotilePhotonPage page, __global const float* position,
+                              __global const uint* oriented_face, __global const uint* map_of,
+                              __global const uint* list, __global const uint* list_offsets,
+                              __global const uint* list_members,
+                              __global const PhotileMapShape* shapes, __global const float* corners,
+                              __global uint* inserted) {
+  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
-    EnteringPhoton photon;
+    InsertedPhoton photon;
     load_photon(&photons, i, 0u, &photon);
     const uint count = min(photon.end - photon.first, REMEMBERED);
     uint bits = 0;
     for (uint m = 0; m < count; ++m) {
       if (enters_candidate(&photons, &photon, photon.first + m)) bits |= 1u << m;
     }
-    entered[i] = bits;
+    inserted[i] = bits;
   }
 }
 
 // One work-item per photon of a page.
 //   map_count           per map; zero before the first page
-//   normal, map_mixed   with PATCHES: 3 floats per oriented face; per map, zero before the first
-//   page
-// After: map_count holds the photons of this page, too; map_mixed is 1 for maps with a photon that
-// need not agree with every triangle of the map.
+//   normal, map_normal_filtered   with PATCHES: 3 floats per oriented face; per map, zero before
+//   the first page
+// After: map_count holds the photons of this page, too; map_normal_filtered is 1 for maps with a
+// photon that need not agree with every triangle of the map.
 __kernel void count_photons(const PhotilePhotonPage page, __global const float* position,
                             __global const uint* oriented_face, __global const uint* map_of,
                             __global const uint* list, __global const uint* list_offsets,
                             __global const uint* list_members,
                             __global const PhotileMapShape* shapes, __global const float* corners,
-                            __global const uint* entered, __global uint* map_count,
-                            __global const float* normal, __global uint* map_mixed) {
-  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
+                            __global const uint* inserted, __global uint* map_count,
+                            __global const float* normal, __global uint* map_normal_filtered) {
+  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
-    EnteringPhoton photon;
-    load_photon(&photons, i, entered[i], &photon);
-    for (uint m = next_entered(&photons, &photon, photon.first); m < photon.end;
-         m = next_entered(&photons, &photon, m + 1u)) {
+    InsertedPhoton photon;
+    load_photon(&photons, i, inserted[i], &photon);
+    for (uint m = next_insertion(&photons, &photon, photon.first); m < photon.end;
+         m = next_insertion(&photons, &photon, m + 1u)) {
       const uint map = list_members[m];
       atomic_inc(&map_count[map]);
       if (PATCHES) {
         __global const PhotileMapShape* shape = &shapes[map >> 1];
         const float3 axis = (float3)(shape->axis_x, shape->axis_y, shape->axis_z);
         const float cosine = dot3(vload3(oriented_face[i], normal), axis);
-        if ((map & 1u ? -cosine : cosine) < shape->certain_cosine) atomic_or(&map_mixed[map], 1u);
+        if ((map & 1u ? -cosine : cosine) < shape->certain_cosine)
+          atomic_or(&map_normal_filtered[map], 1u);
       }
     }
   }

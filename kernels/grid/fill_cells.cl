@@ -5,9 +5,9 @@
 // it to where c ends, which is where the next cell starts.
 
 #include "grid/cell.clh"
-#include "grid/entry.clh"
+#include "grid/insertion.clh"
 
-// Arguments of both kernels, besides members of EnteringPhotons:
+// Arguments of both kernels, besides members of InsertedPhotons:
 //   maps    of the page
 //   grids   one per map of the page
 
@@ -17,16 +17,16 @@ __kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange ma
                           __global const uint* map_of, __global const uint* list,
                           __global const uint* list_offsets, __global const uint* list_members,
                           __global const PhotileMapShape* shapes, __global const float* corners,
-                          __global const uint* entered, __global const PhotileGrid* grids,
+                          __global const uint* inserted, __global const PhotileGrid* grids,
                           __global uint* cell_start) {
-  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
+  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
-    EnteringPhoton photon;
-    load_photon(&photons, i, entered[i], &photon);
-    for (uint m = next_entered(&photons, &photon, photon.first); m < photon.end;
-         m = next_entered(&photons, &photon, m + 1u)) {
+    InsertedPhoton photon;
+    load_photon(&photons, i, inserted[i], &photon);
+    for (uint m = next_insertion(&photons, &photon, photon.first); m < photon.end;
+         m = next_insertion(&photons, &photon, m + 1u)) {
       const uint map = list_members[m];
       if (map < maps.first_map || map >= maps.last_map) continue;
       __global const PhotileGrid* grid = &grids[map - maps.first_map];
@@ -37,29 +37,29 @@ __kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange ma
 }
 
 // One work-item per photon. Before: cell_start is the exclusive scan of what count_cells left.
-// After: entry_photon holds the photons of each cell in the order in which work-items came
+// After: record_photon holds the photons of each cell in the order in which work-items came
 // (sort_cells makes it stable); once all pages are scattered, cell_start[c] is where cell c starts.
 __kernel void scatter(const PhotilePhotonPage page, const PhotileMapRange maps,
                       __global const float* position, __global const uint* oriented_face,
                       __global const uint* map_of, __global const uint* list,
                       __global const uint* list_offsets, __global const uint* list_members,
                       __global const PhotileMapShape* shapes, __global const float* corners,
-                      __global const uint* entered, __global const PhotileGrid* grids,
-                      __global uint* cell_start, __global uint* entry_photon) {
-  const EnteringPhotons photons = {position,        oriented_face,    map_of,       list,
+                      __global const uint* inserted, __global const PhotileGrid* grids,
+                      __global uint* cell_start, __global uint* record_photon) {
+  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
                                    page.first_list, list_offsets,      list_members, shapes,
                                    corners,         page.squared_reach};
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
-    EnteringPhoton photon;
-    load_photon(&photons, i, entered[i], &photon);
-    for (uint m = next_entered(&photons, &photon, photon.first); m < photon.end;
-         m = next_entered(&photons, &photon, m + 1u)) {
+    InsertedPhoton photon;
+    load_photon(&photons, i, inserted[i], &photon);
+    for (uint m = next_insertion(&photons, &photon, photon.first); m < photon.end;
+         m = next_insertion(&photons, &photon, m + 1u)) {
       const uint map = list_members[m];
       if (map < maps.first_map || map >= maps.last_map) continue;
       __global const PhotileGrid* grid = &grids[map - maps.first_map];
       const int2 cell = cell_of(project(photon.position, grid), grid);
-      const uint entry = atomic_inc(&cell_start[cell_index(cell, grid) + 1u]);
-      entry_photon[entry] = page.first_photon + i;
+      const uint record = atomic_inc(&cell_start[cell_index(cell, grid) + 1u]);
+      record_photon[record] = page.first_photon + i;
     }
   }
 }

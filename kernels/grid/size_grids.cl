@@ -12,7 +12,7 @@
 //   shapes           one per pair of maps
 //   map_count        photons per map, from count_photons
 //   map_density_ratio     per map: density around a photon over the mean density of the surface
-//   map_mixed        per map, from count_photons; with PATCHES
+//   map_normal_filtered        per map, from count_photons; with PATCHES
 //   radius           metres
 //   photons_per_cell aimed at
 // After: grids[i] is complete but for first_cell; cell_total[i] = columns * rows, 0 without
@@ -22,8 +22,9 @@
 // Minkowski sum with a disc), which is where photons of the map can be.
 __kernel void size_grids(uint map_total, uint first_map, __global const PhotileMapShape* shapes,
                          __global const uint* map_count, __global const float* map_density_ratio,
-                         __global const uint* map_mixed, float radius, float photons_per_cell,
-                         __global PhotileGrid* grids, __global uint* cell_total) {
+                         __global const uint* map_normal_filtered, float radius,
+                         float photons_per_cell, __global PhotileGrid* grids,
+                         __global uint* cell_total) {
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
     const uint map = first_map + i;
     const uint count = map_count[map];
@@ -63,15 +64,15 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
     grid.slack = 16.0f * FLT_EPSILON * (width_u + width_v);
     grid.columns = (uint)ceil(width_u / cell_width);
     grid.rows = (uint)ceil(width_v / cell_height);
-    if (PATCHES) grid.mixed = map_mixed[map];
+    if (PATCHES) grid.normal_filtered = map_normal_filtered[map];
     grids[i] = grid;
     cell_total[i] = grid.columns * grid.rows;
   }
 }
 
 // One work-item per map. Before: first_cell holds the exclusive scan of cell_total.
-__kernel void place_grids(uint map_total, __global const uint* first_cell,
-                          __global PhotileGrid* grids) {
+__kernel void lay_out_grids(uint map_total, __global const uint* first_cell,
+                            __global PhotileGrid* grids) {
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
     grids[i].first_cell = first_cell[i];
   }

@@ -1,4 +1,4 @@
-// Build, step 6: bring the photons of each cell into ascending order. Work-items scatter in any
+// Build, step 6: put the photons of each cell into ascending order. Work-items scatter in any
 // order; sorted, the map is the same on every run and runtime.
 //
 // Cells up to PHOTILE_INSERTION_LIMIT are sorted by insertion, larger ones by heap sort, or with
@@ -44,17 +44,17 @@ static void heap_sort(__global uint* values, uint count) {
 // One work-item per cell: sorts it, or with IN_GROUPS lists crowded ones in crowded_cell. Before:
 // crowded[0] is zero.
 __kernel void sort_cells(uint cell_count, __global const uint* cell_start,
-                         __global uint* entry_photon, __global uint* crowded,
+                         __global uint* record_photon, __global uint* crowded,
                          __global uint* crowded_cell) {
   for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
     const uint start = cell_start[cell];
     const uint count = cell_start[cell + 1] - start;
     if (count <= PHOTILE_INSERTION_LIMIT) {
-      insertion_sort(entry_photon + start, count);
+      insertion_sort(record_photon + start, count);
     } else if (IN_GROUPS) {
       crowded_cell[atomic_inc(crowded)] = cell;
     } else {
-      heap_sort(entry_photon + start, count);
+      heap_sort(record_photon + start, count);
     }
   }
 }
@@ -67,12 +67,12 @@ __kernel void sort_cells(uint cell_count, __global const uint* cell_start,
 // cell are those of Batcher's merge exchange (Knuth, "The Art of Computer Programming", 5.2.2,
 // algorithm M), for any number of values.
 __kernel __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) void sort_crowded(
-    __global const uint* cell_start, __global uint* entry_photon, __global const uint* crowded,
+    __global const uint* cell_start, __global uint* record_photon, __global const uint* crowded,
     __global const uint* crowded_cell) {
   const uint cells = crowded[0];
   for (uint i = get_group_id(0); i < cells; i += get_num_groups(0)) {
     const uint cell = crowded_cell[i];
-    __global uint* values = entry_photon + cell_start[cell];
+    __global uint* values = record_photon + cell_start[cell];
     const uint count = cell_start[cell + 1] - cell_start[cell];
     const uint top = 1u << (31 - clz(count - 1u));  // the largest power of two below count
     for (uint p = top; p > 0; p /= 2) {

@@ -22,9 +22,9 @@ __kernel void count_buckets(uint photon_count, __global const float* position,
 // Before: cell_start is scanned.
 __kernel void fill_buckets(uint photon_count, __global const float* position,
                            __global const PhotileHashedGrid* grid, __global uint* cell_start,
-                           __global uint* entry_photon) {
+                           __global uint* record_photon) {
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const uint bucket = bucket_of(grid, hashed_cell_of(grid, vload3(i, position)));
-    entry_photon[atomic_inc(&cell_start[bucket + 1u])] = i;
+    record_photon[atomic_inc(&cell_start[bucket + 1u])] = i;
   }
 }

@@ -47,7 +47,7 @@ static void nearest_in_subtree(Search* search, uint root, __global const Photile
         ++search->nodes;
         node = nodes[here.node];
       }
-      offer_entries(search, node.first, node.last, list);
+      offer_records(search, node.first, node.last, list);
     }
     if (depth == 0) break;
     here = stack[--depth];

@@ -11,8 +11,8 @@
 typedef struct {
   float split;        /* inner node: coordinate of the plane */
   unsigned int axis;  /* 0, 1, 2, or PHOTILE_TREE_LEAF */
-  unsigned int first; /* leaf: first entry; inner node: index of the upper child */
-  unsigned int last;  /* leaf: one past the last entry */
+  unsigned int first; /* leaf: first record; inner node: index of the upper child */
+  unsigned int last;  /* leaf: one past the last record */
 } PhotileTreeNode;
 
 #endif

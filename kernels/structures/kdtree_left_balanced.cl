@@ -1,5 +1,5 @@
 // Nearest photons in a left-balanced kd-tree without pointers and without a stack: Wald, "A
-// Stack-Free Traversal Algorithm for Left-Balanced k-d Trees" (2022). Node i is entry i, its
+// Stack-Free Traversal Algorithm for Left-Balanced k-d Trees" (2022). Node i is record i, its
 // children are 2 i + 1 and 2 i + 2. Where a search came from says what it does next: from the
 // parent, it takes the node's photon and goes to the side of the hit; from that child to the other,
 // if that may hold a photon within the cut; from there back.
@@ -9,14 +9,14 @@
 
 #include "structures/search.clh"
 
-// Words hold the axes of entries, two bits each: entry i's at 2 (i % 16) of word i / 16.
+// Words hold the axes of records, two bits each: record i's at 2 (i % 16) of word i / 16.
 static void find_nearest(Search* search, const Structure* in, uint photons, NearestList* list) {
-  const uint entry_count = in->entry_count;
+  const uint record_count = in->record_count;
   const uint outside = 0xFFFFFFFFu;  // the parent of the root
   uint node = 0, from = outside;
   while (node != outside) {
     const uint parent = node == 0 ? outside : (node - 1) / 2;
-    if (node >= entry_count) {  // the side of the hit may be empty where the other is not
+    if (node >= record_count) {  // the side of the hit may be empty where the other is not
       from = node;
       node = parent;
       continue;
@@ -30,7 +30,7 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
       ++search->nodes;
       ++search->photons;
       const float squared_distance = (dx * dx + dy * dy) + dz * dz;
-      if (squared_distance <= cut_of(list)) offer_entry(search, squared_distance, node, list);
+      if (squared_distance <= cut_of(list)) offer_record(search, squared_distance, node, list);
     }
     const uint axis = (in->nodes[node / 16] >> (2 * (node % 16))) & 3u;
     const float to_plane = axis == 0 ? dx : axis == 1 ? dy : dz;
@@ -38,8 +38,8 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
     const uint farther = child + (to_plane < 0.0f ? 0u : 1u);
     uint next = parent;
     if (from_parent) {
-      if (child < entry_count) next = nearer;
-    } else if (from == nearer && farther < entry_count && to_plane * to_plane <= cut_of(list)) {
+      if (child < record_count) next = nearer;
+    } else if (from == nearer && farther < record_count && to_plane * to_plane <= cut_of(list)) {
       next = farther;
     }
     from = node;

@@ -2,8 +2,8 @@
 // photons, both looked at as one vector; the idea is that of Wald, Benthin and Boulos, "Getting rid
 // of packets" (2008). Nearest children first, with a stack.
 
-#include "structures/wide_bvh.h"
 #include "structures/search.clh"
+#include "structures/wide_bvh.h"
 
 typedef struct {
   uint node;
@@ -24,7 +24,7 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
     if (here.squared_distance <= cut_of(list)) {
       if (here.node & PHOTILE_WIDE_LEAF) {
         const uint first = (here.node & ~PHOTILE_WIDE_LEAF) * 8;
-        offer_entries(search, first, min(first + 8, in->entry_count), list);
+        offer_records(search, first, min(first + 8, in->record_count), list);
       } else {
         ++search->nodes;
         __global const uint* node = in->nodes + (size_t)here.node * PHOTILE_WIDE_NODE_WORDS;
@@ -39,12 +39,12 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
           const Pending child = {node[48 + i], distances[i]};
           // Boxes that are not there are infinitely far.
           if (child.squared_distance > cut_of(list)) continue;
-          int place = depth++;  // the nearest on top
-          for (; place > bottom && stack[place - 1].squared_distance < child.squared_distance;
-               --place) {
-            stack[place] = stack[place - 1];
+          int slot = depth++;  // the nearest on top
+          for (; slot > bottom && stack[slot - 1].squared_distance < child.squared_distance;
+               --slot) {
+            stack[slot] = stack[slot - 1];
           }
-          stack[place] = child;
+          stack[slot] = child;
         }
       }
     }

@@ -50,8 +50,8 @@ struct BakedRoom {
   BakedRoom(const Scene& scene, LightMaps& maps, NodeSource& source,
             const bake::BakeParameters& parameters)
       : rays(scene),
-        sight(rays, maps),
-        baked(scene, maps, source, sight, parameters, Progress::none()),
+        visibility(rays, maps),
+        baked(scene, maps, source, visibility, parameters, Progress::none()),
         texels(baked.layer(0)) {}
 
   float read(const Scene& scene, const glm::vec3& position, std::uint32_t side) const {
@@ -66,7 +66,7 @@ struct BakedRoom {
   }
 
   RayScene rays;
-  cache::NodeVisibility sight;
+  cache::NodeVisibility visibility;
   bake::BakedLight baked;
   std::vector<glm::vec3> texels;
 };

@@ -35,7 +35,7 @@ class Measures(unittest.TestCase):
         self.assertAlmostEqual(figures["mean_ratio"], (2 + 3 + 1.5) / 4)
         self.assertAlmostEqual(
             figures["rel_mse"], (3 / (1 + floor) + 1 / (4 + floor) + 0.25 / (1 + floor)) / 3)
-        self.assertAlmostEqual(figures["lamp_share"], 1 / 4)
+        self.assertAlmostEqual(figures["lamp_fraction"], 1 / 4)
 
     def test_the_worst_twentieth_of_the_pixels_is_left_out(self):
         reference = grey(*[[1.0] * 10] * 10)

@@ -40,9 +40,9 @@ TEST_CASE("Without nodes there is no light in space") {
 
 TEST_CASE("Light that is the same on all surfaces is the same in all space") {
   const LitSpace space([](const glm::vec3&, std::uint32_t) { return 3.0f; });
-  for (const glm::vec3& place : {glm::vec3(2, 2, 1), glm::vec3(0.1f), glm::vec3(-50, 0, 90)}) {
+  for (const glm::vec3& at : {glm::vec3(2, 2, 1), glm::vec3(0.1f), glm::vec3(-50, 0, 90)}) {
     for (const glm::vec3& normal : {upwards, -upwards, aslant}) {
-      CHECK(space.ambient.irradiance(place, normal).y == Approx(3.0f));
+      CHECK(space.ambient.irradiance(at, normal).y == Approx(3.0f));
     }
   }
 }

@@ -16,10 +16,10 @@ std::set<std::uint32_t> charts_of(const Charts& charts) {
   return {charts.chart_of().begin(), charts.chart_of().end()};
 }
 
-glm::dvec3 point_of(const Scene& scene, const Charts::Owner& owner) {
-  const auto [a, b, c] = scene.corners(owner.where.triangle);
-  return glm::dvec3(a) + double{owner.where.u} * glm::dvec3(b - a) +
-         double{owner.where.v} * glm::dvec3(c - a);
+glm::dvec3 point_of(const Scene& scene, const Charts::Support& support) {
+  const auto [a, b, c] = scene.corners(support.where.triangle);
+  return glm::dvec3(a) + double{support.where.u} * glm::dvec3(b - a) +
+         double{support.where.v} * glm::dvec3(c - a);
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
     std::set<int> met;
     for (const std::uint32_t x : {0u, last_x}) {
       for (const std::uint32_t y : {0u, last_y}) {
-        const glm::dvec3 point = point_of(scene, charts.owner({i, x, y}, levels));
+        const glm::dvec3 point = point_of(scene, charts.support({i, x, y}, levels));
         int corner = 0;
         for (const glm::vec3& expected : {origin, origin + u, origin + v, origin + u + v}) {
           if (glm::length(point - glm::dvec3(expected)) < 1e-6) met.insert(corner);
@@ -92,11 +92,11 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
     }
     CHECK(met.size() == 4);
     // A node within: the point of the plane below it.
-    const Charts::Owner owner = charts.owner({i, 101, 40}, levels);
-    const glm::dvec3 place = chart.origin + 101.0 / 8 * chart.spacing.x * chart.across +
-                             40.0 / 8 * chart.spacing.y * chart.along;
-    CHECK(glm::length(point_of(scene, owner) - place) < 1e-6);
-    CHECK(charts.chart_of()[oriented(owner.where.triangle, owner.side)] == i);
+    const Charts::Support support = charts.support({i, 101, 40}, levels);
+    const glm::dvec3 position = chart.origin + 101.0 / 8 * chart.spacing.x * chart.across +
+                                40.0 / 8 * chart.spacing.y * chart.along;
+    CHECK(glm::length(point_of(scene, support) - position) < 1e-6);
+    CHECK(charts.chart_of()[oriented(support.where.triangle, support.side)] == i);
   }
 }
 
@@ -112,15 +112,15 @@ TEST_CASE("A node beyond an edge stands for the nearest point of the edge") {
     const cache::Chart& chart = charts[i];
     for (std::uint32_t x = 0; x <= chart.columns; ++x) {
       for (std::uint32_t y = 0; y <= chart.rows; ++y) {
-        const glm::dvec3 place =
+        const glm::dvec3 position =
             chart.origin + x * chart.spacing.x * chart.across + y * chart.spacing.y * chart.along;
         // The nearest point of the triangle x, y >= 0, x + y <= 1, by cases.
-        glm::dvec2 p = glm::max(glm::dvec2(place), 0.0);
-        if (place.x + place.y > 1) {
-          const double t = glm::clamp(0.5 * (1 + place.x - place.y), 0.0, 1.0);
+        glm::dvec2 p = glm::max(glm::dvec2(position), 0.0);
+        if (position.x + position.y > 1) {
+          const double t = glm::clamp(0.5 * (1 + position.x - position.y), 0.0, 1.0);
           p = {t, 1 - t};
         }
-        const glm::dvec3 point = point_of(scene, charts.owner({i, x, y}, 1));
+        const glm::dvec3 point = point_of(scene, charts.support({i, x, y}, 1));
         REQUIRE(glm::length(point - glm::dvec3(p, 0.0)) < 1e-6);
       }
     }
@@ -148,7 +148,7 @@ TEST_CASE("Owners in charts of many triangles are those that looking at all find
     const cache::Chart& chart = with_trees[i];
     for (std::uint32_t x = 0; x <= 8 * chart.columns; x += 3) {
       for (std::uint32_t y = 0; y <= 8 * chart.rows; y += 5) {
-        const auto a = with_trees.owner({i, x, y}, 4), b = without.owner({i, x, y}, 4);
+        const auto a = with_trees.support({i, x, y}, 4), b = without.support({i, x, y}, 4);
         REQUIRE(a.where.triangle == b.where.triangle);
         REQUIRE(a.where.u == b.where.u);
         REQUIRE(a.where.v == b.where.v);

@@ -42,13 +42,13 @@ struct GatheredMaps {
 
   /// Illuminance of all lights at a hit.
   double lux(const PrimaryHits& hits, std::size_t hit) const {
-    NodeBlend blend;
-    REQUIRE(maps.find(hits.oriented_face[hit], hits.position[hit], blend));
+    BilinearWeights bilinear;
+    REQUIRE(maps.find(hits.oriented_face[hit], hits.position[hit], bilinear));
     double sum = 0;
-    for (std::size_t i = 0; i < blend.node.size(); ++i) {
-      estimate::for_each_estimate(maps.values(), blend.node[i], parameters.powers.size(),
+    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+      estimate::for_each_estimate(maps.values(), bilinear.node[i], parameters.powers.size(),
                                   [&](std::size_t layer, std::size_t value) {
-                                    sum += double{blend.weight[i]} * parameters.powers[layer] *
+                                    sum += double{bilinear.weight[i]} * parameters.powers[layer] *
                                            luminance(glm::dvec3(maps.values().irradiance[value]));
                                   });
     }
@@ -141,7 +141,7 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   maps.fill(floor);
   const auto [rms, mean] = errors_of(maps, floor, truth);
   const cache::GatheredIrradiance raw =
-      plain.gather({.rays = 32, .looks = 32}).gather(floor, numbers(floor.size()));
+      plain.gather({.rays = 32, .light_samples = 32}).gather(floor, numbers(floor.size()));
   double squares = 0;
   for (std::size_t i = 0; i < floor.size(); ++i) {
     squares +=
@@ -258,7 +258,7 @@ TEST_CASE("gathered nodes: many lights, each in its layer, are what their group 
   together.fill(hits);
   // Each layer is averaged by its own noise: what is left of it differs, the light does not.
   const cache::GatheredIrradiance many_rays =
-      grouped.gather({.rays = 400, .looks = 400}).gather(hits, numbers(hits.size()));
+      grouped.gather({.rays = 400, .light_samples = 400}).gather(hits, numbers(hits.size()));
   const auto errors = [&](const std::vector<double>& lux) {
     double sum = 0, truth = 0, squares = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {

@@ -318,7 +318,7 @@ TEST_CASE("gathering: the same bits in any order of points and on any number of 
   const std::vector<std::uint64_t> number = numbers(sensors.size());
   cache::IrradianceGatherParameters parameters;
   parameters.rays = 512;
-  parameters.looks = 16;
+  parameters.light_samples = 16;
   const cache::GatheredIrradiance expected = room.gather(parameters).gather(hits, number);
 
   // Every seventh point after another: 700 has to be put in another order without a remainder.
@@ -387,7 +387,7 @@ TEST_CASE("gathering: parameters out of range are refused") {
   };
   refused({.rays = -1});
   refused({.rays = 1'000'000});
-  refused({.looks = -1});
+  refused({.light_samples = -1});
   refused({.batches = 1});
 }
 

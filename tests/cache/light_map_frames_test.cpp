@@ -142,13 +142,13 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
   }
   CHECK(fine.drawn.lacking > 0);
   CHECK(fine.drawn.empty == 0);
-  CHECK(fine.drawn.lacking_share == 1);
+  CHECK(fine.drawn.lacking_fraction == 1);
   fine.draw(camera, 1e-7, 1.0f, 1, &coarse.frames);  // a few nodes
-  CHECK(fine.drawn.lacking_share > 0);
-  CHECK(fine.drawn.lacking_share < 1);
+  CHECK(fine.drawn.lacking_fraction > 0);
+  CHECK(fine.drawn.lacking_fraction < 1);
   const auto of_fine = fine.draw(camera, all, 1.0f, 1, &coarse.frames);
   CHECK(fine.drawn.lacking == 0);
-  CHECK(fine.drawn.lacking_share == 0);
+  CHECK(fine.drawn.lacking_fraction == 0);
   CHECK(same_pixels(of_fine, fine.draw(camera, all)));
 
   DrawnRoom empty(constant(1.0f)), waiting(constant(2.0f));
@@ -170,7 +170,7 @@ TEST_CASE("Pictures of one frame get better until nothing is lacking, chart by c
   std::vector<double> lacking;
   std::size_t changing = 0;  // pictures that show both
   const auto show = [&](const DrawnFrame& drawn) {
-    lacking.push_back(drawn.lacking_share);
+    lacking.push_back(drawn.lacking_fraction);
     std::vector<float> light_of_chart(fine.maps.charts().size(), 0.0f);
     std::size_t of_fine = 0;
     for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {

@@ -253,11 +253,11 @@ TEST_CASE(
   CHECK(fresh.asked < refined.asked);
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const auto read_coarse = [&](const LightMaps& maps) {
-      NodeBlend blend;
-      REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend, 1));
+      BilinearWeights bilinear;
+      REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear, 1));
       float sum = 0;
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        sum += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+        sum += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
       }
       return sum;
     };

@@ -77,11 +77,11 @@ inline PrimaryHits points_on(const Scene& scene, int count) {
 
 /// What light maps say of a point; all of its nodes are valued.
 inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_t oriented_face) {
-  NodeBlend blend;
-  if (!maps.find(oriented_face, position, blend)) return -1.0f;
+  BilinearWeights bilinear;
+  if (!maps.find(oriented_face, position, bilinear)) return -1.0f;
   float sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    sum += blend.weight[i] * maps.values().irradiance[blend.node[i]].x;
+    sum += bilinear.weight[i] * maps.values().irradiance[bilinear.node[i]].x;
   }
   return sum;
 }

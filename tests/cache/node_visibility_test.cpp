@@ -81,7 +81,7 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
   const RayScene rays(scene);
   FormulaSource source(open_floor);
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility sight(rays, maps);
+  const cache::NodeVisibility visibility(rays, maps);
   PrimaryHits hits;
   for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
     for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
@@ -97,13 +97,13 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
     CAPTURE(hits.position[i].x, hits.position[i].y);
     const std::uint32_t oriented_face = hits.oriented_face[i];
     if (read(maps, hits.position[i], oriented_face) < 9.0f) ++dark;
-    NodeBlend blend;
-    REQUIRE(maps.find(oriented_face, hits.position[i], blend));
-    REQUIRE(sight.look(oriented_face, hits.position[i], blend));
+    BilinearWeights bilinear;
+    REQUIRE(maps.find(oriented_face, hits.position[i], bilinear));
+    REQUIRE(visibility.keep_visible(oriented_face, hits.position[i], bilinear));
     float light = 0, weight = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
-      weight += blend.weight[corner];
+      light += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
+      weight += bilinear.weight[corner];
     }
     CHECK(weight == Approx(1).epsilon(1e-5));
     CHECK(light == Approx(10).epsilon(1e-5));
@@ -117,7 +117,7 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides") {
   const RayScene rays(scene);
   FormulaSource source(open_floor);
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility sight(rays, maps);
+  const cache::NodeVisibility visibility(rays, maps);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     const glm::vec3 place(0.5f * (between_from + between_to), y, 0);
@@ -125,11 +125,11 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides") {
   }
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    NodeBlend blend;
-    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend));
-    const NodeBlend before = blend;
-    CHECK_FALSE(sight.look(hits.oriented_face[i], hits.position[i], blend));
-    CHECK(blend.weight == before.weight);
+    BilinearWeights bilinear;
+    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
+    const BilinearWeights before = bilinear;
+    CHECK_FALSE(visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
+    CHECK(bilinear.weight == before.weight);
   }
 }
 
@@ -140,7 +140,7 @@ TEST_CASE(
   const RayScene rays(scene);
   PlateSource source;
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility sight(rays, maps);
+  const cache::NodeVisibility visibility(rays, maps);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
@@ -151,12 +151,12 @@ TEST_CASE(
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CAPTURE(hits.position[i].x, hits.position[i].y);
-    NodeBlend blend;
-    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend));
-    CHECK(sight.look(hits.oriented_face[i], hits.position[i], blend));
+    BilinearWeights bilinear;
+    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
+    CHECK(visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
     float light = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      light += blend.weight[corner] * maps.values().irradiance[blend.node[corner]].x;
+      light += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
     }
     CHECK(light == Approx(10).epsilon(1e-5));
   }
@@ -182,17 +182,17 @@ TEST_CASE("all nodes of open floor and of a bowl are seen") {
   // Uneven everywhere, so that all nodes are looked at.
   FormulaSource source([](const glm::vec3& p, std::uint32_t) { return std::exp(200 * p.y); });
   LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility sight(rays, maps);
+  const cache::NodeVisibility visibility(rays, maps);
   const PrimaryHits hits = points_on(scene, 8);
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    NodeBlend blend;
-    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], blend));
-    const NodeBlend before = blend;
-    REQUIRE(maps.uneven(blend, defaults::light_map_contrast));
-    REQUIRE(sight.look(hits.oriented_face[i], hits.position[i], blend));
+    BilinearWeights bilinear;
+    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
+    const BilinearWeights before = bilinear;
+    REQUIRE(maps.uneven(bilinear, defaults::light_map_contrast));
+    REQUIRE(visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      CHECK(blend.weight[corner] == Approx(before.weight[corner]).epsilon(1e-5));
+      CHECK(bilinear.weight[corner] == Approx(before.weight[corner]).epsilon(1e-5));
     }
   }
 }

@@ -66,12 +66,12 @@ struct Floor {
     }
   }
 
-  NodeBlend at(float x, float y, std::vector<cache::MissingCell>* lacking = nullptr) const {
-    NodeBlend blend;
+  BilinearWeights at(float x, float y, std::vector<cache::MissingCell>* lacking = nullptr) const {
+    BilinearWeights bilinear;
     const std::uint32_t chart = maps.charts().chart_of()[oriented(0, 0)];
-    const auto missing = maps.tiles().find(chart, {x, y, 0}, blend);
+    const auto missing = maps.tiles().find(chart, {x, y, 0}, bilinear);
     if (missing && lacking) lacking->push_back(*missing);
-    return blend;
+    return bilinear;
   }
 
   std::vector<cache::MissingCell> lacking() const {
@@ -102,9 +102,9 @@ struct Floor {
   cache::ShownNodes nodes;
 };
 
-float shown_between(std::span<const glm::vec4> light, const NodeBlend& blend) {
+float shown_between(std::span<const glm::vec4> light, const BilinearWeights& bilinear) {
   float sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) sum += blend.weight[i] * light[blend.node[i]].x;
+  for (std::size_t i = 0; i < 4; ++i) sum += bilinear.weight[i] * light[bilinear.node[i]].x;
   return sum;
 }
 
@@ -161,7 +161,7 @@ TEST_CASE("A node that is shut in counts for little around it while others are l
   floor.source.surroundings = [&](const glm::vec3& p) { return is_shut_in(p) ? 0.005f : 10.0f; };
   floor.fill(0, floor_side, 1);
   floor.nodes.mix(floor.maps, at_full_power, floor.lacking(), false);
-  const NodeBlend beside = floor.at(2.2f, 2.2f);
+  const BilinearWeights beside = floor.at(2.2f, 2.2f);
   CHECK(shown_between(floor.nodes.held().light(), beside) < 0.7f);
   CHECK(shown_between(floor.nodes.light(), floor.nodes.weighted(beside)) > 0.95f);
 }

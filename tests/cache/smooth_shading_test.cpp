@@ -55,15 +55,15 @@ Scene in_room(const SmoothMesh& mesh, bool with_normals = true, int lamps = 2) {
   return builder.build();
 }
 
-std::vector<Sensor> sensors_of(const std::vector<SmoothMesh::Place>& places) {
+std::vector<Sensor> sensors_of(const std::vector<SmoothMesh::TestPoint>& test_points) {
   std::vector<Sensor> sensors;
-  for (const SmoothMesh::Place& place : places) sensors.push_back(place.sensor);
+  for (const SmoothMesh::TestPoint& test_point : test_points) sensors.push_back(test_point.sensor);
   return sensors;
 }
 
-/// One place of a mesh in so many.
+/// One test point of a mesh in so many.
 std::vector<Sensor> some_of(const SmoothMesh& mesh, std::size_t step) {
-  const std::vector<Sensor> all = sensors_of(mesh.places());
+  const std::vector<Sensor> all = sensors_of(mesh.test_points());
   std::vector<Sensor> some;
   for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
   return some;
@@ -134,20 +134,20 @@ TEST_CASE(
   }
   const Scene scene = builder.build();
   REQUIRE(needs_of(scene).many_lights() == are_drawn);
-  const std::vector<SmoothMesh::Place> places = sphere.places();
-  const LightLayers layers = by_nodes(scene, sensors_of(places));
+  const std::vector<SmoothMesh::TestPoint> test_points = sphere.test_points();
+  const LightLayers layers = by_nodes(scene, sensors_of(test_points));
   const std::vector<double> of_all = radiance_of(scene, layers),
                             powers = estimate::layer_powers(scene);
   REQUIRE(layers.layers.size() == to_sun.size());
   std::vector<double> lit(to_sun.size(), 0.0), ratios = lit;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto cosine_to = [&](int sun) { return glm::dot(places[i].smooth, to_sun[sun]); };
+  for (std::size_t i = 0; i < test_points.size(); ++i) {
+    const auto cosine_to = [&](int sun) { return glm::dot(test_points[i].smooth, to_sun[sun]); };
     double sum = 0;
     bool is_at_a_terminator = false;  // of the facets around
     for (int sun = 0; sun < suns; ++sun) is_at_a_terminator |= std::abs(cosine_to(sun)) < 0.3;
     if (is_at_a_terminator) continue;
     for (int sun = 0; sun < suns; ++sun) {
-      CAPTURE(suns, sun, cosine_to(sun), glm::dot(places[i].sensor.normal, to_sun[sun]));
+      CAPTURE(suns, sun, cosine_to(sun), glm::dot(test_points[i].sensor.normal, to_sun[sun]));
       const double expected = albedo / pi * lux[sun] * std::max(0.0, cosine_to(sun));
       const double found = powers[sun] * luminance(glm::dvec3(layers.layers[sun].radiance[i]));
       if (expected == 0 || !are_drawn) CHECK(found == Approx(expected).epsilon(0.01).margin(1e-3));

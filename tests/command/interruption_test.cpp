@@ -426,7 +426,7 @@ TEST_CASE("an address space that is too small for a device's compiler is told be
 /// The least bytes of address space with which photile asks a device for anything, on this machine:
 /// what its libraries take differs from one to the next, and the refusal of less says it.
 std::uint64_t least_address_space(const FileFolder& folder) {
-  constexpr std::uint64_t refused = 800, wanted = 1'024, margin = 8;  // MiB
+  constexpr std::uint64_t refused = 800, requested = 1'024, margin = 8;  // MiB
   Run run = small_render(folder);
   run.address_limit = refused << 20;
   const std::string line = last_error(run_photile(run), no_device);
@@ -434,7 +434,7 @@ std::uint64_t least_address_space(const FileFolder& folder) {
   const std::size_t number = line.find_first_of("0123456789");
   REQUIRE(number != std::string::npos);
   REQUIRE_THAT(line, Contains(" MiB of address space are left") && Contains(" up to 1024;"));
-  return (refused - std::stoull(line.substr(number)) + wanted + margin) << 20;
+  return (refused - std::stoull(line.substr(number)) + requested + margin) << 20;
 }
 
 /// A render of photons in that address space, to out.png.

@@ -29,7 +29,7 @@ std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-TEST_CASE("a trade writes its files and prints a row for each wanted error", "[slow]") {
+TEST_CASE("a trade writes its files and prints a row for each requested error", "[slow]") {
   const FileFolder folder;
   const std::string results = folder / "results";
   const Outcome outcome =
@@ -64,7 +64,7 @@ TEST_CASE("a trade refuses a reference of another size in one line") {
   CHECK_THAT(line, Contains("16x16") && Contains("--size"));
 }
 
-TEST_CASE("pictures are made until one states the wanted error, which its settings make again") {
+TEST_CASE("pictures are made until one states the requested error, which its settings make again") {
   const FileFolder folder;
   const std::vector<std::string> box{"render", write_box(folder), "--size", "24x18"};
   const auto photile = [&](std::vector<std::string> more) {
@@ -121,7 +121,7 @@ TEST_CASE("pictures are made for a time; that needs nodes that gather") {
   CHECK_THAT(refused({"--glare", folder / "glare.png"}), Contains(name));
 }
 
-TEST_CASE("wanted errors and times that are none are usage errors") {
+TEST_CASE("requested errors and times that are none are usage errors") {
   const FileFolder folder;
   const std::string option =
       GENERATE("--target-error=0", "--target-error=200%", "--target-error=small", "--for=33",

@@ -46,14 +46,14 @@ TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only th
   CHECK(sheet.width == 2 * 16 + 3 * 4);
   CHECK(sheet.height == 2 * 12 + 3 * 4);
 
-  const std::string third = folder.read("f.03.exr"), sheet_bytes = folder.read("sheet.png");
+  const std::string third = folder.read("f.03.exr"), component_bytes = folder.read("sheet.png");
   const auto first_written = written(folder / "f.01.exr");
   std::filesystem::remove(folder / "f.03.exr");
   folder.write("f.04.exr", "no picture");
   const Outcome again = succeed(arguments);
   CHECK_THAT(again.errors, Contains("2 of 4 frames are finished"));
   CHECK(written(folder / "f.01.exr") == first_written);
-  CHECK(folder.read("sheet.png") == sheet_bytes);
+  CHECK(folder.read("sheet.png") == component_bytes);
   const Image now = read_image(folder / "f.03.exr");
   folder.write("before.exr", third);
   CHECK(*now.find("G") == *read_image(folder / "before.exr").find("G"));

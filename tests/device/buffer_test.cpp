@@ -206,11 +206,11 @@ TEST_CASE("an allocation takes what reclaimers release, and no more than it need
 TEST_CASE("the reclaimer that came last is asked first, one that has gone is not") {
   Context context(limited(4'000));
   Hoard early;
-  const ReclaimerEntry early_entry(context, early);
+  const ReclaimerEntry early_record(context, early);
   early.buffers.push_back(context.allocate<std::uint8_t>(1'000, ""));
   Hoard late;
   {
-    const ReclaimerEntry late_entry(context, late);
+    const ReclaimerEntry late_record(context, late);
     late.buffers.push_back(context.allocate<std::uint8_t>(1'000, ""));
     context.allocate<std::uint8_t>(3'000, "");
     CHECK(late.buffers.empty());

@@ -123,11 +123,11 @@ ChildResult probe(const fs::path& cache, const char* mode = "run") {
   return run_child({PHOTILE_DEVICE_PROBE, mode}, cache_in(cache));
 }
 
-std::vector<fs::path> entries(const fs::path& folder, const std::string& wanted) {
+std::vector<fs::path> entries(const fs::path& folder, const std::string& requested) {
   std::vector<fs::path> found;
   if (!fs::exists(folder)) return found;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string().find(wanted) != std::string::npos) {
+    if (entry.path().filename().string().find(requested) != std::string::npos) {
       found.push_back(entry.path());
     }
   }

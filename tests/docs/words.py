@@ -1,5 +1,5 @@
-"""Checks that pages, help and messages use the words of the field: a reader of pbrt, Embree or Radiance needs no
-dictionary for them.
+"""Checks that pages, help and messages, and the names in the renderer, the public headers and the kernels, use the
+words of the field: a reader of pbrt, Embree or Radiance needs no dictionary for them.
 
     words.py SOURCE-FOLDER
 """
@@ -24,6 +24,36 @@ WORDS = {
     r"dark sides?": "unlit sides",
     r"node sight": "visibility",
 }
+# Words of which no name in host/renderer, include or kernels is made.
+NAMES = {
+    "look": "light sample, query",
+    "lamp": "light; a product with a photometric file is a luminaire",
+    "chance": "selection probability",
+    "blend": "bilinear weights",
+    "sight": "visibility",
+    "lift": "ray offset",
+    "clearance": "ray offset, empty radius",
+    "lone": "boundary",
+    "sheet": "smooth component",
+    "facet": "coplanar region",
+    "sided": "oriented face",
+    "crowding": "density ratio",
+    "straight": "direct, unscattered",
+    "parted": "split",
+    "hole": "cutout",
+    "pooling": "mixdown",
+    "octet": "eight-wide vector",
+    "spent": "consumed",
+    "likeness": "similarity",
+    "blotches": "low-frequency noise",
+    "receiver": "shading point",
+    "place": "position, index, slot",
+    "wanted": "requested",
+    "wish": "request",
+}
+# Names that mean what these words mean in the field.
+NAMED_SO = {"look_at", "two_sided", "in_place", "place_camera", "contact_sheet_width", "lamp_efficacy",
+            "LineOfSight"}
 PRIVATE = re.compile(r"\b(" + "|".join(f"(?:{word})" for word in WORDS) + r")\b", re.IGNORECASE)
 QUOTED = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 
@@ -42,6 +72,29 @@ def sentences(file):
             yield number, re.sub(r"`[^`]*`", "", line)
 
 
+def names(file):
+    """Numbered names of a source file, without comments, text and included files."""
+    text = file.read_text(encoding="utf-8")
+    text = re.sub(r"/\*.*?\*/", lambda comment: "\n" * comment.group().count("\n"), text, flags=re.DOTALL)
+    for number, line in enumerate(text.splitlines(), 1):
+        line = QUOTED.sub("", line.split("//")[0])
+        if not line.lstrip().startswith("#include"):
+            for name in re.findall(r"[A-Za-z_]\w*", line):
+                yield number, name
+
+
+def private_names(source):
+    """Each name that is made of a word that nobody else uses."""
+    for room in ("host/renderer", "include", "kernels"):
+        for file in sorted(file for file in (source / room).rglob("*")
+                           if file.suffix in (".cpp", ".hpp", ".h", ".cl", ".clh")):
+            for number, name in names(file):
+                for word in re.findall(r"[A-Z]?[a-z]+", name):
+                    said = NAMES.get(word.lower(), NAMES.get(word.lower().removesuffix("s")))
+                    if said and name.rstrip("_") not in NAMED_SO:
+                        yield f"{file.relative_to(source)}:{number}: '{name}'; say {said}"
+
+
 def field_word(private):
     return next(field for word, field in WORDS.items() if re.fullmatch(word, private, re.IGNORECASE))
 
@@ -53,6 +106,7 @@ def faults(source):
         for number, line in sentences(file):
             for found in PRIVATE.findall(line):
                 yield f"{file.relative_to(source)}:{number}: '{found}'; say {field_word(found)}"
+    yield from private_names(source)
 
 
 def main():

@@ -78,7 +78,7 @@ void add_star(Scene& scene, const glm::vec3& centre, const glm::vec3& u, const g
   for (int i = 0; i < corners; ++i) test::add_triangle(scene, centre, corner(i), corner(i + 1));
 }
 
-/// One facet round a slit from `centre` along `u`: the triangle above it has the whole edge, those
+/// One region round a slit from `centre` along `u`: the triangle above it has the whole edge, those
 /// below meet in a T-junction on it. And a needle of 6 degrees beside it.
 void add_slit_and_needle(Scene& scene, const glm::vec3& centre, const glm::vec3& u,
                          const glm::vec3& v) {
@@ -202,8 +202,8 @@ TEST_CASE("a panel all under a plate counts whole for hits on it, and as nothing
   test::add_plate(scene, {-0.1f, -0.1f, 0.01f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 1);
   const Photons photons = test::uniform_photons(scene, 1500, 61, false);
   const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), 0.2, 60);
-  REQUIRE(surface.facet[0] == PHOTILE_NO_FACET);
-  REQUIRE(surface.exposure[oriented(0, 0)] == 0.0f);
+  REQUIRE(surface.region[0] == PHOTILE_NO_REGION);
+  REQUIRE(surface.open_fraction[oriented(0, 0)] == 0.0f);
   check_clipped(scene, photons, test::uniform_hits(scene, 100, 62, false), 0.2, 50,
                 DensityKernel::constant);
 }
@@ -228,7 +228,7 @@ TEST_CASE(
       std::make_shared<const SurfaceIndex>(index_surface(scene, photons, 0.15, 60));
   REQUIRE(surface->unlit_regions.size() >= 10);
   const auto is_dark = [&](std::size_t i) {
-    return surface->sheet_at(hits.oriented_face[i], hits.position[i]) == surface->sheets;
+    return surface->component_at(hits.oriented_face[i], hits.position[i]) == surface->components;
   };
   std::size_t dark = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) dark += is_dark(i) ? 1 : 0;

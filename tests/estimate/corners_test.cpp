@@ -21,11 +21,11 @@ namespace {
 
 constexpr int k = 50;
 
-/// Metres from the place, towards the middle of the triangle. The last millimetre to a corner.
+/// Metres from the point, towards the middle of the triangle. The last millimetre to a corner.
 constexpr std::array steps = {0.0, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 
 /// A point of a triangle, approached from within.
-struct Place {
+struct TestPoint {
   glm::vec3 position;
   std::uint32_t oriented_face;
   const char* kind;
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> some_triangles(const Scene& scene, std::size_t count)
   return triangles;
 }
 
-/// Whether a triangle is wider than the rounding of its corners: else no hit has a place within it,
+/// Whether a triangle is wider than the rounding of its corners: else no hit has a point within it,
 /// as in the kitchen's slivers of one micrometre, ten metres from its origin.
 bool has_inside(const Scene& scene, std::uint32_t triangle) {
   double longest = 0, size = 0;
@@ -74,17 +74,18 @@ bool has_inside(const Scene& scene, std::uint32_t triangle) {
 }
 
 /// Corners, middles of edges and, where another triangle's corner lies on an edge, T-junctions.
-std::vector<Place> places_of(const Scene& scene, std::span<const std::uint32_t> triangles) {
+std::vector<TestPoint> test_points_of(const Scene& scene,
+                                      std::span<const std::uint32_t> triangles) {
   std::mt19937_64 random(162);
-  std::vector<Place> places;
+  std::vector<TestPoint> test_points;
   for (const std::uint32_t t : triangles) {
     if (!has_inside(scene, t)) continue;
     const auto corners = scene.corners(t);
     const std::uint32_t own = oriented(t, static_cast<std::uint32_t>(random() & 1));
     for (int c = 0; c < 3; ++c) {
       const glm::vec3 a = corners[c], b = corners[(c + 1) % 3];
-      places.push_back({a, own, "corner"});
-      places.push_back({0.5f * (a + b), own, "edge"});
+      test_points.push_back({a, own, "corner"});
+      test_points.push_back({0.5f * (a + b), own, "edge"});
       const glm::vec3 low = glm::min(a, b) - 1e-4f, high = glm::max(a, b) + 1e-4f;
       int found = 0;
       for (const glm::vec3& vertex : scene.vertices) {
@@ -92,12 +93,12 @@ std::vector<Place> places_of(const Scene& scene, std::span<const std::uint32_t> 
             !lies_on_edge(vertex, a, b)) {
           continue;
         }
-        places.push_back({vertex, own, "T-junction"});
+        test_points.push_back({vertex, own, "T-junction"});
         if (++found == 2) break;
       }
     }
   }
-  return places;
+  return test_points;
 }
 
 class Shares {
@@ -142,8 +143,8 @@ class Shares {
     return shares;
   }
 
-  double expected(const Place& place, const glm::vec3& position, double radius) const {
-    return oracle_->area(position, place.oriented_face, radius) /
+  double expected(const TestPoint& test_point, const glm::vec3& position, double radius) const {
+    return oracle_->area(position, test_point.oriented_face, radius) /
            (glm::pi<double>() * radius * radius);
   }
 
@@ -190,17 +191,17 @@ struct Coverage {
 Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uint32_t> triangles,
                       std::size_t oracle_every) {
   const Shares shares(std::move(scene), photons);
-  const std::vector<Place> places = places_of(shares.scene(), triangles);
+  const std::vector<TestPoint> test_points = test_points_of(shares.scene(), triangles);
   PrimaryHits hits;
-  for (const Place& place : places) {
-    const auto corners = shares.scene().corners(triangle_of(place.oriented_face));
+  for (const TestPoint& test_point : test_points) {
+    const auto corners = shares.scene().corners(triangle_of(test_point.oriented_face));
     const glm::dvec3 middle =
         (glm::dvec3(corners[0]) + glm::dvec3(corners[1]) + glm::dvec3(corners[2])) / 3.0;
-    const glm::dvec3 way = middle - glm::dvec3(place.position);
+    const glm::dvec3 way = middle - glm::dvec3(test_point.position);
     for (const double step : steps) {
       const double part = std::min(step / glm::length(way), 1.0);
-      hits.position.emplace_back(glm::dvec3(place.position) + way * part);
-      hits.oriented_face.push_back(place.oriented_face);
+      hits.position.emplace_back(glm::dvec3(test_point.position) + way * part);
+      hits.oriented_face.push_back(test_point.oriented_face);
       hits.diffuse_albedo.emplace_back(0.5f);
     }
   }
@@ -208,13 +209,14 @@ Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uin
   const auto all = shares.of(hits);
   std::size_t wrong = 0, compared = 0, counted = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Place& place = places[i / steps.size()];
+    const TestPoint& test_point = test_points[i / steps.size()];
     const auto& [share, radius] = all[i];
     if (std::isnan(share)) continue;
     ++counted;
     const double step = steps[i % steps.size()];
     const glm::vec3 p = hits.position[i];
-    CAPTURE(place.kind, triangle_of(place.oriented_face), p.x, p.y, p.z, step, radius, share);
+    CAPTURE(test_point.kind, triangle_of(test_point.oriented_face), p.x, p.y, p.z, step, radius,
+            share);
     // Sharper corners than of 9 degrees are rare, and then they are the oracle's.
     const bool usual = share > 1 / 40.0 && share < 1.001;
     const double size = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
@@ -223,13 +225,13 @@ Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uin
     const bool steady =
         std::isnan(at_place) || std::abs(share - at_place) <= rounding + 4 * step / radius;
     if (usual && steady && i % oracle_every != 0) continue;
-    const double expected = shares.expected(place, p, radius);
+    const double expected = shares.expected(test_point, p, radius);
     ++compared;
     const bool right = std::abs(share - expected) <= rounding;
     wrong += !right;
     if (wrong <= 20) CHECK(share == Approx(expected).margin(rounding));
   }
-  CAPTURE(places.size(), compared);
+  CAPTURE(test_points.size(), compared);
   CHECK(wrong == 0);
   return {counted, all.size()};
 }

@@ -102,7 +102,7 @@ std::multimap<std::string, std::string> host_programs() {
     programs.emplace("shared/scan.cl", groups.options());
     for (const SceneNeeds& needs : all_needs) {
       device::Defines entries = groups;
-      maps::set_entry_defines(entries, needs);
+      maps::set_record_defines(entries, needs);
       programs.emplace("grid/build.cl", entries.options());
       programs.emplace("grid/build.cl", device::Defines(entries).set("PATCHES").options());
       estimate::LightSums(needs, 50).set_defines(entries);
@@ -173,8 +173,8 @@ TEST_CASE("kernels read nothing of lobes or lights that the scene does not have"
     REQUIRE(begin != std::string::npos);
     const std::string body = text.substr(begin, text.find("\n}", begin) - begin);
     std::set<std::string> arguments;
-    for (const char* argument :
-         {"hit_lobes", "entry_incoming", "radiance", "entry_light", "slot_light", "slots_taken"}) {
+    for (const char* argument : {"hit_lobes", "record_incoming", "radiance", "record_light",
+                                 "slot_light", "slots_taken"}) {
       const std::regex use(fmt::format("%{}\\b", argument));
       const auto count = std::distance(std::sregex_iterator(body.begin(), body.end(), use),
                                        std::sregex_iterator());
@@ -183,7 +183,7 @@ TEST_CASE("kernels read nothing of lobes or lights that the scene does not have"
     }
     return arguments;
   };
-  const std::set<std::string> of_gloss{"hit_lobes", "entry_incoming", "radiance"};
+  const std::set<std::string> of_gloss{"hit_lobes", "record_incoming", "radiance"};
   const std::set<std::string> of_slots{"slot_light", "slots_taken"};
   for (const bool lanes : {false, true}) {
     const EstimateTuning tuning{
@@ -193,7 +193,7 @@ TEST_CASE("kernels read nothing of lobes or lights that the scene does not have"
       CAPTURE(lanes, needs.glossy, needs.light_count);
       std::set<std::string> expected;
       if (!needs.glossy) expected = of_gloss;
-      if (!needs.several_lights()) expected.insert("entry_light");
+      if (!needs.several_lights()) expected.insert("record_light");
       if (!needs.many_lights()) expected.insert(of_slots.begin(), of_slots.end());
       CHECK(unread(estimate::specialise(tuning, needs, 50)) == expected);
     }

@@ -52,8 +52,8 @@ TEST_CASE("neighbours equal the oracle's on a torus with triangles smaller than 
   check_neighbours(scene, photons, test::uniform_hits(scene, 300, 24), 0.2, {1, 16, 50, 200});
 }
 
-TEST_CASE("facets that meet at just the angle count alike in every structure") {
-  // Hexagonal prisms a few metres off, so small that rounding their vertices tilts the facets by
+TEST_CASE("regions that meet at just the angle count alike in every structure") {
+  // Hexagonal prisms a few metres off, so small that rounding their vertices tilts the regions by
   // 1e-5: the cosines of their angles fall to either side of the bound.
   Scene scene = test::empty_scene();
   std::mt19937 random(44);

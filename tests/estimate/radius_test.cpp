@@ -87,7 +87,7 @@ TEST_CASE(
 }
 
 TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle's") {
-  // Hits lie on photons, so that the smallest disc holds one; a fold, a border and facets of one
+  // Hits lie on photons, so that the smallest disc holds one; a fold, a border and regions of one
   // triangle and of many are among what clips it.
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, 1);

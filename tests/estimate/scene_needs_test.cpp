@@ -33,11 +33,11 @@ Scene box_of(const SceneNeeds& needs) {
 /// Bytes that a reference takes in the buffers of a page.
 std::size_t bytes_per_reference(const maps::MapPage& page) {
   const auto planes = [&](const device::Buffer<float>& buffer) {
-    return buffer.size() * sizeof(float) / page.entry_stride;
+    return buffer.size() * sizeof(float) / page.record_stride;
   };
-  return planes(page.entry_position) + planes(page.entry_flux) + planes(page.entry_incoming) +
-         planes(page.entry_normal) + page.entry_light.size() / page.entry_stride +
-         page.entry_photon.size() * sizeof(std::uint32_t) / page.entry_count;
+  return planes(page.record_position) + planes(page.record_flux) + planes(page.record_incoming) +
+         planes(page.record_normal) + page.record_light.size() / page.record_stride +
+         page.record_photon.size() * sizeof(std::uint32_t) / page.record_count;
 }
 
 constexpr SceneNeeds diffuse_of(std::uint32_t lights) { return {.light_count = lights}; }
@@ -60,7 +60,7 @@ TEST_CASE("a diffuse scene of one light has the smallest records, others what th
   const RayScene rays(scene);
   CHECK(rays.needs().glossy == needs.glossy);
   CHECK(rays.needs().light_count == needs.light_count);
-  CHECK(maps::bytes_per_entry(rays.needs()) == bytes);
+  CHECK(maps::bytes_per_record(rays.needs()) == bytes);
 
   const Photons photons = trace_photons(rays, {.emitted_photons = 3000}).photons;
   REQUIRE(photons.size() > 1000);
@@ -132,7 +132,7 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   CHECK(prepared == 2);
   const PhotonMaps maps(device, scene, photons,
                         find_map_groups(scene, photons, parameters.maps, {0.2}), {.radius = 0.2});
-  CHECK(maps.statistics().mixed_maps > 0);
+  CHECK(maps.statistics().normal_filtered_maps > 0);
   Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
   CHECK(device.programs_built() + device.programs_from_cache() == prepared);
 }

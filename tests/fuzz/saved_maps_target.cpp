@@ -79,7 +79,7 @@ void use_light_maps(LightMapContents contents) {
   LightMaps maps(floor_scene(), parameters);
   maps.restore(std::move(contents));
   for (const float x : {0.0f, 0.3f, 1.0f}) {
-    NodeBlend blend{};
+    BilinearWeights blend{};
     if (!maps.find(0, {x, 0.5f * x, 0}, blend)) continue;
     for (const std::uint32_t node : blend.node) {
       require(node < maps.values().irradiance.size(), "a node that is not there");
@@ -97,14 +97,14 @@ bool fuzz_saved_maps(Bytes bytes) {
   // Alone it is all shards, or one of several, and refused.
   accepts([&] { saved_maps::merge(std::span(&file, 1), file.parent_path() / "merged.maps"); });
   return accepts([&] {
-    PreparedPhotons photons = saved_maps::load(file, floor_scene(), words);
+    TracedPhotons photons = saved_maps::load(file, floor_scene(), words);
     require(photons.photons.first_of.size() == 2 * floor_scene().triangle_count() + 1,
             "rows that lack");
     // What was read can be written, and read again.
     const auto again = file.parent_path() / "again.maps";
     saved_maps::save(again, floor_scene(), words, photons);
     if (photons.light_maps) saved_maps::add_light_maps(again, *photons.light_maps);
-    const PreparedPhotons same = saved_maps::load(again, floor_scene(), words);
+    const TracedPhotons same = saved_maps::load(again, floor_scene(), words);
     require(same.photons.size() == photons.photons.size() && same.radius == photons.radius,
             "saved again they are others");
     if (photons.light_maps) use_light_maps(std::move(*photons.light_maps));

@@ -363,7 +363,7 @@ TEST_CASE("the m-th nearest photon is that of all distances sorted") {
   }
 }
 
-TEST_CASE("of more positions than wanted those in equal steps are taken") {
+TEST_CASE("of more positions than requested those in equal steps are taken") {
   std::vector<glm::vec3> positions;
   for (int i = 0; i < 100; ++i) positions.emplace_back(i, 0, 0);
   const groups::PhotonBlocks blocks(positions, 10);  // 5, 15, ... 95

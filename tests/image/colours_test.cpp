@@ -269,8 +269,8 @@ TEST_CASE("each pixel is marked with the light whose reflection is brightest abo
   reflections.layers[0].radiance[2] = glm::vec3(199);  // below
   const Glare glare = find_glare(even(1, 1), reflections, mix_of(1, 0.5), 199.5);
   CHECK(glare.marks == std::vector<int>{0, 1, -1, -1});
-  CHECK(glare.lights[0].share == Approx(0.25));
-  CHECK(glare.lights[1].share == Approx(0.5));
+  CHECK(glare.lights[0].fraction == Approx(0.25));
+  CHECK(glare.lights[1].fraction == Approx(0.5));
   CHECK(glare.lights[0].peak == Approx(300));
   CHECK(glare.lights[1].peak == Approx(250));
   CHECK(glare_lines(glare, PowerUnit::lumen).size() == 2);
@@ -350,10 +350,10 @@ TEST_CASE("one wrong region is the worst region") {
   }
   const PictureError error = picture_error(picture, reference);
   CHECK(error.worst_region == Approx(0.5).epsilon(1e-6));
-  CHECK(error.worst_place.x == 4);
-  CHECK(error.worst_place.y == 0);
-  CHECK(error.worst_place.width == 2);
-  CHECK(error.worst_place.height == 2);
+  CHECK(error.worst_area.x == 4);
+  CHECK(error.worst_area.y == 0);
+  CHECK(error.worst_area.width == 2);
+  CHECK(error.worst_area.height == 2);
 }
 
 TEST_CASE("pixels that see a lamp in the reference do not count, nor do those next to them") {

@@ -28,11 +28,11 @@ const MixedLight& light_of(const LightMix& mix, const std::string& name) {
 }
 
 /// The lights of a copy beside what they were to be: lamps that are off are gone.
-void check_reads_back(const std::filesystem::path& copy, const LightMix& wanted,
+void check_reads_back(const std::filesystem::path& copy, const LightMix& requested,
                       const SceneLoadOptions& options = {}) {
   const LightMix read = LightMix::of(load_scene(copy, options), 683);
   std::size_t lit = 0;
-  for (const MixedLight& light : wanted.lights) {
+  for (const MixedLight& light : requested.lights) {
     if (light.power == 0) continue;
     ++lit;
     const MixedLight& again = light_of(read, light.name);

@@ -99,7 +99,7 @@ TEST_CASE("instances of an emissive mesh share a layer, its materials do not") {
   REQUIRE(scene.lights.size() == 4);
   CHECK(groups_of(scene) == Names{"panel_glow", "panel_neon", "panel_glow", "panel_neon"});
   const LightGroups groups = light_groups_of(scene);
-  CHECK(groups.share[2] == Approx(4 * groups.share[0]));  // by area
+  CHECK(groups.fraction[2] == Approx(4 * groups.fraction[0]));  // by area
 }
 
 TEST_CASE("a glob of light names makes a group, and a later one takes from an earlier one") {
@@ -156,16 +156,16 @@ TEST_CASE("a layer has the power and the mean colour of its lights, and each its
   CHECK(layers.groups[1].power == scene.lights[2].power);
   CHECK(layers.groups[1].color == scene.lights[2].color);
   CHECK(layers.group_of == std::vector<std::uint32_t>{0, 0, 1});
-  CHECK(layers.share[0] == Approx(0.25));
-  CHECK(layers.share[1] == Approx(0.75));
-  CHECK(layers.share[2] == 1.0);
+  CHECK(layers.fraction[0] == Approx(0.25));
+  CHECK(layers.fraction[1] == Approx(0.75));
+  CHECK(layers.fraction[2] == 1.0);
   CHECK(needs_of(scene).light_count == 2);
 }
 
 TEST_CASE("lights of a group that is off share it equally") {
   Scene scene = grouped({"*=all"}, three_lamps());
   for (Light& light : scene.lights) light.power = 0;
-  for (const double share : light_groups_of(scene).share) CHECK(share == Approx(1.0 / 3));
+  for (const double fraction : light_groups_of(scene).fraction) CHECK(fraction == Approx(1.0 / 3));
 }
 
 }  // namespace photile::test

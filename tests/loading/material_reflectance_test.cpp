@@ -93,7 +93,7 @@ TEST_CASE("reflectances that cannot be are refused with the remedy") {
   refused("wall=1.5", "0 to 1");
   refused("wall=120%", "0 to 1");
   refused("wall", "MATERIAL=REFLECTANCE");
-  CHECK(ReflectanceChange::parse("wall=20%").share == Approx(0.2));
+  CHECK(ReflectanceChange::parse("wall=20%").fraction == Approx(0.2));
 }
 
 TEST_CASE("a black material becomes grey, and glass has no reflectance") {

@@ -65,9 +65,9 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
     const maps::MapPage& page = maps::store_of(photon_maps).pages.use(i);
     const auto grids = download(page.grids);
     const auto cell_start = download(page.cell_start);
-    const auto entry_photon = download(page.entry_photon);
-    const auto position = download(page.entry_position);
-    const auto flux = download(page.entry_flux);
+    const auto record_photon = download(page.record_photon);
+    const auto position = download(page.record_position);
+    const auto flux = download(page.record_flux);
     for (std::uint32_t map = page.first_map; map < page.last_map; ++map) {
       const PhotileGrid& grid = grids[map - page.first_map];
       const auto own = std::find(map_of.begin(), map_of.end(), map);  // without patches
@@ -76,9 +76,9 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
         const std::uint32_t start = cell_start[grid.first_cell + cell];
         const std::uint32_t end = cell_start[grid.first_cell + cell + 1];
         for (std::uint32_t entry = start; entry < end; ++entry) {
-          const std::uint32_t photon = entry_photon[entry];
+          const std::uint32_t photon = record_photon[entry];
           contents.photons_of_map[oriented_face].push_back(photon);
-          if (entry > start && entry_photon[entry - 1] >= photon) contents.cells_ascend = false;
+          if (entry > start && record_photon[entry - 1] >= photon) contents.cells_ascend = false;
           const glm::dvec3 local = glm::dvec3(photons.position[photon]) -
                                    glm::dvec3(grid.origin_x, grid.origin_y, grid.origin_z);
           const double u = glm::dot(local, glm::dvec3(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z));
@@ -90,7 +90,7 @@ Contents read_contents(const PhotonMaps& photon_maps, const Photons& photons) {
             contents.cells_agree = false;
           }
           for (int c = 0; c < 3; ++c) {
-            const std::size_t plane = c * std::size_t{page.entry_stride} + entry;
+            const std::size_t plane = c * std::size_t{page.record_stride} + entry;
             if (position[plane] != photons.position[photon][c] ||
                 flux[plane] != photons.flux[photon][c]) {
               contents.records_agree = false;
@@ -116,7 +116,7 @@ void check_against_reference(const Scene& scene, const Photons& photons, double 
   CHECK(contents.records_agree);
 
   const double cos_angle = std::cos(glm::radians(60.0));
-  // Photons may be entered a little beyond the radius, for their positions are rounded.
+  // Photons may be inserted a little beyond the radius, for their positions are rounded.
   float largest = 0;
   for (const glm::vec3& v : scene.vertices) {
     largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -189,7 +189,7 @@ TEST_CASE("grid contents equal the host reference far from the origin") {
   check_against_reference(scene, test::uniform_photons(scene, 1000, 13), 0.5);
 }
 
-TEST_CASE("a needle triangle and photons in one point are entered like any other") {
+TEST_CASE("a needle triangle and photons in one point are inserted like any other") {
   Scene scene = test::empty_scene();
   test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0});
   test::add_plate(scene, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, 1);
@@ -237,8 +237,8 @@ TEST_CASE("two builds give the same bits") {
   const PhotonMaps second(test::device(), scene, photons, groups, {0.2, 4});
   REQUIRE(maps::store_of(first).pages.size() == maps::store_of(second).pages.size());
   for (std::size_t i = 0; i < maps::store_of(first).pages.size(); ++i) {
-    CHECK(download(maps::store_of(first).pages.use(i).entry_photon) ==
-          download(maps::store_of(second).pages.use(i).entry_photon));
+    CHECK(download(maps::store_of(first).pages.use(i).record_photon) ==
+          download(maps::store_of(second).pages.use(i).record_photon));
     CHECK(download(maps::store_of(first).pages.use(i).cell_start) ==
           download(maps::store_of(second).pages.use(i).cell_start));
   }
@@ -252,14 +252,14 @@ TEST_CASE("photons that are given up leave the normals that kept ones do, and ar
   const NeighbourGroups groups = find_map_groups(scene, photons, MapMode::patch, {0.2, 60});
   const PhotonMaps kept(test::device(), scene, photons, groups, {0.2, 4});
   const PhotonMaps gone(test::device(), scene, std::move(given_up), groups, {0.2, 4});
-  REQUIRE(kept.statistics().mixed_maps > 0);
+  REQUIRE(kept.statistics().normal_filtered_maps > 0);
   CHECK(given_up.size() == 0);
   REQUIRE(maps::store_of(kept).pages.size() == 1);
   const maps::MapPage& first = maps::store_of(kept).pages.use(0);
   const maps::MapPage& second = maps::store_of(gone).pages.use(0);
-  CHECK(download(first.entry_position) == download(second.entry_position));
-  CHECK(download(first.entry_flux) == download(second.entry_flux));
-  CHECK(download(first.entry_normal) == download(second.entry_normal));
+  CHECK(download(first.record_position) == download(second.record_position));
+  CHECK(download(first.record_flux) == download(second.record_flux));
+  CHECK(download(first.record_normal) == download(second.record_normal));
 }
 
 TEST_CASE("a radius beyond the groups' or no number is refused") {

@@ -40,8 +40,8 @@ TEST_CASE("map pages cover every map with photons once, in order, within the lim
     previous = page.last;
     std::uint64_t entries = 0;
     for (std::uint32_t map = page.first; map < page.last; ++map) entries += counts[map];
-    CHECK(entries == page.entries);
-    CHECK((entries + maps::most_entry_padding) * 12 <= max_bytes);
+    CHECK(entries == page.records);
+    CHECK((entries + maps::most_record_padding) * 12 <= max_bytes);
     CHECK((page.last - page.first) * sizeof(PhotileGrid) <= max_bytes);
     paged += entries;
   }
@@ -50,15 +50,16 @@ TEST_CASE("map pages cover every map with photons once, in order, within the lim
 
 TEST_CASE("pages aim at a size of all their buffers together; a larger map has one of its own") {
   const std::vector<std::uint32_t> counts = {10, 10, 0, 10, 500, 10};
-  const auto pages = maps::plan_map_pages(
-      counts,
-      {.largest_buffer = 100'000, .page_bytes = 1'000, .bytes_per_entry = 40, .bytes_per_map = 80});
+  const auto pages = maps::plan_map_pages(counts, {.largest_buffer = 100'000,
+                                                   .page_bytes = 1'000,
+                                                   .bytes_per_record = 40,
+                                                   .bytes_per_map = 80});
   // Two maps take 20 x 40 + 2 x 80 = 960 bytes.
   REQUIRE(pages.size() == 4);
-  CHECK((pages[0].first == 0 && pages[0].last == 2 && pages[0].entries == 20));
-  CHECK((pages[1].first == 3 && pages[1].last == 4 && pages[1].entries == 10));
-  CHECK((pages[2].first == 4 && pages[2].last == 5 && pages[2].entries == 500));
-  CHECK((pages[3].first == 5 && pages[3].last == 6 && pages[3].entries == 10));
+  CHECK((pages[0].first == 0 && pages[0].last == 2 && pages[0].records == 20));
+  CHECK((pages[1].first == 3 && pages[1].last == 4 && pages[1].records == 10));
+  CHECK((pages[2].first == 4 && pages[2].last == 5 && pages[2].records == 500));
+  CHECK((pages[3].first == 5 && pages[3].last == 6 && pages[3].records == 10));
 }
 
 TEST_CASE("no index into a page passes 32 bits, however large the device's buffers") {
@@ -68,9 +69,9 @@ TEST_CASE("no index into a page passes 32 bits, however large the device's buffe
   const auto pages = maps::plan_map_pages(counts, {.largest_buffer = huge});
   std::uint64_t paged = 0;
   for (const maps::MapRange& page : pages) {
-    CHECK(3 * (page.entries + maps::most_entry_padding) <= 0xFFFF'FFFFull);
-    CHECK(page.entries < maps::max_items);
-    paged += page.entries;
+    CHECK(3 * (page.records + maps::most_record_padding) <= 0xFFFF'FFFFull);
+    CHECK(page.records < maps::max_items);
+    paged += page.records;
   }
   CHECK(paged == 24ull << 28);
   // There are as many pages as fit, not fewer: five times 2^28 photons are 3.75 x 2^30 floats.
@@ -86,11 +87,11 @@ TEST_CASE("a page is halved where its entries are, between maps") {
   const std::vector<std::uint32_t> counts = {9, 0, 4, 4, 0, 0, 8, 0};
   const auto halves = maps::halves_of({2, 7, 16}, counts);
   REQUIRE(halves.has_value());
-  CHECK((halves->first.first == 2 && halves->first.last == 4 && halves->first.entries == 8));
-  CHECK((halves->second.first == 6 && halves->second.last == 7 && halves->second.entries == 8));
+  CHECK((halves->first.first == 2 && halves->first.last == 4 && halves->first.records == 8));
+  CHECK((halves->second.first == 6 && halves->second.last == 7 && halves->second.records == 8));
   const auto uneven = maps::halves_of({0, 3, 13}, counts);
   REQUIRE(uneven.has_value());
-  CHECK((uneven->first.last == 1 && uneven->second.first == 2 && uneven->second.entries == 4));
+  CHECK((uneven->first.last == 1 && uneven->second.first == 2 && uneven->second.records == 4));
   CHECK_FALSE(maps::halves_of({0, 2, 9}, counts).has_value());
 }
 
@@ -212,12 +213,13 @@ TEST_CASE("a map beyond the device's largest buffer is refused with a remedy") {
 }
 
 TEST_CASE("a page beyond what pages aim at that cannot be cut is built as it is") {
-  Queue queue(
-      {500},
-      {.largest_buffer = 100'000, .page_bytes = 1'000, .bytes_per_entry = 40, .bytes_per_map = 80});
+  Queue queue({500}, {.largest_buffer = 100'000,
+                      .page_bytes = 1'000,
+                      .bytes_per_record = 40,
+                      .bytes_per_map = 80});
   const auto page = queue.queue.next();
   REQUIRE(page.has_value());
-  CHECK(page->entries == 500);
+  CHECK(page->records == 500);
   CHECK_FALSE(queue.queue.cut(*page));
   CHECK_FALSE(queue.queue.next().has_value());
 }
@@ -230,7 +232,7 @@ TEST_CASE("a page that did not fit comes again in two, in the order of its maps"
   const auto first = queue.queue.next(), second = queue.queue.next();
   REQUIRE((first.has_value() && second.has_value()));
   CHECK((first->first == 0 && first->last == second->first && second->last == 3));
-  CHECK(first->entries + second->entries == 12);
+  CHECK(first->records + second->records == 12);
 }
 
 // Which items stay on the device while memory is short.
@@ -262,8 +264,8 @@ maps::MapPage page_of(device::Context& context, std::uint32_t first_map,
   maps::MapPage page;
   page.first_map = first_map;
   page.last_map = first_map + 1;
-  page.entry_count = static_cast<std::uint32_t>(photons.size());
-  page.entry_photon = context.upload(std::span(photons), "photons");
+  page.record_count = static_cast<std::uint32_t>(photons.size());
+  page.record_photon = context.upload(std::span(photons), "photons");
   return page;
 }
 
@@ -314,8 +316,8 @@ TEST_CASE("pages come back from the host as they were") {
     for (std::uint32_t p = 0; p < 5; ++p) {
       const maps::MapPage& page = pages.use(p);
       CHECK(page.first_map == p);
-      std::vector<std::uint32_t> read(page.entry_photon.size());
-      context.read(page.entry_photon, std::span(read));
+      std::vector<std::uint32_t> read(page.record_photon.size());
+      context.read(page.record_photon, std::span(read));
       CHECK(read == photons[p]);
     }
   }

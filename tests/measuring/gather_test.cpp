@@ -160,7 +160,7 @@ TEST_CASE("a sensor that sees no lamps reads what is reflected, and the sky") {
                           EnvironmentMap("sky", 2, 1, std::vector<glm::vec3>(2, glm::vec3(sky))));
   }
   Sensor sensor{{0.3, 0.6, 0.4}, up};
-  sensor.sees_lamps = false;
+  sensor.sees_lights = false;
   std::vector<double> values;
   double whole_sky = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {

@@ -77,9 +77,9 @@ ClippedArea::ClippedArea(const Scene& scene, const Photons& photons, const Surfa
     : scene_(scene),
       surface_(surface),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
-      lit_(surface.sheets + 1, false) {
+      lit_(surface.components + 1, false) {
   for (const std::uint32_t s : photons.oriented_face) {
-    if (surface.dark[s] == 0) lit_[surface.sheet[s]] = true;
+    if (surface.dark[s] == 0) lit_[surface.component[s]] = true;
   }
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
     normals_.push_back(face_normal(scene, s));
@@ -105,14 +105,15 @@ double ClippedArea::area(const glm::dvec3& hit, std::uint32_t own, double radius
                          DensityKernel kernel) const {
   const glm::dvec3& n = normals_[own];
   const bool in_the_dark = is_in_unlit_region(hit, surface_.original[own]);
-  const std::uint32_t own_sheet = in_the_dark ? surface_.sheets : surface_.sheet[own];
+  const std::uint32_t own_component = in_the_dark ? surface_.components : surface_.component[own];
   double sum = 0, projected = 0;
   for (std::uint32_t s = 0; s < normals_.size(); ++s) {
-    const std::uint32_t sheet = surface_.sheet[s];
+    const std::uint32_t component = surface_.component[s];
     if (surface_.original[s] != s) continue;
-    if (!lit_[sheet] && sheet != own_sheet) continue;
+    if (!lit_[component] && component != own_component) continue;
     if (!normals_agree(normals_[s], n, cos_angle_)) continue;
-    const double exposure = sheet == own_sheet ? 1.0 : static_cast<double>(surface_.exposure[s]);
+    const double exposure =
+        component == own_component ? 1.0 : static_cast<double>(surface_.open_fraction[s]);
     const double part =
         exposure * area_of_triangle(hit, n, scene_.corners(triangle_of(s)), radius, kernel);
     sum += part;

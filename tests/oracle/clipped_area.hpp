@@ -19,14 +19,14 @@ class ClippedArea {
   /// Height of the slab in which surface and photons count, over the radius.
   static constexpr double slab = 0.2;
 
-  /// References are kept. The constructor takes from `surface` the sheets, the exposure and the
+  /// References are kept. The constructor takes from `surface` the components, the exposure and the
   /// unlit regions, and no more.
   ClippedArea(const Scene& scene, const Photons& photons, const SurfaceIndex& surface,
               double angle_degrees);
 
   /// The integral of the kernel, square metres, over the surface within `radius` of a hit and in
-  /// the slab around its plane, of agreeing normal, on sheets where photons landed or on the hit's
-  /// own, without the unlit regions. A hit within an unlit region counts these, too.
+  /// the slab around its plane, of agreeing normal, on components where photons landed or on the
+  /// hit's own, without the unlit regions. A hit within an unlit region counts these, too.
   double area(const glm::dvec3& hit, std::uint32_t oriented_face, double radius,
               DensityKernel kernel = DensityKernel::constant) const;
 
@@ -39,7 +39,7 @@ class ClippedArea {
   const Scene& scene_;
   const SurfaceIndex& surface_;
   double cos_angle_;
-  std::vector<bool> lit_;            ///< per sheet
+  std::vector<bool> lit_;            ///< per component
   std::vector<glm::dvec3> normals_;  ///< per oriented face
 };
 

@@ -78,9 +78,9 @@ OracleNeighbours DensityOracle::nearest(const glm::dvec3& hit, std::uint32_t ori
   std::sort(candidates.begin(), candidates.end());
   OracleNeighbours result;
   result.squared_radius = radius * radius;
-  const auto wanted = static_cast<std::size_t>(k);
-  if (candidates.size() >= wanted) {
-    candidates.resize(wanted);
+  const auto requested = static_cast<std::size_t>(k);
+  if (candidates.size() >= requested) {
+    candidates.resize(requested);
     result.squared_radius = candidates.back().first;
   }
   for (const auto& [squared_distance, photon] : candidates) {

@@ -185,10 +185,10 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser")]
 
 
-def channels_of(file, wanted):
+def channels_of(file, requested):
     picture = oiio.ImageInput.open(str(file))
     names = picture.spec().channelnames
-    channels = [names.index(channel) for channel in wanted]
+    channels = [names.index(channel) for channel in requested]
     return np.asarray(picture.read_image(format=oiio.FLOAT))[:, :, channels].astype(float)
 
 
@@ -382,8 +382,8 @@ page.wake();
 MIDDLE, NORTH = [3, 1.6, 2.5], [0, 0, -1]
 
 
-def near(value, wanted, tolerance):
-    assert np.all(np.abs(np.asarray(value, float) - wanted) <= tolerance), (value, wanted)
+def near(value, requested, tolerance):
+    assert np.all(np.abs(np.asarray(value, float) - requested) <= tolerance), (value, requested)
 
 
 def check_keyboard(browser):

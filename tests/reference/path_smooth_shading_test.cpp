@@ -40,11 +40,11 @@ TEST_CASE("The eye sees the sun on a sphere of facets by the cosine to the inter
   const SmoothMesh sphere = smooth_sphere(glm::dvec3(0.0), 0.5);
   const Scene scene = sphere_in_sun(sphere);
   REQUIRE(needs_of(scene).smooth_shading);
-  for (const SmoothMesh::Place& place : sphere.places()) {
-    const double facet = glm::dot(place.sensor.normal, to_sun);
-    const double smooth = glm::dot(place.smooth, to_sun);
+  for (const SmoothMesh::TestPoint& test_point : sphere.test_points()) {
+    const double facet = glm::dot(test_point.sensor.normal, to_sun);
+    const double smooth = glm::dot(test_point.smooth, to_sun);
     CAPTURE(facet, smooth);
-    const PathMeans light = seen(scene, place.sensor, 1);
+    const PathMeans light = seen(scene, test_point.sensor, 1);
     // Lux is that of the facet, and what is below it is not seen.
     CHECK(light.irradiance.at(0) == Approx(sun_lux * std::max(0.0, facet)).margin(0.05));
     CHECK(light.radiance.at(0) ==
@@ -76,10 +76,10 @@ TEST_CASE("Under an even sky a turned normal sees (1 + cosine) / 2 of it") {
   ring.add_to(builder, builder.add(diffuse(glm::vec3(albedo))));
   builder.add_surroundings("sky", EnvironmentMap("sky", 2, 1, std::vector(2, glm::vec3(1.0f))));
   const Scene scene = builder.build();
-  const SmoothMesh::Place place = ring.places({0.9, 0.07, 0.03}).front();
-  const double cosine = glm::dot(place.sensor.normal, place.smooth);
+  const SmoothMesh::TestPoint test_point = ring.test_points({0.9, 0.07, 0.03}).front();
+  const double cosine = glm::dot(test_point.sensor.normal, test_point.smooth);
   REQUIRE(cosine < 0.95);
-  const PathMeans light = seen(scene, place.sensor, 20'000);
+  const PathMeans light = seen(scene, test_point.sensor, 20'000);
   CHECK(light.radiance.at(0) / light.irradiance.at(0) ==
         Approx(albedo / pi * (1 + cosine) / 2).epsilon(0.01));
 }

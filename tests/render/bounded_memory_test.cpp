@@ -81,7 +81,7 @@ TEST_CASE("maps that keep normals give the same bits within an eighth of the mem
   parameters.maps = MapMode::patch;
   Device device;
   const RenderResult expected = render_by_all_maps(scene, device, parameters);
-  CHECK(figure(expected.statistics, "mixed maps") > 0);
+  CHECK(figure(expected.statistics, "normal-filtered maps") > 0);
   Device small = limited_device(device.peak_allocated_bytes() / 8);
   const RenderResult result = render(scene, test::room_camera(), small, parameters);
   CHECK(test::same_bits(result.layers, expected.layers));

@@ -17,9 +17,9 @@ namespace {
 
 using std::numbers::pi;
 
-RenderParameters by_rays(int looks, std::uint64_t seed = 1) {
+RenderParameters by_rays(int light_samples, std::uint64_t seed = 1) {
   RenderParameters parameters;
-  parameters.direct_rays = looks;
+  parameters.direct_rays = light_samples;
   parameters.film.width = parameters.film.height = 1;
   parameters.film.samples_per_pixel = 1;
   parameters.photons.emitted_photons = 100'000;
@@ -178,7 +178,7 @@ TEST_CASE("direct rays: paths find direct light themselves") {
         Means(trace_paths(scene, test::above(2.6, 2.2, 2.0, 0.4), film).layers).radiance);
 }
 
-TEST_CASE("direct rays: more looks than the limit are refused") {
+TEST_CASE("direct rays: more light samples than the limit are refused") {
   Scene scene = test::closed_box(test::diffuse(glm::vec3(0.5f)));
   CHECK_THROWS_AS(
       render(scene, test::above(0.5, 0.5, 0.5, 0.1), test::device(), by_rays(1'000'000)),

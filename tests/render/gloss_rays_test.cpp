@@ -215,7 +215,7 @@ TEST_CASE("gloss by rays: lobes and light maps together see what paths see", "[l
   check_room(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), with_rays(), 0.06);
 }
 
-TEST_CASE("gloss by rays: with looks at lamps from each hit they see what paths see, too",
+TEST_CASE("gloss by rays: with light samples at each hit they see what paths see, too",
           "[long][slow]") {
   RenderParameters parameters = with_rays();
   parameters.light_maps = LightMapMode::off;
@@ -316,11 +316,11 @@ TEST_CASE("photons suit reflections that count little beside the surface that sh
   CHECK(all_suit({}, faint, 0.039));
 }
 
-TEST_CASE("photons suit reflections of many blotches, whose noise averages out") {
-  // 16 blotches have a quarter of the noise of one.
+TEST_CASE("photons suit reflections of many independent estimates, whose noise averages out") {
+  // 16 of them have a quarter of the noise of one.
   CHECK(all_suit({}, hits_in_a_row(16, 0.1, 0.7), 4 * 0.039));
   CHECK_FALSE(all_suit({}, hits_in_a_row(16, 0.1, 0.7), 4 * 0.041));
-  // Hits within one blotch are of no use.
+  // Hits that err alike are of no use.
   CHECK_FALSE(all_suit({}, hits_in_a_row(16, 0.0001, 0.7), 0.041));
   // Four pairs, far from each other: as four.
   PrimaryHits pairs = hits_in_a_row(8, 0.0, 0.7);

@@ -118,7 +118,7 @@ PrimaryHitBatch random_batch(int first, int last, std::mt19937& random) {
     batch.hits.pixel.push_back(pixel());
     batch.hits.throughput.emplace_back(uniform(random), uniform(random), uniform(random));
     batch.hits.diffuse_albedo.emplace_back(uniform(random));
-    batch.hits.share.push_back(uniform(random));
+    batch.hits.fraction.push_back(uniform(random));
   }
   for (int i = 0; i < 20; ++i) {
     batch.emission.push_back(

@@ -66,11 +66,11 @@ TEST_CASE("where no time was measured all devices share evenly") {
 
 TEST_CASE("shares count every hit") {
   estimate::LoadBalance balance(2);
-  CHECK(balance.shares() == std::vector<double>{0, 0});
+  CHECK(balance.fractions() == std::vector<double>{0, 0});
   balance.record(0, 30, 1);
   balance.record(1, 10, 1);
   balance.end_round();
-  CHECK(balance.shares() == std::vector<double>{0.75, 0.25});
+  CHECK(balance.fractions() == std::vector<double>{0.75, 0.25});
 }
 
 }  // namespace photile::test

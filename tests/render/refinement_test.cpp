@@ -91,10 +91,11 @@ TEST_CASE("refinement: a picture that is good enough is the only one") {
 
 TEST_CASE("refinement: each picture has twice the work, until one states the error") {
   Studio studio;
-  const double wanted = GENERATE(0.015, 0.01, 0.004);
-  const RenderResult result = refine({.error = wanted}, good(), studio.steps(), Progress::none());
-  CHECK(standard_error_of(result) <= wanted);
-  CHECK(standard_error_of(result) > wanted / std::sqrt(2.0));  // half the work does not do
+  const double requested = GENERATE(0.015, 0.01, 0.004);
+  const RenderResult result =
+      refine({.error = requested}, good(), studio.steps(), Progress::none());
+  CHECK(standard_error_of(result) <= requested);
+  CHECK(standard_error_of(result) > requested / std::sqrt(2.0));  // half the work does not do
   CHECK(studio.finished_at.size() == studio.made.size());
   for (std::size_t i = 1; i < studio.made.size(); ++i) {
     const RenderParameters &now = studio.made[i], &before = studio.made[i - 1];

@@ -36,10 +36,10 @@ TEST_CASE("two sub-devices render the bits of one device") {
   std::vector<Device> devices = halves();
   const auto result = render(scene, test::room_camera(), devices, parameters());
   CHECK(test::same_bits(result.layers, expected.layers));
-  REQUIRE(result.device_shares.size() == 2);
-  CHECK(result.device_shares[0] > 0);
-  CHECK(result.device_shares[1] > 0);
-  CHECK(result.device_shares[0] + result.device_shares[1] == Approx(1));
+  REQUIRE(result.device_fractions.size() == 2);
+  CHECK(result.device_fractions[0] > 0);
+  CHECK(result.device_fractions[1] > 0);
+  CHECK(result.device_fractions[0] + result.device_fractions[1] == Approx(1));
 }
 
 TEST_CASE("two sub-devices gather the bits of one device") {
@@ -66,7 +66,7 @@ TEST_CASE("the statistics name each device with its share") {
     const auto figure = std::find_if(stage->figures.begin(), stage->figures.end(),
                                      [&](const auto& f) { return f.first == name; });
     REQUIRE(figure != stage->figures.end());
-    CHECK(figure->second == result.device_shares[i]);
+    CHECK(figure->second == result.device_fractions[i]);
   }
 }
 

@@ -126,9 +126,9 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
     const maps::MapPage& page = maps::store_of(maps).pages.use(i);
     device::Context& context = device::context_of(maps.device());
     print_hash(test, "cell_start", context, page.cell_start);
-    print_hash(test, "entry_photon", context, page.entry_photon);
-    print_hash(test, "entry_position", context, page.entry_position);
-    print_hash(test, "entry_flux", context, page.entry_flux);
+    print_hash(test, "record_photon", context, page.record_photon);
+    print_hash(test, "record_position", context, page.record_position);
+    print_hash(test, "record_flux", context, page.record_flux);
   }
   Estimator estimator(maps, test.scene, test.parameters());
   const NeighbourLists lists = estimator.nearest(hits);

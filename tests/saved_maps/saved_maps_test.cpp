@@ -36,7 +36,7 @@ struct Saved {
       : file(folder.path / "maps.photile") {
     SceneRenderer renderer(
         scene, std::span(&test::device(), 1), parameters, nullptr,
-        [&](const PreparedPhotons& prepared) { saved_maps::save(file, scene, words, prepared); });
+        [&](const TracedPhotons& prepared) { saved_maps::save(file, scene, words, prepared); });
     layers = renderer.render(scene_camera(), parameters.film).layers;
   }
 
@@ -62,7 +62,7 @@ TEST_CASE("a picture from loaded maps is the picture, bit for bit") {
       GENERATE(MapMode::automatic, MapMode::triangle, MapMode::patch, MapMode::naive);
   const RenderParameters parameters = small(mode);
   const Saved saved(scene, parameters);
-  PreparedPhotons prepared = saved_maps::load(saved.file, scene, words);
+  TracedPhotons prepared = saved_maps::load(saved.file, scene, words);
   SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters, &prepared);
   const LightLayers layers = renderer.render(Saved::scene_camera(), parameters.film).layers;
   for (std::size_t light = 0; light < layers.layers.size(); ++light) {
@@ -111,7 +111,7 @@ struct SavedRoom {
   explicit SavedRoom(int light_map_rays) : parameters(small()) {
     parameters.light_maps = LightMapMode::on;
     parameters.light_map_rays = light_map_rays;
-    SceneRenderer renderer = made(parameters, nullptr, [&](const PreparedPhotons& photons) {
+    SceneRenderer renderer = made(parameters, nullptr, [&](const TracedPhotons& photons) {
       saved_maps::save(file, scene, words, photons);
     });
     CHECK_FALSE(renderer.light_maps());
@@ -125,11 +125,11 @@ struct SavedRoom {
   static Camera towards_a_corner() {
     return Camera::look_at({0.5, 0.3, 1.5}, {0.1, 2.9, 0.2}, {0, 0, 1}, 1.0);
   }
-  SceneRenderer made(const RenderParameters& with, PreparedPhotons* prepared,
+  SceneRenderer made(const RenderParameters& with, TracedPhotons* prepared,
                      const KeepPhotons& keep = {}) const {
     return SceneRenderer(scene, std::span(&test::device(), 1), with, prepared, keep);
   }
-  PreparedPhotons loaded() const { return saved_maps::load(file, scene, words); }
+  TracedPhotons loaded() const { return saved_maps::load(file, scene, words); }
   std::vector<glm::vec3> draw(SceneRenderer& renderer, const Camera& camera, double seconds) {
     std::vector<glm::vec3> picture(24 * 16);
     const std::vector<glm::vec3> powers(2, glm::vec3(1.0f));
@@ -159,7 +159,7 @@ struct SavedRoom {
 
 TEST_CASE("light maps are kept with their photons, and read again without an estimate") {
   SavedRoom room(GENERATE(0, 16));  // nodes by photons, and by rays
-  PreparedPhotons prepared = room.loaded();
+  TracedPhotons prepared = room.loaded();
   REQUIRE(prepared.light_maps);
   SECTION("the same settings") {
     SceneRenderer renderer = room.made(room.parameters, &prepared);
@@ -213,7 +213,7 @@ TEST_CASE("a file whose light maps are damaged, or cut off anywhere, is refused"
   }();
   foreign.error.pop_back();
   saved_maps::add_light_maps(room.file, foreign);
-  PreparedPhotons prepared = room.loaded();
+  TracedPhotons prepared = room.loaded();
   CHECK_THROWS_AS(room.made(room.parameters, &prepared), InputError);
 }
 
@@ -260,16 +260,16 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   const Scene scene = test::furnished_room();
   const TemporaryFolder folder;
   const auto file = folder.path / "maps.photile";
-  PreparedPhotons good;
+  TracedPhotons good;
   const SceneRenderer renderer(scene, std::span(&test::device(), 1), small(), nullptr,
-                               [&](const PreparedPhotons& prepared) { good = prepared; });
-  const auto refused = [&](const PreparedPhotons& bad) {
+                               [&](const TracedPhotons& prepared) { good = prepared; });
+  const auto refused = [&](const TracedPhotons& bad) {
     saved_maps::save(file, scene, words, bad);
     CHECK_THROWS_AS(saved_maps::load(file, scene, words), InputError);
   };
   saved_maps::save(file, scene, words, good);
   CHECK_NOTHROW(saved_maps::load(file, scene, words));
-  PreparedPhotons bad = good;
+  TracedPhotons bad = good;
   SECTION("light") { bad.photons.light[0] = 7; }
   SECTION("triangle") { bad.photons.oriented_face[0] = 1'000'000; }
   SECTION("rows") { bad.photons.first_of[1] = 0xFFFF'FFFF; }

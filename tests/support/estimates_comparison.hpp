@@ -42,7 +42,7 @@ inline double coat_polynomial(const std::array<double, 9>& c, double x, double y
          c[6] * x * x * y + c[7] * x * y * y + c[8] * x * x * y * y;
 }
 
-/// Weights of F0 and F90 in the albedo of one facet's reflection at this cosine.
+/// Weights of F0 and F90 in the albedo of one region's reflection at this cosine.
 inline std::array<double, 2> coat_weights(double cosine, double alpha) {
   using Polynomial = std::array<double, 9>;
   constexpr Polynomial f0_above{0.1003, -0.6303, 9.748, -2.038, 29.34,
@@ -66,7 +66,7 @@ inline std::array<double, 2> mean_coat_weights(double a) {
           0.0505 + a * (-0.1978 + a * (0.3510 + a * (-0.2979 + a * 0.0968)))};
 }
 
-/// Several facets and the base, as the head of photile/device/bsdf.h states them.
+/// Several regions and the base, as the head of photile/device/bsdf.h states them.
 inline double diffuse_bsdf(double n_dot_i, double n_dot_o, double albedo, double f0, double f90,
                            double alpha) {
   const auto mean = mean_coat_weights(alpha);

@@ -23,7 +23,7 @@ inline std::size_t count_differences(const PrimaryHits& hits, const NeighbourLis
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const glm::dvec3 position = hits.position[hit];
     const auto expected = oracle.nearest(position, hits.oriented_face[hit], found.k, radius);
-    const std::set<std::uint32_t> wanted(expected.photons.begin(), expected.photons.end());
+    const std::set<std::uint32_t> requested(expected.photons.begin(), expected.photons.end());
     std::set<std::uint32_t> got;
     for (std::size_t i = 0; i < k; ++i) {
       const std::uint32_t photon = found.photons[hit * k + i];
@@ -35,12 +35,12 @@ inline std::size_t count_differences(const PrimaryHits& hits, const NeighbourLis
       return std::abs(glm::dot(offset, offset) - border) <= tie * border;
     };
     std::vector<std::uint32_t> only_one;
-    std::set_symmetric_difference(wanted.begin(), wanted.end(), got.begin(), got.end(),
+    std::set_symmetric_difference(requested.begin(), requested.end(), got.begin(), got.end(),
                                   std::back_inserter(only_one));
     const bool only_ties = std::all_of(only_one.begin(), only_one.end(), is_tied);
     const bool radius_agrees = std::abs(double{found.squared_radius[hit]} - border) <= tie * border;
     // Both find as many neighbours, unless photons tie with the search radius itself.
-    const bool same_number = wanted.size() == got.size() || border == radius * radius;
+    const bool same_number = requested.size() == got.size() || border == radius * radius;
     if (!only_ties || !radius_agrees || !same_number) ++differences;
   }
   return differences;

@@ -1,4 +1,4 @@
-// Round bodies of few facets, with the vertex normals of the round surface.
+// Round bodies of few regions, with the vertex normals of the round surface.
 #pragma once
 
 #include <array>
@@ -24,41 +24,44 @@ struct SmoothMesh {
     builder.add(arrays);
   }
 
-  /// A place within a triangle, and the normal of the round surface as its corners say it.
-  struct Place {
+  /// A point within a triangle, and the normal of the round surface as its corners say it.
+  struct TestPoint {
     Sensor sensor;        ///< looks along the normal of the triangle
     glm::dvec3 smooth{};  ///< unit, interpolated
   };
   /// One on each triangle.
   ///   weights   of its corners
-  std::vector<Place> places(const std::array<double, 3>& weights = {0.55, 0.3, 0.15}) const {
-    std::vector<Place> places;
+  std::vector<TestPoint> test_points(const std::array<double, 3>& weights = {0.55, 0.3,
+                                                                             0.15}) const {
+    std::vector<TestPoint> test_points;
     for (const glm::uvec3& triangle : triangles) {
-      Place place;
-      place.sensor.position = glm::dvec3(0.0);
+      TestPoint test_point;
+      test_point.sensor.position = glm::dvec3(0.0);
       for (int i = 0; i < 3; ++i) {
-        place.sensor.position +=
+        test_point.sensor.position +=
             weights[static_cast<std::size_t>(i)] * glm::dvec3(vertices[triangle[i]]);
-        place.smooth += weights[static_cast<std::size_t>(i)] * glm::dvec3(normals[triangle[i]]);
+        test_point.smooth +=
+            weights[static_cast<std::size_t>(i)] * glm::dvec3(normals[triangle[i]]);
       }
       const glm::dvec3 a(vertices[triangle.x]), b(vertices[triangle.y]), c(vertices[triangle.z]);
-      place.sensor.normal = glm::normalize(glm::cross(b - a, c - a));
-      place.smooth = glm::normalize(place.smooth);
-      places.push_back(place);
+      test_point.sensor.normal = glm::normalize(glm::cross(b - a, c - a));
+      test_point.smooth = glm::normalize(test_point.smooth);
+      test_points.push_back(test_point);
     }
-    return places;
+    return test_points;
   }
 };
 
 /// The surface that radius(height) sweeps about the z axis through the centre, from pole to pole.
-///   point   of a turn and a row in [0, 1]: place and outward normal
+///   point   of a turn and a row in [0, 1]: point and outward normal
 template <class Point>
 SmoothMesh swept(std::uint32_t segments, std::uint32_t rows, const Point& point) {
   SmoothMesh mesh;
   for (std::uint32_t j = 0; j <= rows; ++j) {
     for (std::uint32_t i = 0; i < segments; ++i) {
-      const auto [place, normal] = point(2 * std::numbers::pi * i / segments, double(j) / rows);
-      mesh.vertices.emplace_back(place);
+      const auto [test_point, normal] =
+          point(2 * std::numbers::pi * i / segments, double(j) / rows);
+      mesh.vertices.emplace_back(test_point);
       mesh.normals.emplace_back(normal);
     }
   }

@@ -13,9 +13,9 @@
 #include "photile/surface_index.hpp"
 #include "photon_sets.hpp"
 #include "surface/boundary_edges.hpp"
-#include "surface/exposure.hpp"
-#include "surface/facets.hpp"
-#include "surface/sheets.hpp"
+#include "surface/coplanar_regions.hpp"
+#include "surface/open_fraction.hpp"
+#include "surface/smooth_components.hpp"
 #include "surface/unlit_sides.hpp"
 #include "test_scenes.hpp"
 
@@ -75,7 +75,7 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
   }
 }
 
-// Sides that no photon reaches, by what their sheet lets expect.
+// Sides that no photon reaches, by what their component lets expect.
 
 /// The unlit sides of a plate of 200 equal triangles, where so many photons landed on the front of
 /// each triangle, and none on the first ones.
@@ -86,8 +86,8 @@ std::vector<std::uint32_t> unlit_sides(std::uint32_t on_each, std::uint32_t empt
   std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
   for (std::uint32_t t = empty; t < scene.triangle_count(); ++t) landed[oriented(t, 0)] = on_each;
   const auto connections = surface::find_connections(mesh, 0.1, 60);
-  const auto dark =
-      surface::find_unlit_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
+  const auto dark = surface::find_unlit_sides(mesh, connections,
+                                              surface::join_components(mesh, connections), landed);
   std::vector<std::uint32_t> found;
   for (std::uint32_t s = 0; s < dark.size(); ++s) {
     if (dark[s] != 0) found.push_back(s);
@@ -131,7 +131,7 @@ float floor_exposure(const Scene& scene, bool tiles_lit) {
     landed[s] = face_normal(scene, s).z > 0.9 && (is_floor || tiles_lit);
     if (is_floor && landed[s] != 0 && floor == none) floor = s;
   }
-  return index_surface(scene, landed, radius, 60).exposure[floor];
+  return index_surface(scene, landed, radius, 60).open_fraction[floor];
 }
 
 TEST_CASE("a floor under tiles lies open in the joints") {
@@ -144,7 +144,7 @@ TEST_CASE("a floor that is covered by less than half counts as open") {
 }
 
 TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers nothing") {
-  const auto exposure = [](float height, bool lit_below) {
+  const auto open_fraction = [](float height, bool lit_below) {
     test::SceneBuilder room;
     const std::uint32_t white = room.add(test::diffuse(glm::vec3(0.5f)));
     room.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
@@ -156,12 +156,12 @@ TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers 
     }
     const SurfaceIndex index = index_surface(scene, landed, radius, 60);
     float least = 1;
-    for (const float one : index.exposure) least = std::min(least, one);
+    for (const float one : index.open_fraction) least = std::min(least, one);
     return least;
   };
-  CHECK(exposure(0.015f, false) == 0.0f);
-  CHECK(exposure(0.025f, false) == 1.0f);
-  CHECK(exposure(0.015f, true) == 1.0f);
+  CHECK(open_fraction(0.015f, false) == 0.0f);
+  CHECK(open_fraction(0.025f, false) == 1.0f);
+  CHECK(open_fraction(0.015f, true) == 1.0f);
 }
 
 // The search for edges that run along each other, beside all pairs.
@@ -224,51 +224,51 @@ TEST_CASE("of thousands of edges in one place each meets no more than it may") {
   }
 }
 
-// What belongs to one sheet of surface, and what light reaches with it.
+// What belongs to one component of surface, and what light reaches with it.
 
 constexpr double sheet_radius = 0.1;
 
-surface::Sheets sheets_of(const Scene& scene, double angle = 60) {
-  return surface::find_sheets(surface::SurfaceMesh(scene), sheet_radius, angle);
+surface::SmoothComponents components_of(const Scene& scene, double angle = 60) {
+  return surface::find_smooth_components(surface::SurfaceMesh(scene), sheet_radius, angle);
 }
 
-/// Sheets of the sides that look along +z.
+/// Smooth components of the sides that look along +z.
 std::set<std::uint32_t> sheets_facing_up(const Scene& scene) {
-  const surface::Sheets sheets = sheets_of(scene);
+  const surface::SmoothComponents components = components_of(scene);
   std::set<std::uint32_t> found;
-  for (std::uint32_t s = 0; s < sheets.of.size(); ++s) {
-    if (face_normal(scene, s).z > 0.9) found.insert(sheets.of[s]);
+  for (std::uint32_t s = 0; s < components.of.size(); ++s) {
+    if (face_normal(scene, s).z > 0.9) found.insert(components.of[s]);
   }
   return found;
 }
 
-TEST_CASE("a plate of any triangulation has two sheets, its sides") {
+TEST_CASE("a plate of any triangulation has two components, its sides") {
   for (const int cells : {1, 5}) {
     const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
-    const surface::Sheets sheets = sheets_of(scene);
-    CHECK(sheets.count == 2);
+    const surface::SmoothComponents components = components_of(scene);
+    CHECK(components.count == 2);
     CHECK(sheets_facing_up(scene).size() == 1);
   }
 }
 
-TEST_CASE("a box has twelve sheets, and two where its edges do not part them") {
+TEST_CASE("a box has twelve components, and two where its edges do not part them") {
   test::SceneBuilder builder;
   builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.5f))), false,
               3);
   const Scene scene = builder.build();
-  CHECK(sheets_of(scene, 60).count == 12);
-  CHECK(sheets_of(scene, 91).count == 2);
+  CHECK(components_of(scene, 60).count == 12);
+  CHECK(components_of(scene, 91).count == 2);
 }
 
-TEST_CASE("sheets of a curved surface follow it round, however its triangles are wound") {
+TEST_CASE("components of a curved surface follow it round, however its triangles are wound") {
   Scene scene = test::empty_scene();
   test::add_torus(scene, 1.0f, 0.4f, 24, 16);
-  CHECK(sheets_of(scene).count == 2);
+  CHECK(components_of(scene).count == 2);
   // Corners in another order turn a triangle's sides over.
   for (std::size_t t = 0; t < scene.triangle_count(); t += 3) {
     std::swap(scene.triangles[t].y, scene.triangles[t].z);
   }
-  CHECK(sheets_of(scene).count == 2);
+  CHECK(components_of(scene).count == 2);
 }
 
 /// Triangles round one edge, at random or at even angles, half of them wound the other way.
@@ -310,21 +310,22 @@ TEST_CASE("the blades of a fan are joined as by all pairs, of which few are look
             }
           }
         }
-        std::map<std::uint32_t, std::uint32_t> sheet_of;
-        const surface::Sheets sheets = sheets_of(scene, angle);
+        std::map<std::uint32_t, std::uint32_t> component_of;
+        const surface::SmoothComponents components = components_of(scene, angle);
         bool same = true;
-        for (std::uint32_t s = 0; s < sheets.of.size(); ++s) {
-          same &= sheet_of.try_emplace(pairs.find(s), sheets.of[s]).first->second == sheets.of[s];
+        for (std::uint32_t s = 0; s < components.of.size(); ++s) {
+          same &= component_of.try_emplace(pairs.find(s), components.of[s]).first->second ==
+                  components.of[s];
         }
         CHECK(same);
-        CHECK(sheet_of.size() == sheets.count);
+        CHECK(component_of.size() == components.count);
       }
       CHECK(surface::find_connections(mesh, sheet_radius, 60).size() <= 8 * scene.triangle_count());
     }
   }
 }
 
-TEST_CASE("coplanar pieces that touch make one sheet without a common corner") {
+TEST_CASE("coplanar pieces that touch make one component without a common corner") {
   test::SceneBuilder builder;
   const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
@@ -336,7 +337,7 @@ TEST_CASE("coplanar pieces that touch make one sheet without a common corner") {
 
 TEST_CASE("wherever they lie, pieces connect along a longer edge, and not beyond its end") {
   for (const float shift : {-3.0f, 0.0f, 3.0f}) {
-    const auto sheets_beside = [&](float from, float to) {
+    const auto components_beside = [&](float from, float to) {
       test::SceneBuilder builder;
       const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
       builder.grid({0, shift, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
@@ -344,8 +345,8 @@ TEST_CASE("wherever they lie, pieces connect along a longer edge, and not beyond
       return sheets_facing_up(builder.build()).size();
     };
     CAPTURE(shift);
-    CHECK(sheets_beside(-0.5f, 1.5f) == 1);
-    CHECK(sheets_beside(1.5f, 2.5f) == 2);
+    CHECK(components_beside(-0.5f, 1.5f) == 1);
+    CHECK(components_beside(1.5f, 2.5f) == 2);
   }
 }
 
@@ -357,7 +358,7 @@ TEST_CASE("pieces that overlap in a plane stay apart") {
   CHECK(sheets_facing_up(builder.build()).size() == 2);
 }
 
-TEST_CASE("mirrors are no part of the sheets of what is round them") {
+TEST_CASE("mirrors are no part of the components of what is round them") {
   test::SceneBuilder builder;
   const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
   const std::uint32_t silver = builder.add(test::mirror(glm::vec3(0.9f)));
@@ -375,25 +376,26 @@ TEST_CASE("of coincident triangles the first stands for all, on the side that lo
   CHECK(mesh.original == std::vector<std::uint32_t>{0, 1, 1, 0, 0, 1});
 }
 
-// Facets: their extent, and the edges that bound them.
+// Coplanar regions: their extent, and the edges that bound them.
 
-double border_length(const surface::Facets& facets) {
+double border_length(const surface::CoplanarRegions& regions) {
   double length = 0;
-  for (const surface::BorderEdge& edge : facets.borders)
+  for (const surface::BorderEdge& edge : regions.borders)
     length += glm::distance(edge.from, edge.to);
   return length;
 }
 
-TEST_CASE("a plate is one facet, bounded by its outline, for any triangulation") {
+TEST_CASE("a plate is one region, bounded by its outline, for any triangulation") {
   for (const int cells : {1, 3, 20}) {
     const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
-    const surface::Facets facets = surface::find_facets(surface::SurfaceMesh(scene), 0.1);
-    const std::set<std::uint32_t> numbers(facets.of_triangle.begin(), facets.of_triangle.end());
+    const surface::CoplanarRegions regions =
+        surface::find_coplanar_regions(surface::SurfaceMesh(scene), 0.1);
+    const std::set<std::uint32_t> numbers(regions.of_triangle.begin(), regions.of_triangle.end());
     CHECK(numbers.size() == 1);
-    CHECK(numbers.count(PHOTILE_NO_FACET) == 0);
-    CHECK(facets.borders.size() == static_cast<std::size_t>(4 * cells));
-    CHECK(border_length(facets) == Approx(4.0));
-    for (const surface::BorderEdge& edge : facets.borders) {
+    CHECK(numbers.count(PHOTILE_NO_REGION) == 0);
+    CHECK(regions.borders.size() == static_cast<std::size_t>(4 * cells));
+    CHECK(border_length(regions) == Approx(4.0));
+    for (const surface::BorderEdge& edge : regions.borders) {
       const glm::vec3 middle = 0.5f * (edge.from + edge.to);
       CHECK(glm::length(edge.inward) == Approx(1.0));
       CHECK(glm::dot(edge.inward, middle) == Approx(-0.5));  // towards the plate's centre
@@ -407,17 +409,17 @@ TEST_CASE("faces of a box bound each other; small ones are looked at triangle by
               4);
   const Scene scene = builder.build();
   const surface::SurfaceMesh mesh(scene);
-  const surface::Facets large = surface::find_facets(mesh, 0.1);
+  const surface::CoplanarRegions large = surface::find_coplanar_regions(mesh, 0.1);
   CHECK(border_length(large) == Approx(24.0));
-  const surface::Facets small = surface::find_facets(mesh, 2.0);
+  const surface::CoplanarRegions small = surface::find_coplanar_regions(mesh, 2.0);
   CHECK(small.borders.empty());
   CHECK(std::set<std::uint32_t>(small.plane.begin(), small.plane.end()).size() == 6);
 }
 
-TEST_CASE("a curved surface has no facets, and slow curvature adds up") {
+TEST_CASE("a curved surface has no regions, and slow curvature adds up") {
   Scene scene = test::empty_scene();
   test::add_torus(scene, 1.0f, 0.4f, 24, 16);
-  CHECK(surface::find_facets(surface::SurfaceMesh(scene), 0.3).borders.empty());
+  CHECK(surface::find_coplanar_regions(surface::SurfaceMesh(scene), 0.3).borders.empty());
   // A cylinder of 1 km: neighbouring strips of 2 cm fold by 2e-5 rad, as flat as rounding leaves a
   // plane. Over its 40 m the normals turn by 0.04 rad.
   Scene slow = test::empty_scene();
@@ -428,12 +430,13 @@ TEST_CASE("a curved surface has no facets, and slow curvature adds up") {
     test::add_triangle(slow, a, b, b + up);
     test::add_triangle(slow, a, b + up, a + up);
   }
-  const surface::Facets facets = surface::find_facets(surface::SurfaceMesh(slow), 0.1);
-  std::map<std::uint32_t, std::pair<double, double>> lean;  // of each facet's normals
+  const surface::CoplanarRegions regions =
+      surface::find_coplanar_regions(surface::SurfaceMesh(slow), 0.1);
+  std::map<std::uint32_t, std::pair<double, double>> lean;  // of each region's normals
   const surface::SurfaceMesh mesh(slow);
   for (std::uint32_t t = 0; t < slow.triangle_count(); ++t) {
     const double x = mesh.normal[t].x;
-    const auto [entry, isnew] = lean.try_emplace(facets.plane[t], x, x);
+    const auto [entry, isnew] = lean.try_emplace(regions.plane[t], x, x);
     entry->second = {std::min(entry->second.first, x), std::max(entry->second.second, x)};
   }
   CHECK(lean.size() > 20);
@@ -445,8 +448,9 @@ TEST_CASE("an edge of three triangles in a plane bounds all of them") {
   test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   test::add_triangle(scene, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
   test::add_triangle(scene, {1, 0, 0}, {2, 2, 0}, {0, 1, 0});  // overlaps the second
-  const surface::Facets facets = surface::find_facets(surface::SurfaceMesh(scene), 0.1);
-  CHECK(std::set<std::uint32_t>(facets.plane.begin(), facets.plane.end()).size() == 3);
+  const surface::CoplanarRegions regions =
+      surface::find_coplanar_regions(surface::SurfaceMesh(scene), 0.1);
+  CHECK(std::set<std::uint32_t>(regions.plane.begin(), regions.plane.end()).size() == 3);
 }
 
 }  // namespace

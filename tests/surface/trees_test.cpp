@@ -5,7 +5,7 @@
 #include <set>
 
 #include "photon_sets.hpp"
-#include "surface/facets.hpp"
+#include "surface/coplanar_regions.hpp"
 #include "surface/surface_tree.hpp"
 #include "test_scenes.hpp"
 
@@ -14,14 +14,14 @@ namespace {
 
 // The search for triangles of other planes, beside all pairs.
 
-/// Triangles of other facets within the radius, by looking at all.
+/// Triangles of other regions within the radius, by looking at all.
 std::set<std::uint32_t> others_within(const surface::SurfaceMesh& mesh,
-                                      const surface::Facets& facets, std::uint32_t triangle,
-                                      double radius) {
+                                      const surface::CoplanarRegions& regions,
+                                      std::uint32_t triangle, double radius) {
   const geometry::Box box = geometry::triangle_box(mesh.scene, triangle);
   std::set<std::uint32_t> found;
   for (std::uint32_t other = 0; other < mesh.scene.triangle_count(); ++other) {
-    if (mesh.counts(other) && facets.plane[other] != facets.plane[triangle] &&
+    if (mesh.counts(other) && regions.plane[other] != regions.plane[triangle] &&
         geometry::squared_distance(box, geometry::triangle_box(mesh.scene, other)) <=
             radius * radius) {
       found.insert(other);
@@ -39,8 +39,8 @@ TEST_CASE("triangles of other planes are all found, and none of the own") {
   test::add_torus(scene, 0.3f, 0.1f, 12, 8);
   const surface::SurfaceMesh mesh(scene);
   for (const double radius : {0.02, 0.15}) {
-    const surface::Facets facets = surface::find_facets(mesh, radius);
-    const surface::PlaneTree planes(mesh, facets);
+    const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, radius);
+    const surface::PlaneTree planes(mesh, regions);
     for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
       std::set<std::uint32_t> visited;
       planes.visit_others(triangle, geometry::triangle_box(scene, triangle), radius,
@@ -50,9 +50,9 @@ TEST_CASE("triangles of other planes are all found, and none of the own") {
                           });
       bool own_plane = false, missed = false;
       for (const std::uint32_t other : visited) {
-        own_plane |= facets.plane[other] == facets.plane[triangle];
+        own_plane |= regions.plane[other] == regions.plane[triangle];
       }
-      for (const std::uint32_t other : others_within(mesh, facets, triangle, radius)) {
+      for (const std::uint32_t other : others_within(mesh, regions, triangle, radius)) {
         missed |= visited.count(other) == 0;
       }
       INFO("triangle " << triangle << ", radius " << radius);
@@ -67,8 +67,8 @@ TEST_CASE("of two triangles at an angle each finds the other") {
   test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
   const surface::SurfaceMesh mesh(scene);
-  const surface::Facets facets = surface::find_facets(mesh, 0.1);
-  const surface::PlaneTree planes(mesh, facets);
+  const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, 0.1);
+  const surface::PlaneTree planes(mesh, regions);
   for (const std::uint32_t triangle : {0u, 1u}) {
     std::vector<std::uint32_t> found;
     planes.visit_others(triangle, geometry::triangle_box(scene, triangle), 0.1,
@@ -86,8 +86,8 @@ TEST_CASE("a search for triangles of other planes ends where it is told to") {
               4);
   const Scene scene = builder.build();
   const surface::SurfaceMesh mesh(scene);
-  const surface::Facets facets = surface::find_facets(mesh, 0.1);
-  const surface::PlaneTree planes(mesh, facets);
+  const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, 0.1);
+  const surface::PlaneTree planes(mesh, regions);
   int visits = 0;
   planes.visit_others(0, geometry::triangle_box(scene, 0), 2.0,
                       [&](std::uint32_t) { return ++visits == 3; });

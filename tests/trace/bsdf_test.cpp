@@ -68,7 +68,7 @@ double reflection(const glm::dvec3& i, const glm::dvec3& o, double albedo, doubl
 /// Share of light from i that f(i, o) reflects anywhere. Integrated over half vectors, where the
 /// lobe is smooth: d(o) = 4 i.h d(h); the other parts join by the same substitution.
 template <class F>
-double reflected_share(const glm::dvec3& i, F&& f, int rings = 500, int sectors = 120) {
+double reflected_fraction(const glm::dvec3& i, F&& f, int rings = 500, int sectors = 120) {
   return over_hemisphere(
       [&](const glm::dvec3& h) {
         const double i_h = glm::dot(i, h);
@@ -79,8 +79,8 @@ double reflected_share(const glm::dvec3& i, F&& f, int rings = 500, int sectors 
 }
 
 double albedo_of(const glm::dvec3& i, double albedo, double f0, double alpha) {
-  return reflected_share(i,
-                         [&](const glm::dvec3& o) { return reflection(i, o, albedo, f0, alpha); });
+  return reflected_fraction(
+      i, [&](const glm::dvec3& o) { return reflection(i, o, albedo, f0, alpha); });
 }
 
 }  // namespace
@@ -160,7 +160,7 @@ TEST_CASE("The fit to the coat's albedo is that of its integral") {
       const Weights weights(cosine, alpha);
       const glm::dvec3 i = polar(std::acos(cosine), 0);
       const auto share = [&](double f0) {
-        return reflected_share(
+        return reflected_fraction(
             i, [&](const glm::dvec3& o) { return facet_reflection(i, o, f0, alpha); });
       };
       CHECK(weights.f0 + weights.f90 == Approx(share(1)).margin(0.035));  // F = 1

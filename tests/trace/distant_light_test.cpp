@@ -290,7 +290,7 @@ TEST_CASE("eyes see an environment and a sun directly and in a mirror", "[enviro
     const Camera camera = Camera::look_at(eye, target, {1, 0, 0}, 0.001);
     const PrimaryHitBatch batch = trace_primary_hits(rays, camera, film, 0, 1);
     std::array<glm::dvec3, 2> radiance{glm::dvec3(0.0), glm::dvec3(0.0)};
-    for (const SeenEmission& emission : batch.emission)
+    for (const VisibleEmission& emission : batch.emission)
       radiance[emission.light] +=
           glm::dvec3(emission.radiance) * scene.lights[emission.light].power;
     return radiance;

@@ -144,13 +144,13 @@ TEST_CASE("An area light emits evenly over its triangles by the cosine law, from
   const Scene scene = builder.build();
   const LightEmitter emitter(scene, lamp, bounding_sphere(scene));
 
-  std::vector<double> places(6, 0.0), cosines(20, 0.0);
+  std::vector<double> indices(6, 0.0), cosines(20, 0.0);
   for (std::uint64_t i = 0; i < paths; ++i) {
     const EmittedRay ray = emitter.emit(RandomStream(6, i, 0));
     const bool up = ray.direction.z > 0;
     REQUIRE((up || two_sided));
     REQUIRE(ray.origin.z * ray.direction.z > 0);
-    ++places[(ray.origin.x < 1.5f ? 0 : ray.origin.x < 5.5f ? 2 : 4) + (up ? 0 : 1)];
+    ++indices[(ray.origin.x < 1.5f ? 0 : ray.origin.x < 5.5f ? 2 : 4) + (up ? 0 : 1)];
     ++cosines[std::min<std::size_t>(
         static_cast<std::size_t>(20 * ray.direction.z * ray.direction.z), 19)];
   }
@@ -160,10 +160,10 @@ TEST_CASE("An area light emits evenly over its triangles by the cosine law, from
     std::vector<double> expected;
     for (const double share : shares)
       expected.insert(expected.end(), {0.5 * share * paths, 0.5 * share * paths});
-    CHECK_VERDICT(counts_agree(places, expected));
+    CHECK_VERDICT(counts_agree(indices, expected));
   } else {
-    CHECK(places[1] + places[3] + places[5] == 0);
-    CHECK_VERDICT(counts_agree({places[0], places[2], places[4]},
+    CHECK(indices[1] + indices[3] + indices[5] == 0);
+    CHECK_VERDICT(counts_agree({indices[0], indices[2], indices[4]},
                                {shares[0] * paths, shares[1] * paths, shares[2] * paths}));
   }
 }

@@ -188,14 +188,14 @@ TEST_CASE("nothing escapes from a closed instance whose triangles meet at every 
 TEST_CASE("the memory of 1,000 instances of 10,000 triangles is that of one and 1,000 places") {
   const SharedMesh ball = dented_ball(51);
   REQUIRE(ball.triangles.size() >= 10'000);
-  std::vector<glm::mat4x3> places;
+  std::vector<glm::mat4x3> indices;
   for (int i = 0; i < 1'000; ++i) {
     const glm::vec3 at(i % 10, i / 10 % 10, i / 100);
-    places.emplace_back(glm::translate(glm::mat4(1.0f), at));
+    indices.emplace_back(glm::translate(glm::mat4(1.0f), at));
   }
   const auto bytes_of = [&](std::size_t count, bool flat) {
     Scene scene = furnished_room();
-    add_instances(scene, ball, {places.begin(), places.begin() + static_cast<long>(count)}, 0);
+    add_instances(scene, ball, {indices.begin(), indices.begin() + static_cast<long>(count)}, 0);
     return RayScene(flat ? flattened(std::move(scene)) : scene).bytes();
   };
   const std::uint64_t of_one = bytes_of(1, true);
@@ -228,7 +228,7 @@ Scene plate_over_floor(float opacity, float cutoff = 0.0f) {
 }
 
 /// Share of rays straight down that end on the floor.
-double share_through(const Scene& scene) {
+double fraction_through(const Scene& scene) {
   const RayScene rays(scene);
   constexpr int samples = 20'000;
   int through = 0;
@@ -245,15 +245,15 @@ double share_through(const Scene& scene) {
 }
 
 TEST_CASE("Rays pass a surface as often as it is not there") {
-  CHECK(share_through(plate_over_floor(1.0f)) == 0);
-  CHECK(share_through(plate_over_floor(0.0f)) == 1);
+  CHECK(fraction_through(plate_over_floor(1.0f)) == 0);
+  CHECK(fraction_through(plate_over_floor(0.0f)) == 1);
   // Standard deviation of the share: sqrt(0.3 x 0.7 / 20,000) = 0.0032.
-  CHECK(share_through(plate_over_floor(0.3f)) == Approx(0.7).margin(0.016));
+  CHECK(fraction_through(plate_over_floor(0.3f)) == Approx(0.7).margin(0.016));
 }
 
 TEST_CASE("With a cutoff a surface is there or it is not") {
-  CHECK(share_through(plate_over_floor(0.3f, 0.5f)) == 1);
-  CHECK(share_through(plate_over_floor(0.5f, 0.5f)) == 0);
+  CHECK(fraction_through(plate_over_floor(0.3f, 0.5f)) == 1);
+  CHECK(fraction_through(plate_over_floor(0.5f, 0.5f)) == 0);
 }
 
 TEST_CASE("A texture's alpha multiplies the opacity") {
@@ -261,9 +261,9 @@ TEST_CASE("A texture's alpha multiplies the opacity") {
   scene.corner_uv.assign(scene.triangle_count(), {});
   scene.textures = {alpha_texel(255), alpha_texel(60)};
   scene.materials[0].opacity_texture = 0;
-  CHECK(share_through(scene) == 0);
+  CHECK(fraction_through(scene) == 0);
   scene.materials[0].opacity_texture = 1;
-  CHECK(share_through(scene) == 1);
+  CHECK(fraction_through(scene) == 1);
 }
 
 TEST_CASE("Looking at a lamp sees through holes by what is not there") {

@@ -78,7 +78,7 @@ TEST_CASE("photons of a measured lamp go where its intensity says, in every cell
   }
   for (double& count : expected) count *= trials / all;
   for (int i = 0; i < static_cast<int>(trials); ++i) {
-    const glm::dvec3 local = axes.to_lamp(
+    const glm::dvec3 local = axes.to_light(
         glm::dvec3(sampler.sample(RandomStream(11, static_cast<std::uint64_t>(i), 0))));
     REQUIRE(glm::length(local) == Approx(1).epsilon(1e-6));
     const double p = std::acos(std::clamp(-local.z, -1.0, 1.0));

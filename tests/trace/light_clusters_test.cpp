@@ -75,7 +75,7 @@ Looked look(const LightSampler& lamps, const glm::vec3& point,
 }  // namespace
 
 TEST_CASE(
-    "lamp clusters: looks from a point are unbiased, and have less noise near one lamp of many") {
+    "light clusters: light samples of a point are unbiased, and have less noise near one lamp of many") {
   SceneBuilder builder = floor_under_row();
   constexpr double power = 0.3;
   const glm::vec3 bulb(3, 0.5f, 1);
@@ -104,7 +104,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "lamp clusters: a disc of many triangles gives its form factor, and each its share of looks") {
+    "light clusters: a disc of many triangles gives its form factor, and each its share of looks") {
   // Slices of unequal angles, so that their areas differ.
   constexpr int slices = 64;
   constexpr double radius = 0.06, height = 0.7;
@@ -137,7 +137,7 @@ TEST_CASE(
   CHECK(looked.variance < 0.02 * expected * expected);
 }
 
-TEST_CASE("lamp clusters: densities of directions towards lamps integrate to one") {
+TEST_CASE("light clusters: densities of directions towards lamps integrate to one") {
   const Scene scene = floor_under_row().build();
   const LightSampler lamps(scene);
   const glm::vec3 point(1.1f, 0.2f, 0);
@@ -162,7 +162,7 @@ TEST_CASE("lamp clusters: densities of directions towards lamps integrate to one
   CHECK(sum == Approx(1).epsilon(1e-3));
 }
 
-TEST_CASE("lamp clusters: looks from one point choose other triangles of a cluster each") {
+TEST_CASE("light clusters: light samples of one point choose other triangles of a cluster each") {
   SceneBuilder builder;
   const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 32, black, builder.add(area_light("panel")));
@@ -171,18 +171,18 @@ TEST_CASE("lamp clusters: looks from one point choose other triangles of a clust
   SelectionProbabilities probabilities;
   clusters.weigh({0.5f, 0.5f, 3}, {0, 0, -1}, probabilities);
   REQUIRE(probabilities.up_to.size() <= 64);
-  const LightSampleNumbers looks(RandomStream(1, 2, 0), 0);
+  const LightSampleNumbers light_samples(RandomStream(1, 2, 0), 0);
   constexpr std::uint32_t count = 256;
   std::set<std::uint32_t> triangles;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const LightNumbers numbers = looks.lamp(i);
-    triangles.insert(clusters.choose(probabilities, numbers.lamp, numbers.place).triangle);
+    const LightNumbers numbers = light_samples.light(i);
+    triangles.insert(clusters.choose(probabilities, numbers.choice, numbers.position).triangle);
   }
   // There are 2048; were they drawn at random, 15 would be drawn again.
   CHECK(triangles.size() > count - 40);
 }
 
-TEST_CASE("lamp clusters: the largest number below one chooses the last of all lamps") {
+TEST_CASE("light clusters: the largest number below one chooses the last of all lights") {
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   constexpr std::size_t count = 29;  // so many equal shares sum to less than one
@@ -201,7 +201,7 @@ TEST_CASE("lamp clusters: the largest number below one chooses the last of all l
   CHECK(clusters.choose(probabilities, largest, largest).cluster == count - 1);
 }
 
-TEST_CASE("lamp clusters: triangles with the same middle are not parted") {
+TEST_CASE("light clusters: triangles with the same middle are not split") {
   SceneBuilder builder;
   const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
   const std::uint32_t lamp = builder.add(area_light("lamp"));

@@ -118,7 +118,7 @@ TEST_CASE("portals bring at least ten times the photons") {
   CHECK(inside(scene, 1, 100'000).count > 10 * without);
 }
 
-TEST_CASE("looks through a portal find pi L times the window's form factor") {
+TEST_CASE("light samples through a portal find pi L times the window's form factor") {
   Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
   const glm::dvec3 corner(Room::left, Room::sill, 0), u(1.2, 0, 0), v(0, 1, 0);
   for (const glm::dvec3& normal : {glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(0.2, 1, -1))}) {

@@ -35,7 +35,7 @@ PrimaryHitBatch photograph(const Scene& scene, const PrimaryHitParameters& film)
 
 glm::dvec3 total_emission(const PrimaryHitBatch& batch) {
   glm::dvec3 sum(0.0);
-  for (const SeenEmission& seen : batch.emission) sum += seen.radiance;
+  for (const VisibleEmission& seen : batch.emission) sum += seen.radiance;
   return sum;
 }
 
@@ -209,12 +209,12 @@ TEST_CASE("A window parts rays by Fresnel's shares, where it is not left to chan
   const PrimaryHits hits =
       trace_primary_hits(
           RayScene(builder.build()), camera,
-          {.width = 32, .height = 32, .samples_per_pixel = 16, .part_at_glass = true}, 0, 32)
+          {.width = 32, .height = 32, .samples_per_pixel = 16, .split_at_glass = true}, 0, 32)
           .hits;
   double reflected = 0, transmitted = 0, shares = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     (hits.position[i].z > 2 ? reflected : transmitted) += double{hits.throughput[i].x} * 16;
-    shares += double{hits.share[i]};
+    shares += double{hits.fraction[i]};
   }
   const double reflectance = 2 * 0.04 / 1.04;
   // A slab reflects at once, or after one way in it and back; where that is seen again is left to
@@ -241,7 +241,7 @@ TEST_CASE("A lamp under water is seen from above by its radiance over the square
                          {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64);
   // A lamp below a slab of glass is seen as without it, but for what its faces reflect.
   const double expected = (closed ? 1.0 : 1 / 2.25) / (M_PI * 16);
-  for (const SeenEmission& seen : batch.emission) {
+  for (const VisibleEmission& seen : batch.emission) {
     CHECK(double{seen.radiance.x} == Approx(expected / 16).epsilon(1e-6));
   }
   const double passes = closed ? 1 - 2 * 0.04 / 1.04 : 0.96;
@@ -342,14 +342,14 @@ TEST_CASE("Hits are sorted by map and cell, those on triangles without a map las
       record.hits.push_back(hit);
     }
   }
-  const std::vector<trace::HitPlace> places = trace::sorted_places(records, box, map_of);
-  REQUIRE(places.size() == 2'000);
-  const auto order_of = [&](const trace::HitPlace& place) {
+  const std::vector<trace::HitIndex> indices = trace::sorted_indices(records, box, map_of);
+  REQUIRE(indices.size() == 2'000);
+  const auto order_of = [&](const trace::HitIndex& place) {
     const trace::EyeHit& hit = records[place.record].hits[place.index];
     return std::tuple(map_of[hit.oriented_face], cells.morton_code(hit.position), place.record,
                       place.index);
   };
-  CHECK(std::is_sorted(places.begin(), places.end(),
+  CHECK(std::is_sorted(indices.begin(), indices.end(),
                        [&](const auto& a, const auto& b) { return order_of(a) < order_of(b); }));
 }
 

@@ -158,14 +158,14 @@ TEST_CASE("The scatter of independent scrambles is an honest error") {
   CHECK(squares / errors == Approx(1).margin(6 * std::sqrt(4.0 / trials)));
 }
 
-TEST_CASE("The looks of a pixel's samples share their sequences and take every lamp as often") {
+TEST_CASE("The light samples of a pixel's samples share their sequences and take every light as often") {
   const RandomStream of_pixel(1, 2, 0);
   for (int lamps : {2, 4, 16}) {
     std::vector<int> count(static_cast<std::size_t>(lamps), 0);
     for (std::uint32_t sample = 0; sample < 8; ++sample) {
       const LightSampleNumbers samples(of_pixel, 4 * sample);
       for (std::uint32_t i = 0; i < 4; ++i) {
-        const double choice = samples.look(i).lamp.uniform_double(0);
+        const double choice = samples.sample(i).choice.uniform_double(0);
         ++count[static_cast<std::size_t>(choice * lamps)];
       }
     }

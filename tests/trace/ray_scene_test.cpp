@@ -106,10 +106,10 @@ TEST_CASE("A ray that leaves a triangle never meets it again, at any size, place
     }
 }
 
-TEST_CASE("The clearance of a room's surfaces is below a twentieth of a millimetre") {
+TEST_CASE("The ray_offset of a room's surfaces is below a twentieth of a millimetre") {
   const Scene scene = furnished_room(4);
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t)
-    CHECK(surface_point(scene, {t, 0.3f, 0.3f}, 0).clearance < 5e-5f);
+    CHECK(surface_point(scene, {t, 0.3f, 0.3f}, 0).ray_offset < 5e-5f);
 }
 
 TEST_CASE("No ray from inside a closed room of many triangles escapes through its seams") {

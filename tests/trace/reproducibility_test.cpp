@@ -31,7 +31,7 @@ bool same_bits(const PrimaryHits& a, const PrimaryHits& b) {
   return same_bits(a.position, b.position) && same_bits(a.oriented_face, b.oriented_face) &&
          same_bits(a.pixel, b.pixel) && same_bits(a.throughput, b.throughput) &&
          same_bits(a.diffuse_albedo, b.diffuse_albedo) && same_bits(a.outgoing, b.outgoing) &&
-         same_bits(a.lobe, b.lobe) && same_bits(a.share, b.share);
+         same_bits(a.lobe, b.lobe) && same_bits(a.fraction, b.fraction);
 }
 
 /// A room with glossy walls, a mirror and glass, whose floor is covered twice: of two triangles in
@@ -170,7 +170,8 @@ TEST_CASE("Each pixel's hits come in the same order however rows are split into 
         pixels[batch.hits.pixel[i]].push_back(batch.hits.position[i]);
         pixels[batch.hits.pixel[i]].push_back(batch.hits.throughput[i]);
       }
-      for (const SeenEmission& seen : batch.emission) pixels[seen.pixel].push_back(seen.radiance);
+      for (const VisibleEmission& seen : batch.emission)
+        pixels[seen.pixel].push_back(seen.radiance);
     }
     return pixels;
   };

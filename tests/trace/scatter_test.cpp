@@ -178,7 +178,7 @@ Scattered scatter(const Scene& scene, const glm::vec3& direction, float choice) 
 constexpr float never_reflect = 0.9999999f;
 
 /// Share of choices that reflect, over 100,000 evenly spaced ones.
-double reflected_share(const Scene& scene, const glm::vec3& direction) {
+double reflected_fraction(const Scene& scene, const glm::vec3& direction) {
   int reflected = 0;
   for (int i = 0; i < 100'000; ++i) {
     const Scattered scattered = scatter(scene, direction, (static_cast<float>(i) + 0.5f) / 1e5f);
@@ -200,8 +200,8 @@ TEST_CASE("A mirror sends a ray out at the angle it came in, from both sides, an
 
 TEST_CASE("Glass of index 1.5 reflects 4% at normal incidence, entering and leaving") {
   const Scene scene = plate(glass(1.5f), 2);
-  CHECK(reflected_share(scene, downwards(0)) == Approx(0.04).margin(2e-5));
-  CHECK(reflected_share(scene, upwards(0)) == Approx(0.04).margin(2e-5));
+  CHECK(reflected_fraction(scene, downwards(0)) == Approx(0.04).margin(2e-5));
+  CHECK(reflected_fraction(scene, upwards(0)) == Approx(0.04).margin(2e-5));
 }
 
 TEST_CASE(
@@ -212,12 +212,12 @@ TEST_CASE(
     const double s = std::sin(angle - t) / std::sin(angle + t);
     const double p = std::tan(angle - t) / std::tan(angle + t);
     const double reflectance = 0.5 * (s * s + p * p);
-    CHECK(reflected_share(scene, downwards(angle)) == Approx(reflectance).margin(3e-5));
+    CHECK(reflected_fraction(scene, downwards(angle)) == Approx(reflectance).margin(3e-5));
     // Along the same path backwards the reflectance is the same.
-    CHECK(reflected_share(scene, upwards(t)) == Approx(reflectance).margin(3e-5));
+    CHECK(reflected_fraction(scene, upwards(t)) == Approx(reflectance).margin(3e-5));
   }
-  CHECK(reflected_share(scene, upwards(std::asin(1 / 1.5) + 1e-3)) == 1.0);
-  CHECK(reflected_share(scene, upwards(1.5)) == 1.0);
+  CHECK(reflected_fraction(scene, upwards(std::asin(1 / 1.5) + 1e-3)) == 1.0);
+  CHECK(reflected_fraction(scene, upwards(1.5)) == 1.0);
   CHECK(fresnel_dielectric(0.0f, 1 / 1.5f) == Approx(1));
 }
 
@@ -251,8 +251,8 @@ TEST_CASE("Thin glass does not bend rays and reflects as a pane with two faces, 
   const double f = 0.04;
   double reflectance = f;
   for (double term = (1 - f) * (1 - f) * f; term > 1e-12; term *= f * f) reflectance += term;
-  CHECK(reflected_share(scene, downwards(0)) == Approx(reflectance).margin(2e-5));
-  CHECK(reflected_share(scene, upwards(0)) == Approx(reflectance).margin(2e-5));
+  CHECK(reflected_fraction(scene, downwards(0)) == Approx(reflectance).margin(2e-5));
+  CHECK(reflected_fraction(scene, upwards(0)) == Approx(reflectance).margin(2e-5));
 }
 
 TEST_CASE("Glass tints what passes and not what it reflects") {

@@ -21,7 +21,7 @@ namespace {
 using namespace photile::view;
 using loading::PlacedLuminaires;
 
-constexpr const char* two_entries =
+constexpr const char* two_records =
     R"([{"name": "panels", "file": "downlight.ies", "position": "ceiling", "size": [1.2, 0.3],
          "count": [3, 2], "spacing": [1.8, 2.4], "lumens": 3600.5},
         {"rotation": 30, "file": "downlight.ies", "position": [0.1, 2.4, -0.7],
@@ -36,7 +36,7 @@ std::string content_of(const std::filesystem::path& file) {
 /// A folder with the room of the gallery, a photometric file, and a list of luminaires.
 struct Room : TemporaryFolder {
   std::filesystem::path scene = path / "room.gltf", list = path / "lamps.json";
-  explicit Room(const char* entries = two_entries) {
+  explicit Room(const char* entries = two_records) {
     const auto gallery = source_folder() / "scenes/gallery";
     std::filesystem::copy_file(gallery / "sun-and-sky.gltf", scene);
     std::filesystem::copy_file(gallery / "sun-and-sky.bin", path / "sun-and-sky.bin");
@@ -70,7 +70,7 @@ glm::dvec3 middle_of(const Scene& scene, const Light& light) {
 }  // namespace
 
 TEST_CASE("a list of luminaires is written as it was read, member by member") {
-  const auto list = loading::LuminaireList::parse(two_entries, "test");
+  const auto list = loading::LuminaireList::parse(two_records, "test");
   CHECK(loading::LuminaireList::parse(list.text(), "test") == list);
   CHECK_THAT(list.text(),
              Catch::Contains(R"("position":"ceiling","size":[1.2,0.3],"count":[3,2])") &&
@@ -93,7 +93,7 @@ TEST_CASE("an edit changes its member alone, and the saved file makes the same s
   CHECK(loading::read_own_luminaires(room.list) != editor.list());
   editor.save();
   CHECK_FALSE(editor.unsaved());
-  auto expected = loading::LuminaireList::parse(two_entries, "test");
+  auto expected = loading::LuminaireList::parse(two_records, "test");
   expected.entries[1]["position"] = {0.25, 2.3, 0.5};
   expected.entries[1]["rotation"] = 105.0;
   CHECK(loading::read_own_luminaires(room.list) == expected);

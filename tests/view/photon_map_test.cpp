@@ -30,8 +30,8 @@ Scene corner() {
   return builder.build();
 }
 
-PreparedPhotons prepared(const Scene& scene, MapMode mode) {
-  PreparedPhotons result;
+TracedPhotons prepared(const Scene& scene, MapMode mode) {
+  TracedPhotons result;
   PhotonTracerParameters paths;
   paths.emitted_photons = 20'000;
   result.photons = trace_photons(RayScene(scene), paths).photons;
@@ -52,7 +52,7 @@ Camera above() { return Camera::look_at({2, 3, 7}, {2, 0.5, 1}, {0, 1, 0}, glm::
 
 TEST_CASE("the group of a picked triangle is that of the photon maps") {
   const Scene scene = corner();
-  const PreparedPhotons photons = prepared(scene, MapMode::triangle);
+  const TracedPhotons photons = prepared(scene, MapMode::triangle);
   const InspectablePhotons inspected = InspectablePhotons::of(photons);
   for (std::uint32_t triangle = 0; triangle < 32; ++triangle) {
     const std::uint32_t picked = some_triangle(scene, triangle);
@@ -67,7 +67,7 @@ TEST_CASE("the group of a picked triangle is that of the photon maps") {
 
 TEST_CASE("the photons of a picked triangle lie on it, those of its group in reach of it") {
   const Scene scene = corner();
-  const PreparedPhotons photons = prepared(scene, MapMode::triangle);
+  const TracedPhotons photons = prepared(scene, MapMode::triangle);
   const std::uint32_t picked = some_triangle(scene, 12);
   const PhotonMapView view = view_of_map(scene, InspectablePhotons::of(photons), picked);
   REQUIRE(view.own_photons.size() > 10);
@@ -90,7 +90,7 @@ TEST_CASE("the photons of a picked triangle lie on it, those of its group in rea
 
 TEST_CASE("triangles that share the map of a picked one are of its patch or its group") {
   const Scene scene = corner();
-  const PreparedPhotons photons = prepared(scene, MapMode::patch);
+  const TracedPhotons photons = prepared(scene, MapMode::patch);
   const std::uint32_t picked = some_triangle(scene, 5);
   const PhotonMapView view = view_of_map(scene, InspectablePhotons::of(photons), picked);
   std::set<std::uint32_t> shown(view.patch.begin(), view.patch.end());
@@ -105,7 +105,7 @@ TEST_CASE("triangles that share the map of a picked one are of its patch or its 
 
 TEST_CASE("a naive map has its own photons alone") {
   const Scene scene = corner();
-  const PreparedPhotons photons = prepared(scene, MapMode::naive);
+  const TracedPhotons photons = prepared(scene, MapMode::naive);
   const PhotonMapView view =
       view_of_map(scene, InspectablePhotons::of(photons), some_triangle(scene, 12));
   CHECK(view.group.empty());
@@ -139,7 +139,7 @@ TEST_CASE("a picked triangle is tinted where it is seen, and its photons are dot
   inspector.draw(frame, shown);
   REQUIRE(inspector.map());
 
-  const SeenSurfaces seen = seen_surfaces(RayScene(scene), frame.camera, 320, 240);
+  const VisibleSurfaces seen = visible_surfaces(RayScene(scene), frame.camera, 320, 240);
   std::size_t yellow = 0, tinted = 0;
   for (std::size_t pixel = 0; pixel < seen.oriented_face.size(); ++pixel) {
     const bool picked = seen.oriented_face[pixel] == inspector.map()->oriented_face;

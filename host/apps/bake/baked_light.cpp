@@ -58,26 +58,27 @@ std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
 }
 
 /// Light of a layer between nodes, at power 1.
-glm::vec3 blended(const Estimates& values, const NodeBlend& blend, std::size_t layer,
-                  std::size_t layers) {
+glm::vec3 interpolated(const Estimates& values, const BilinearWeights& bilinear, std::size_t layer,
+                       std::size_t layers) {
   glm::vec3 light(0.0f);
-  for (std::size_t i = 0; i < blend.node.size(); ++i) {
-    for_each_value(values, blend.node[i], layer, layers,
-                   [&](std::size_t value) { light += blend.weight[i] * values.irradiance[value]; });
+  for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+    for_each_value(values, bilinear.node[i], layer, layers, [&](std::size_t value) {
+      light += bilinear.weight[i] * values.irradiance[value];
+    });
   }
   return light;
 }
 
 /// The irradiance of a plane of this normal.
-glm::vec3 turned(const Estimates& values, const NodeBlend& blend, std::size_t layer,
+glm::vec3 turned(const Estimates& values, const BilinearWeights& bilinear, std::size_t layer,
                  std::size_t layers, const glm::vec3& normal) {
   glm::vec4 by_normal(0.0f);
-  for (std::size_t i = 0; i < blend.node.size(); ++i) {
-    for_each_value(values, blend.node[i], layer, layers, [&](std::size_t value) {
-      by_normal += blend.weight[i] * values.by_normal[value];
+  for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+    for_each_value(values, bilinear.node[i], layer, layers, [&](std::size_t value) {
+      by_normal += bilinear.weight[i] * values.by_normal[value];
     });
   }
-  return cache::turned(blended(values, blend, layer, layers), by_normal, normal);
+  return cache::turned(interpolated(values, bilinear, layer, layers), by_normal, normal);
 }
 
 /// Metres: no surface is as large.
@@ -86,7 +87,7 @@ constexpr double widest_texel = 1e6;
 }  // namespace
 
 BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-                       const cache::NodeVisibility& sight, const BakeParameters& parameters,
+                       const cache::NodeVisibility& visibility, const BakeParameters& parameters,
                        Progress& progress)
     : scene_(scene), maps_(maps) {
   progress.begin("find lit surfaces", 0, "");
@@ -113,7 +114,7 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
     }
     texel_ *= coarser;
   }
-  spread(fill(source, sight, progress), sight);
+  spread(fill(source, visibility, progress), visibility);
 }
 
 void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
@@ -132,11 +133,11 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
   std::vector<double> light_at(samples.size());
   const std::size_t layers = parameters.powers.size();
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    NodeBlend blend{};
-    maps_.find(samples.oriented_face[i], samples.position[i], blend);
+    BilinearWeights bilinear{};
+    maps_.find(samples.oriented_face[i], samples.position[i], bilinear);
     for (std::size_t layer = 0; layer < layers; ++layer) {
       light_at[i] += parameters.powers[layer] *
-                     luminance(glm::dvec3(blended(maps_.values(), blend, layer, layers)));
+                     luminance(glm::dvec3(interpolated(maps_.values(), bilinear, layer, layers)));
     }
   });
   std::vector<double> light(chart_of.size(), 0.0);
@@ -197,14 +198,14 @@ glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t
 
 /// A texel that no triangle covers has the light of the surface nearest to it, so that a lookup at
 /// an edge blends light of the surface alone.
-PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& sight,
+PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& visibility,
                              Progress& progress) {
-  NodeBlend nothing{};
+  BilinearWeights nothing{};
   nothing.node.fill(none);
-  blend_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
+  bilinear_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
   PrimaryHits points;
-  points.position.resize(blend_.size());
-  points.oriented_face.resize(blend_.size(), none);
+  points.position.resize(bilinear_.size());
+  points.oriented_face.resize(bilinear_.size(), none);
   progress.begin("bake light maps", used_texels(), "texels");
   PrimaryHits hits;
   std::vector<std::size_t> texels;
@@ -212,16 +213,16 @@ PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& si
     maps_.fill(hits, source, progress);
     tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
       const trace::FlushDenormals flush_denormals;
-      NodeBlend& blend = blend_[texels[i]];
-      maps_.find(hits.oriented_face[i], hits.position[i], blend);
-      sight.look(hits.oriented_face[i], hits.position[i], blend);
+      BilinearWeights& bilinear = bilinear_[texels[i]];
+      maps_.find(hits.oriented_face[i], hits.position[i], bilinear);
+      visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear);
     });
     for (std::size_t i = 0; i < texels.size(); ++i) {
       points.position[texels[i]] = hits.position[i];
       points.oriented_face[texels[i]] = hits.oriented_face[i];
     }
     if (!maps_.values().by_normal.empty()) {
-      normal_.resize(blend_.size());
+      normal_.resize(bilinear_.size());
       for (std::size_t i = 0; i < texels.size(); ++i) {
         normal_[texels[i]] = trace::shading_normal(scene_, hits.oriented_face[i], hits.position[i]);
       }
@@ -240,8 +241,8 @@ PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& si
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       const auto x = static_cast<std::uint32_t>(i % rectangle.width);
       const auto y = static_cast<std::uint32_t>(i / rectangle.width);
-      const cache::Charts::Owner owner =
-          charts.owner(placed.chart, place(placed, x, y), 2 * texel_);
+      const cache::Charts::Support owner =
+          charts.support(placed.chart, place(placed, x, y), 2 * texel_);
       hits.oriented_face[first + i] = oriented(owner.where.triangle, owner.side);
       hits.position[first + i] = trace::surface_point(scene_, owner.where, owner.side).position;
     });
@@ -270,14 +271,14 @@ std::uint64_t BakedLight::used_texels() const {
 /// has; and so do those in the slit below a thing that stands a little above the surface, such as a
 /// skirting board, where next to no light comes. A slit as high as texels are apart is lit where a
 /// lookup beside the thing reaches.
-void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& sight) {
-  const std::vector<NodeBlend> found = blend_;
+void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& visibility) {
+  const std::vector<BilinearWeights> found = bilinear_;
   const Estimates& values = maps_.values();
   const std::size_t nodes = maps_.statistics().nodes;
-  const auto lit = [&](const NodeBlend& blend) {
-    for (std::size_t i = 0; i < blend.node.size(); ++i) {
-      if (blend.weight[i] == 0.0f) continue;
-      const auto light = light_of(values, blend.node[i], nodes);
+  const auto lit = [&](const BilinearWeights& bilinear) {
+    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+      if (bilinear.weight[i] == 0.0f) continue;
+      const auto light = light_of(values, bilinear.node[i], nodes);
       if (std::any_of(light.begin(), light.end(),
                       [](const glm::vec3& value) { return value.x + value.y + value.z > 0; })) {
         return true;
@@ -286,13 +287,13 @@ void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& 
     return false;
   };
   const auto slit = static_cast<float>(texel_ / 4);
-  const auto may_be_covered = [&](const NodeBlend& blend) {
-    return std::any_of(blend.node.begin(), blend.node.end(), [&](std::uint32_t node) {
+  const auto may_be_covered = [&](const BilinearWeights& bilinear) {
+    return std::any_of(bilinear.node.begin(), bilinear.node.end(), [&](std::uint32_t node) {
       return node != none && maps_.distance(node) < slit;
     });
   };
   const auto on_surface = [&](std::size_t texel) {
-    return trace::place_on(scene_, points.oriented_face[texel], points.position[texel]);
+    return trace::location_on(scene_, points.oriented_face[texel], points.position[texel]);
   };
   constexpr int around[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                 {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -313,13 +314,13 @@ void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& 
           if (nx >= rectangle.width || ny >= rectangle.height) continue;
           const std::size_t beside = texel(nx, ny);
           if (!lit(found[beside])) continue;
-          const bool hidden = dark && !sight.sees(member_[placed.chart], point(placed, x, y),
-                                                  point(placed, nx, ny));
+          const bool hidden = dark && !visibility.sees(member_[placed.chart], point(placed, x, y),
+                                                       point(placed, nx, ny));
           if (!hidden &&
-              !(covered && sight.is_in_slit(on_surface(beside), on_surface(here), slit))) {
+              !(covered && visibility.is_in_slit(on_surface(beside), on_surface(here), slit))) {
             continue;
           }
-          blend_[here] = found[beside];
+          bilinear_[here] = found[beside];
           break;
         }
       }
@@ -347,23 +348,23 @@ std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t oriented_face) const 
 }
 
 std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
-  std::vector<glm::vec3> texels(blend_.size(), glm::vec3(0.0f));
+  std::vector<glm::vec3> texels(bilinear_.size(), glm::vec3(0.0f));
   const Estimates& values = maps_.values();
   const std::size_t layers = dense_layers(values, maps_.statistics().nodes);
   tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
-    if (blend_[i].node[0] == none) return;
-    texels[i] = normal_.empty() ? blended(values, blend_[i], layer, layers)
-                                : turned(values, blend_[i], layer, layers, normal_[i]);
+    if (bilinear_[i].node[0] == none) return;
+    texels[i] = normal_.empty() ? interpolated(values, bilinear_[i], layer, layers)
+                                : turned(values, bilinear_[i], layer, layers, normal_[i]);
   });
   return texels;
 }
 
 std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nodes) const {
-  std::vector<float> texels(blend_.size(), 0.0f);
+  std::vector<float> texels(bilinear_.size(), 0.0f);
   const std::size_t layers = dense_layers(of_nodes, maps_.statistics().nodes);
   tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
-    if (blend_[i].node[0] == none) return;
-    const glm::vec3 error = blended(of_nodes, blend_[i], layer, layers);
+    if (bilinear_[i].node[0] == none) return;
+    const glm::vec3 error = interpolated(of_nodes, bilinear_[i], layer, layers);
     texels[i] = static_cast<float>(luminance(glm::dvec3(error)));
   });
   return texels;
@@ -371,7 +372,7 @@ std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nod
 
 double BakedLight::standard_error(std::span<const double> powers, const Estimates& of_nodes) const {
   double squares = 0, light = 0, lit = 0;
-  std::vector<double> sum(blend_.size(), 0.0);
+  std::vector<double> sum(bilinear_.size(), 0.0);
   for (std::size_t i = 0; i < powers.size(); ++i) {
     const std::vector<glm::vec3> texels = layer(i);
     const std::vector<float> errors_of_layer = errors(i, of_nodes);

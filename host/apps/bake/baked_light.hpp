@@ -41,16 +41,16 @@ struct BakeParameters {
 
 /// The charts of the light maps side by side: of each triangle the side on which more light falls,
 /// and the other where it is open and lit, too. Texels are points of the charts' lattices, so that
-/// a bilinear lookup blends neighbours of one chart; a border of one texel repeats the last. Texels
-/// under things that stand on a surface hold the light beside these, for lookups there.
+/// bilinear filtering blends neighbours of one chart; a border of one texel repeats the last.
+/// Texels under things that stand on a surface hold the light beside these, for lookups there.
 class BakedLight {
  public:
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
-  ///   sight      of the light maps
+  ///   visibility   of the light maps
   ///   progress   is told of a stage
   BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-             const cache::NodeVisibility& sight, const BakeParameters& parameters,
+             const cache::NodeVisibility& visibility, const BakeParameters& parameters,
              Progress& progress);
 
   std::uint32_t width() const { return atlas_.width; }
@@ -86,8 +86,8 @@ class BakedLight {
   void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
   /// Returns the points of all texels; the side is none where there is none.
-  PrimaryHits fill(NodeSource& source, const cache::NodeVisibility& sight, Progress& progress);
-  void spread(const PrimaryHits& points, const cache::NodeVisibility& sight);
+  PrimaryHits fill(NodeSource& source, const cache::NodeVisibility& visibility, Progress& progress);
+  void spread(const PrimaryHits& points, const cache::NodeVisibility& visibility);
   glm::dvec2 place(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
@@ -99,7 +99,7 @@ class BakedLight {
   std::vector<Placed> placed_;
   std::vector<std::uint32_t> place_of_chart_;  ///< into placed_, or none
   std::vector<std::uint32_t> member_;          ///< per chart: an oriented face of it
-  std::vector<NodeBlend> blend_;               ///< per texel
+  std::vector<BilinearWeights> bilinear_;      ///< per texel
   std::vector<glm::vec3> normal_;              ///< per texel, where light depends on it
 };
 

@@ -43,14 +43,14 @@ void run_bake(BakeOptions& options) {
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
 
-  std::optional<PreparedPhotons> prepared = load_maps(scene, render, progress);
+  std::optional<TracedPhotons> prepared = load_maps(scene, render, progress);
   const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
   options.baking.open = bake::open_sides(prepared_scene->rays);
   RenderSession session(prepared_scene, devices, render.parameters, prepared ? &*prepared : nullptr,
                         keep_maps(scene, render, progress), progress);
   cache::SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
-  const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.sight(),
+  const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.visibility(),
                                options.baking, progress);
   bake::write_baked(options.output, scene, baked, mix);
   keep_light_maps(session.light_map_contents(), render, progress);

@@ -39,9 +39,9 @@ std::string words_of(const PictureError& error) {
   const std::string psnr = std::isinf(error.psnr) ? "equal" : fmt::format("{:.1f} dB", error.psnr);
   std::string line = fmt::format("{:>10.3g}%{:>10.4f}{:>11}{:>9.2f}%", 100 * error.relative_error(),
                                  error.mean_ratio, psnr, 100 * error.worst_region);
-  const auto& place = error.worst_place;
-  if (place.width > 0) {
-    line += fmt::format("  {}x{} at {},{}", place.width, place.height, place.x, place.y);
+  const auto& area = error.worst_area;
+  if (area.width > 0) {
+    line += fmt::format("  {}x{} at {},{}", area.width, area.height, area.x, area.y);
   }
   return line;
 }
@@ -70,8 +70,8 @@ nlohmann::ordered_json part_json(const report::ComparedPart& part) {
   entry["mean_ratio"] = error.mean_ratio;
   entry["psnr"] = error.psnr;  // null where the pictures are equal
   entry["worst_region"] = error.worst_region;
-  const auto& place = error.worst_place;
-  if (place.width > 0) entry["worst_place"] = {place.x, place.y, place.width, place.height};
+  const auto& area = error.worst_area;
+  if (area.width > 0) entry["worst_area"] = {area.x, area.y, area.width, area.height};
   return entry;
 }
 

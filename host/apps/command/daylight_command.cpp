@@ -219,7 +219,7 @@ void add_year(CLI::App& command, DaylightOptions& options) {
       ->transform(number_between(0, 1))
       ->capture_default_str()
       ->group("Year");
-  command.add_option("--lux", options.asked.wanted_lux, "that count as autonomous daylight")
+  command.add_option("--lux", options.asked.target_lux, "that count as autonomous daylight")
       ->type_name("LUX")
       ->transform(positive_number())
       ->capture_default_str()

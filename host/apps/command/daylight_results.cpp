@@ -76,7 +76,7 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year&
                            : std::span(all).subspan(sensor * hours, hours);
       };
       result.points[sensor] = point_daylight(row(result.lux), row(result.sun), occupied, by_day,
-                                             options.asked.wanted_lux);
+                                             options.asked.target_lux);
     });
     result.room = room_daylight(result.points);
     result.lamps = energies_of(options, lamps, mix, occupied, result, first);

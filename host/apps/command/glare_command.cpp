@@ -78,11 +78,11 @@ double coverage_of(const GlareOptions& options, const Scene& scene,
                    const glare::Observer& observer) {
   const trace::PlanAxes axes;
   const RayScene rays(scene);
-  const double area = glare::Luminaires(rays, options.parameters.looks).large_area(axes.up);
+  const double area = glare::Luminaires(rays, options.parameters.samples).large_area(axes.up);
   if (!(area > 0)) return 1;
   const auto room = trace::Room::around(rays, axes, position_in_scene(scene, observer.position));
   if (!room) return 1;
-  return area / (static_cast<double>(room->places().size()) * room->cell_area());
+  return area / (static_cast<double>(room->positions().size()) * room->cell_area());
 }
 
 /// The highest UGR beside what is required; none where nothing is.

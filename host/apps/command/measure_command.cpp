@@ -108,7 +108,7 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
 }
 
 void warn(const Scene& scene, const std::vector<measuring::SensorGrid>& grids, Progress& progress) {
-  if (has_unseen_caustics(scene)) {
+  if (has_hidden_caustics(scene)) {
     progress.note(
         "warning: what mirrors and glass throw onto sensors from point, spot and directional "
         "lights is missing; lamps with an area are seen in them");

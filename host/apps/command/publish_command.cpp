@@ -84,7 +84,7 @@ class LitRoom {
           const RenderParameters& parameters, const bake::BakeParameters& baking,
           Progress& progress)
       : session_(scene, devices, parameters, nullptr, {}, progress),
-        baked_(scene->rays.scene(), cache().maps(), session_.light().nodes(), cache().sight(),
+        baked_(scene->rays.scene(), cache().maps(), session_.light().nodes(), cache().visibility(),
                with_texels(baking), progress) {}
 
   const bake::BakedLight& baked() const { return baked_; }

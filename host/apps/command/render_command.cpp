@@ -90,7 +90,7 @@ void note_result(const RenderResult& result, std::span<const Device> devices, Ru
   record.used = result.used;
   record.devices.clear();
   for (const Device& device : devices) record.devices.push_back(device.info());
-  record.device_shares = result.device_shares;
+  record.device_fractions = result.device_fractions;
   record.stored_photons = result.stored_photons;
   record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
 }
@@ -136,7 +136,7 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
 /// The layers by path tracing.
 LightLayers render_by_paths(const Scene& scene, const Camera& camera, const Views& views,
                             RunRecord& record, Progress& progress) {
-  if (has_unseen_caustics(scene)) {
+  if (has_hidden_caustics(scene)) {
     progress.note(
         "warning: paths do not find what mirrors and glass throw from point, spot and directional "
         "lights; photon maps do");

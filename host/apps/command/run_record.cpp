@@ -41,7 +41,7 @@ json devices_json(const RunRecord& record) {
                     {"platform", device.platform},
                     {"type", name_of(device.type)},
                     {"driver_version", device.driver_version},
-                    {"share", record.device_shares[i]}});
+                    {"share", record.device_fractions[i]}});
   }
   return list;
 }

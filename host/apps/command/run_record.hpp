@@ -38,7 +38,7 @@ struct RunRecord {
   RefinementGoal goal;               ///< until which pictures were made
   RenderParameters used;             ///< RenderResult::used, or what paths were asked for
   std::vector<DeviceInfo> devices;
-  std::vector<double> device_shares;  ///< of the hits, per device
+  std::vector<double> device_fractions;  ///< of the hits, per device
   LightMix mix;
   std::string denoiser;  ///< and its version; "" = not denoised
   std::uint64_t stored_photons = 0;

@@ -35,15 +35,15 @@ saved_maps::Settings saved_settings(const RenderParameters& parameters) {
           group_settings(parameters)};
 }
 
-std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
-                                         Progress& progress) {
+std::optional<TracedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
+                                       Progress& progress) {
   if (options.parameters.passes > 1 && !(options.load_maps.empty() && options.save_maps.empty())) {
     throw SettingError(setting_named("passes"),
                        "saved maps hold the photons of one pass; leave out passes");
   }
   if (options.load_maps.empty()) return std::nullopt;
   progress.begin("load photons", 0, "");
-  PreparedPhotons prepared =
+  TracedPhotons prepared =
       saved_maps::load(options.load_maps, scene, saved_settings(options.parameters));
   progress.end();
   return prepared;
@@ -52,7 +52,7 @@ std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions
 KeepPhotons keep_maps(const Scene& scene, const RenderOptions& options, Progress& progress) {
   if (options.save_maps.empty()) return {};
   return [&scene, &progress, file = options.save_maps,
-          settings = saved_settings(options.parameters)](const PreparedPhotons& photons) {
+          settings = saved_settings(options.parameters)](const TracedPhotons& photons) {
     progress.begin("save photons", 0, "");
     saved_maps::save(file, scene, settings, photons);
     progress.end();
@@ -71,11 +71,11 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
                                    std::span<Device> devices, const RenderOptions& options,
                                    LightLayers* reflections, Progress& progress) {
   TimeTaken loading, keeping, reflecting;
-  std::optional<PreparedPhotons> prepared =
+  std::optional<TracedPhotons> prepared =
       timed(loading, [&] { return load_maps(scene, options, progress); });
   KeepPhotons keep = keep_maps(scene, options, progress);
   if (keep) {
-    keep = [&keeping, save = std::move(keep)](const PreparedPhotons& photons) {
+    keep = [&keeping, save = std::move(keep)](const TracedPhotons& photons) {
       timed(keeping, [&] { save(photons); });
     };
   }

@@ -15,8 +15,8 @@ namespace photile::app {
 saved_maps::Settings saved_settings(const RenderParameters& parameters);
 
 /// The photons of --load-maps; none where it was not given. Errors: those of saved_maps::load.
-std::optional<PreparedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
-                                         Progress& progress);
+std::optional<TracedPhotons> load_maps(const Scene& scene, const RenderOptions& options,
+                                       Progress& progress);
 
 /// What keeps photons in the file of --save-maps; empty where it was not given. The scene and the
 /// progress must outlive it.

@@ -150,7 +150,7 @@ std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
   const LightGroups groups = light_groups_of(scene);
   std::vector<double> powers;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    powers.push_back(groups.share[i] * mix.lights[groups.group_of[i]].power);
+    powers.push_back(groups.fraction[i] * mix.lights[groups.group_of[i]].power);
   }
   return powers;
 }

@@ -52,7 +52,7 @@ void run_trace(TraceOptions& options) {
   PhotonTracerParameters tracing = plan.tracing(0, {});
   tracing.shard = options.shard;
   PhotonTracerResult traced = trace_photons(rays, tracing, progress);
-  PreparedPhotons photons;
+  TracedPhotons photons;
   photons.photons = std::move(traced.photons);
   if (plan.keeps_caustics()) photons.caustics = std::move(traced.caustics);
   progress.begin("save photons", 0, "");

@@ -45,7 +45,7 @@ struct Reference {
 /// A path-traced picture, in two halves whose difference tells its noise.
 Reference trace_reference(const Scene& scene, const Camera& camera, const LightMix& mix,
                           const TradeOptions& options, Progress& progress) {
-  if (has_unseen_caustics(scene)) {
+  if (has_hidden_caustics(scene)) {
     progress.note(
         "warning: the path-traced reference lacks caustics of point, spot and directional lights; "
         "give a complete one with --reference");
@@ -127,9 +127,9 @@ std::string row_of(const trade::TradePoint* point) {
 /// The fastest settings for some errors, and those of the least error.
 void print_table(std::span<const trade::TradePoint> points) {
   std::cout << " error  first picture   each frame      memory  fastest settings\n";
-  for (const double wanted : {0.10, 0.05, 0.02, 0.01}) {
-    std::cout << fmt::format("{:>5.0f}%{}\n", 100 * wanted,
-                             row_of(trade::fastest_within(points, wanted)));
+  for (const double requested : {0.10, 0.05, 0.02, 0.01}) {
+    std::cout << fmt::format("{:>5.0f}%{}\n", 100 * requested,
+                             row_of(trade::fastest_within(points, requested)));
   }
   const auto least = std::min_element(points.begin(), points.end(), [](auto& a, auto& b) {
     return a.error.relative_mse < b.error.relative_mse;

@@ -171,7 +171,7 @@ class Walk {
     record.used = options_.render.parameters;
     record.mix = mix_;
     for (const Device& device : devices_) record.devices.push_back(device.info());
-    record.device_shares.assign(devices_.size(), 0.0);
+    record.device_fractions.assign(devices_.size(), 0.0);
     return record;
   }
 
@@ -205,7 +205,7 @@ class Walk {
   }
 
   void make_maps() {
-    std::optional<PreparedPhotons> prepared = load_maps(scene_, options_.render, progress_);
+    std::optional<TracedPhotons> prepared = load_maps(scene_, options_.render, progress_);
     renderer_.emplace(scene_, devices_, options_.render.parameters, prepared ? &*prepared : nullptr,
                       keep_maps(scene_, options_.render, progress_), progress_);
   }

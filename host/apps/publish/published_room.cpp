@@ -293,7 +293,7 @@ class PageWriter {
     document_["environment"] = nullptr;
     const LightGroups groups = light_groups_of(scene_);
     for (const trace::DistantLight& distant : trace::DistantLights(scene_)) {
-      const Light& light = distant.lamp();
+      const Light& light = distant.source();
       const std::uint32_t layer = groups.group_of[distant.light()];
       if (light.is_sky_patch()) {
         const glm::vec4& bounds = light.sky_patch;
@@ -319,7 +319,7 @@ class PageWriter {
   /// The map as the page queries it: azimuths from south by west, north in the middle, rows from
   /// the zenith.
   void add_environment(const trace::DistantLight& distant, std::uint32_t layer) {
-    const EnvironmentMap& map = scene_.environments[distant.lamp().environment];
+    const EnvironmentMap& map = scene_.environments[distant.source().environment];
     const int width = std::clamp(map.width(), 4, most_surroundings), height = width / 2;
     std::vector<glm::vec3> texels;
     for (int y = 0; y < height; ++y) {

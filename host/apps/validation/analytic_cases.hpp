@@ -35,10 +35,10 @@ struct AnalyticCase {
   std::vector<Reading> readings;
   /// The fraction of the requested photons that this case needs: cases whose readings are means
   /// over whole rooms need few.
-  double photon_share = 1;
+  double photon_fraction = 1;
   /// The fraction of the requested neighbours that an estimate takes: the mean over many sensors is
   /// quiet with few, whose small discs see no curvature of the irradiance.
-  double neighbour_share = 1;
+  double neighbour_fraction = 1;
 };
 
 /// All cases, in the order of the documentation. Expected values are computed from form factors,

@@ -79,7 +79,7 @@ AnalyticCase spot_light() {
                             glm::clamp((cosine - cos_outer) / (cos_inner - cos_outer), 0.0, 1.0);
                         return intensity * share * share * cosine / (distance * distance);
                       })};
-  result.photon_share = 0.25;
+  result.photon_fraction = 0.25;
   return result;
 }
 
@@ -108,8 +108,8 @@ AnalyticCase rectangles(const std::string& name, const std::string& source, cons
   AnalyticCase result{name, source, room.build(flux), {}};
   result.readings.push_back(
       {"mean over the other", grid_of_sensors({receiver}, 16), flux * factor / receiver.area()});
-  result.photon_share = 0.03;
-  result.neighbour_share = 0.05;
+  result.photon_fraction = 0.03;
+  result.neighbour_fraction = 0.05;
   return result;
 }
 
@@ -126,8 +126,8 @@ AnalyticCase flux_in_black_box() {
                       "after CIE 171:2006, 5.4: all that is emitted arrives",
                       room.build(flux),
                       {{"mean over all walls", grid_of_sensors(walls, 8), flux / area}}};
-  result.photon_share = 0.03;
-  result.neighbour_share = 0.05;
+  result.photon_fraction = 0.03;
+  result.neighbour_fraction = 0.05;
   return result;
 }
 

@@ -31,8 +31,8 @@ struct Furnace {
 };
 
 AnalyticCase with_readings(const std::string& name, const std::string& source, Furnace& furnace,
-                           std::vector<Reading> readings, double photon_share) {
-  return {name, source, furnace.build(), std::move(readings), photon_share};
+                           std::vector<Reading> readings, double photon_fraction) {
+  return {name, source, furnace.build(), std::move(readings), photon_fraction};
 }
 
 AnalyticCase empty_furnace() {
@@ -173,7 +173,7 @@ AnalyticCase reflection() {
     result.readings.push_back(
         across(fmt::format("ceiling, {} m from the wall", x), {x, 0, height}, {0, 0, -1}, whole));
   }
-  result.photon_share = 2;  // a small part of the light is reflected here
+  result.photon_fraction = 2;  // a small part of the light is reflected here
   return result;
 }
 
@@ -196,7 +196,7 @@ AnalyticCase obstructed_reflection() {
           return light;
         }));
   }
-  result.photon_share = 2;
+  result.photon_fraction = 2;
   return result;
 }
 
@@ -214,8 +214,8 @@ AnalyticCase closed_room(float reflectance) {
                       room.build(flux),
                       {{"mean over all walls", grid_of_sensors(walls, 6),
                         flux / (6 * edge * edge * (1 - double{reflectance}))}}};
-  result.photon_share = 0.03;
-  result.neighbour_share = 0.05;
+  result.photon_fraction = 0.03;
+  result.neighbour_fraction = 0.05;
   return result;
 }
 
@@ -257,8 +257,8 @@ AnalyticCase integrating_sphere() {
   }
   result.readings.push_back({"mean over the wall", spread_sensors(result.scene, 2000),
                              flux / (area * (1 - double{reflectance}))});
-  result.photon_share = 0.02;
-  result.neighbour_share = 0.05;
+  result.photon_fraction = 0.02;
+  result.neighbour_fraction = 0.05;
   return result;
 }
 

@@ -79,10 +79,10 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
     RenderParameters photons = parameters.photons;
     photons.photons.emitted_photons = std::max<std::uint64_t>(
         limits::min_photons,
-        static_cast<std::uint64_t>(analytic.photon_share *
+        static_cast<std::uint64_t>(analytic.photon_fraction *
                                    static_cast<double>(photons.photons.emitted_photons)));
-    photons.neighbours =
-        std::max(1, static_cast<int>(std::lround(analytic.neighbour_share * photons.neighbours)));
+    photons.neighbours = std::max(
+        1, static_cast<int>(std::lround(analytic.neighbour_fraction * photons.neighbours)));
     const auto all = over_seeds(analytic, seed_of_all, [&](std::uint64_t seed) {
       photons.seed = seed;
       RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);

@@ -34,7 +34,7 @@ constexpr double first_fill = 0.35;
 /// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
 /// Of each side of a picture that shows a lamp which was just set, before the whole one does.
-constexpr int relit_share = 2;
+constexpr int relit_fraction = 2;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
 constexpr int first_samples = 4, more_samples = 4;
@@ -103,7 +103,7 @@ std::exception_ptr FrameWorker::take_error() {
   return std::exchange(error_, nullptr);
 }
 
-/// Whether something else is wanted by now.
+/// Whether something else is requested by now.
 bool FrameWorker::outdated(const Task& task) const {
   const std::lock_guard lock(mutex_);
   return task.version != version_;
@@ -137,26 +137,26 @@ double FrameWorker::time_to_fill(const Task& task, double draw_seconds) const {
 
 /// Draws the whole window, however many nodes are missing: new surface is seen coarsely at once,
 /// and finer from frame to frame, by what there is time for. Frames are handed over as they get
-/// better, until no node is missing or something else is wanted. The first picture of a scene waits
-/// for the nodes of what takes most of it; at rest others wait for none.
+/// better, until no node is missing or something else is requested. The first picture of a scene
+/// waits for the nodes of what takes most of it; at rest others wait for none.
 void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
-  const FrameRequest& wanted = task.request;
+  const FrameRequest& requested = task.request;
   MapGeneration& maps = *task.maps;
   const bool is_first = std::exchange(drawn_scene_, maps.scene) != maps.scene;
   // Whoever drags a slider asks all the time: what is shown at once is finished in any case.
-  bool at_once = is_first || wanted.moving || wanted.relit;
+  bool at_once = is_first || requested.moving || requested.relit;
   Stopwatch stopwatch;
-  Film film{wanted.width, wanted.height, 1};
+  Film film{requested.width, requested.height, 1};
   std::vector<glm::vec3> picture;
   const auto hand_over = [&](const DrawnFrame& drawn) {
     Frame frame;
     frame.layers.width = film.width;
     frame.layers.height = film.height;
     frame.mixed = picture;
-    frame.lacking = drawn.lacking_share;
+    frame.lacking = drawn.lacking_fraction;
     frame.photons = maps.photons;
     frame.scene = maps.scene;
-    frame.camera = wanted.camera;
+    frame.camera = requested.camera;
     frame.emitted_photons = maps.emitted_photons;
     frame.noise = maps.noise;
     frame.seconds = stopwatch.seconds();
@@ -172,21 +172,21 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     filling.soft = !maps.whole;
     picture.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height),
                    {});
-    const DrawnFrame drawn =
-        maps.renderer->draw(wanted.camera, film, wanted.powers, filling, picture, Progress::none(),
-                            maps.coarser ? maps.coarser->renderer.get() : nullptr);
+    const DrawnFrame drawn = maps.renderer->draw(
+        requested.camera, film, requested.powers, filling, picture, Progress::none(),
+        maps.coarser ? maps.coarser->renderer.get() : nullptr);
     if (ended()) throw Interrupted();
     hand_over(drawn);
   };
-  if (wanted.relit && !wanted.moving && !is_first) {
-    film.width = std::max(1, wanted.width / relit_share);
-    film.height = std::max(1, wanted.height / relit_share);
+  if (requested.relit && !requested.moving && !is_first) {
+    film.width = std::max(1, requested.width / relit_fraction);
+    film.height = std::max(1, requested.height / relit_fraction);
     draw_with({0, ended});
-    film = {wanted.width, wanted.height, 1};
+    film = {requested.width, requested.height, 1};
   }
-  const double seconds = is_first        ? first_fill
-                         : wanted.moving ? time_to_fill(task, draw_seconds_)
-                                         : 0;
+  const double seconds = is_first           ? first_fill
+                         : requested.moving ? time_to_fill(task, draw_seconds_)
+                                            : 0;
   draw_with({seconds, ended, hand_over});
 }
 
@@ -247,7 +247,7 @@ void FrameWorker::work(std::stop_token stop) {
         task.maps->lit = true;
       }
     } catch (const Interrupted&) {
-      // Something else is wanted by now.
+      // Something else is requested by now.
     } catch (...) {
       const std::lock_guard lock(mutex_);
       error_ = std::current_exception();

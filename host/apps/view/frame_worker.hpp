@@ -1,4 +1,5 @@
-// Frames of the walkthrough, rendered on a thread of their own, as large as the wanted rate allows.
+// Frames of the walkthrough, rendered on a thread of their own, as large as the requested rate
+// allows.
 #pragma once
 
 #include <condition_variable>
@@ -43,7 +44,7 @@ struct FrameRequest {
   bool reflections = false;  ///< asks for Frame::reflections
   bool relit = false;        ///< only lamps changed: a smaller quick frame comes first
   /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
-  /// moves and until no node is lacking. Empty: frames with layers are wanted.
+  /// moves and until no node is lacking. Empty: frames with layers are requested.
   std::vector<glm::vec3> powers = {};
   /// How the layers of frames that have some are mixed; null = each light for itself.
   std::shared_ptr<const LayerMixdown> mixdown = nullptr;

@@ -24,7 +24,7 @@ SceneLoader::~SceneLoader() {
 
 void SceneLoader::load(const std::string& luminaires) {
   const std::lock_guard lock(mutex_);
-  wanted_ = luminaires;
+  requested_ = luminaires;
   loaded_.reset();
   error_ = nullptr;
   wake_.notify_all();
@@ -42,7 +42,7 @@ std::exception_ptr SceneLoader::take_error() {
 
 bool SceneLoader::busy() const {
   const std::lock_guard lock(mutex_);
-  return wanted_ || loading_;
+  return requested_ || loading_;
 }
 
 void SceneLoader::work(const std::stop_token& stop) {
@@ -50,9 +50,9 @@ void SceneLoader::work(const std::stop_token& stop) {
     {
       std::unique_lock lock(mutex_);
       loading_ = false;
-      if (!wake_.wait(lock, stop, [&] { return wanted_.has_value(); })) return;
+      if (!wake_.wait(lock, stop, [&] { return requested_.has_value(); })) return;
       if (stop.stop_requested()) return;
-      options_.luminaires_text = *std::exchange(wanted_, std::nullopt);
+      options_.luminaires_text = *std::exchange(requested_, std::nullopt);
       loading_ = true;
     }
     std::shared_ptr<const loading::SourcedScene> scene;
@@ -64,7 +64,7 @@ void SceneLoader::work(const std::stop_token& stop) {
       error = std::current_exception();
     }
     const std::lock_guard lock(mutex_);
-    if (wanted_) continue;
+    if (requested_) continue;
     if (scene) loaded_ = Loaded{options_.luminaires_text, std::move(scene)};
     error_ = error;
   }
@@ -141,7 +141,7 @@ bool LuminaireTool::drag(const Camera& camera) {
 }
 
 bool LuminaireTool::click(const Camera& camera, const glm::dvec3& direction,
-                          const std::optional<PhotonInspector::Place>& surface) {
+                          const std::optional<PhotonInspector::Surface>& surface) {
   if (placing_) {
     if (!surface) return true;
     placing_ = false;
@@ -197,7 +197,7 @@ bool LuminaireSession::save(std::string& message) {
 }
 
 bool LuminaireSession::click(const Camera& camera, const glm::dvec3& direction,
-                             const std::optional<PhotonInspector::Place>& surface,
+                             const std::optional<PhotonInspector::Surface>& surface,
                              std::string& message) {
   try {
     return tool_.click(camera, direction, surface);

@@ -47,7 +47,7 @@ class SceneLoader {
   SceneLoadOptions options_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::optional<std::string> wanted_;
+  std::optional<std::string> requested_;
   bool loading_ = false;
   std::optional<Loaded> loaded_;
   std::exception_ptr error_;
@@ -78,7 +78,7 @@ class LuminaireTool {
   ///   surface     that it meets, or none
   /// Errors: those of LuminaireEditor::place.
   bool click(const Camera& camera, const glm::dvec3& direction,
-             const std::optional<PhotonInspector::Place>& surface);
+             const std::optional<PhotonInspector::Surface>& surface);
 
   /// Outlines of all openings, the selected ones in colour.
   void draw(const Camera& camera) const;
@@ -117,7 +117,7 @@ class LuminaireSession {
 
   /// Takes a click as LuminaireTool does, but `message` gets the errors.
   bool click(const Camera& camera, const glm::dvec3& direction,
-             const std::optional<PhotonInspector::Place>& surface, std::string& message);
+             const std::optional<PhotonInspector::Surface>& surface, std::string& message);
 
   /// Returns whether it is saved; `message` is told either way.
   bool save(std::string& message);

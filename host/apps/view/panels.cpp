@@ -193,10 +193,10 @@ bool draw_glare(PanelState& state, const Frame* frame) {
   ImGui::Text("above %s %s", report::number_text(glare.limit, 4).c_str(), unit);
   for (std::size_t light = 0; light < glare.lights.size(); ++light) {
     const image::LightGlare& its = glare.lights[light];
-    if (!(its.share > 0)) continue;
+    if (!(its.fraction > 0)) continue;
     draw_colour(image::mark_colour(static_cast<int>(light)));
     ImGui::SameLine();
-    ImGui::TextWrapped("%s: %.2g%%, up to %s", its.light.c_str(), 100 * its.share,
+    ImGui::TextWrapped("%s: %.2g%%, up to %s", its.light.c_str(), 100 * its.fraction,
                        report::number_text(its.peak, 4).c_str());
   }
   return changed;

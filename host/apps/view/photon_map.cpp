@@ -62,7 +62,7 @@ std::span<const glm::vec3> photons_on(const InspectablePhotons& photons,
 
 }  // namespace
 
-InspectablePhotons InspectablePhotons::of(const PreparedPhotons& photons) {
+InspectablePhotons InspectablePhotons::of(const TracedPhotons& photons) {
   return {photons.photons.position, photons.photons.first_of, photons.groups.patches,
           photons.groups.radius, photons.groups.angle_degrees};
 }
@@ -97,18 +97,18 @@ using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour red{230, 60, 40}, blue{60, 120, 255}, green{60, 190, 90}, yellow{255, 230, 0},
     cyan{0, 255, 255};
 /// How much of a tint is its colour.
-constexpr double tint_share = 0.4;
+constexpr double tint_fraction = 0.4;
 /// A photon is hidden by what lies so much nearer: pixels see their middles alone.
 constexpr double hidden_share = 0.02;
 
 void tint(DisplayedFrame& shown, std::size_t pixel, const Colour& colour) {
   for (std::size_t c = 0; c < 3; ++c) {
     std::uint8_t& value = shown.rgb[3 * pixel + c];
-    value = static_cast<std::uint8_t>((1 - tint_share) * value + tint_share * colour[c]);
+    value = static_cast<std::uint8_t>((1 - tint_fraction) * value + tint_fraction * colour[c]);
   }
 }
 
-void draw_photons(DisplayedFrame& shown, const Camera& camera, const SeenSurfaces& seen,
+void draw_photons(DisplayedFrame& shown, const Camera& camera, const VisibleSurfaces& seen,
                   const std::vector<glm::vec3>& photons, const Colour& colour) {
   for (const glm::vec3& photon : photons) {
     const auto place = project(camera, glm::dvec3(photon), shown.width, shown.height);
@@ -126,12 +126,12 @@ void draw_photons(DisplayedFrame& shown, const Camera& camera, const SeenSurface
   }
 }
 
-struct SeenPoint {
+struct VisiblePoint {
   std::uint32_t oriented_face = none;
   double distance = std::numeric_limits<double>::infinity();
 };
 
-SeenPoint seen_along(const RayScene& rays, const glm::dvec3& from, const glm::dvec3& direction) {
+VisiblePoint seen_along(const RayScene& rays, const glm::dvec3& from, const glm::dvec3& direction) {
   const auto hit = trace::intersect(rays, glm::vec3(from), glm::vec3(direction));
   if (!hit) return {};
   const Scene& scene = rays.scene();
@@ -145,15 +145,16 @@ SeenPoint seen_along(const RayScene& rays, const glm::dvec3& from, const glm::dv
 
 }  // namespace
 
-SeenSurfaces seen_surfaces(const RayScene& rays, const Camera& camera, int width, int height) {
-  SeenSurfaces seen{width, height, {}, {}};
+VisibleSurfaces visible_surfaces(const RayScene& rays, const Camera& camera, int width,
+                                 int height) {
+  VisibleSurfaces seen{width, height, {}, {}};
   const auto columns = static_cast<std::size_t>(width);
   seen.oriented_face.resize(columns * static_cast<std::size_t>(height));
   seen.distance.resize(seen.oriented_face.size());
   tbb::parallel_for(0, height, [&](int y) {
     const trace::FlushDenormals flush_denormals;
     for (int x = 0; x < width; ++x) {
-      const SeenPoint point =
+      const VisiblePoint point =
           seen_along(rays, camera.position, camera.direction(x + 0.5, y + 0.5, width, height));
       const std::size_t pixel = static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x);
       seen.oriented_face[pixel] = point.oriented_face;
@@ -174,7 +175,7 @@ std::optional<glm::dvec2> project(const Camera& camera, const glm::dvec3& point,
                     0.5 * height * (1 - glm::dot(from_eye, camera.up) / half_height));
 }
 
-void draw_photon_map(DisplayedFrame& shown, const Camera& camera, const SeenSurfaces& seen,
+void draw_photon_map(DisplayedFrame& shown, const Camera& camera, const VisibleSurfaces& seen,
                      const PhotonMapView& map) {
   const auto holds = [](const std::vector<std::uint32_t>& ascending, std::uint32_t each) {
     return std::binary_search(ascending.begin(), ascending.end(), each);
@@ -207,15 +208,15 @@ void PhotonInspector::pick(const Frame& frame, double x, double y) {
   map_.reset();
 }
 
-std::optional<PhotonInspector::Place> PhotonInspector::place_at(const Frame& frame, double x,
-                                                                double y) {
+std::optional<PhotonInspector::Surface> PhotonInspector::surface_at(const Frame& frame, double x,
+                                                                    double y) {
   const trace::FlushDenormals flush_denormals;
   const int width = frame.layers.width, height = frame.layers.height;
   const glm::dvec3 direction = frame.camera.direction(x * width, y * height, width, height);
-  const SeenPoint seen = seen_along(rays(), frame.camera.position, direction);
+  const VisiblePoint seen = seen_along(rays(), frame.camera.position, direction);
   if (seen.oriented_face == none) return std::nullopt;
-  return Place{frame.camera.position + seen.distance * direction,
-               face_normal(scene_, seen.oriented_face)};
+  return Surface{frame.camera.position + seen.distance * direction,
+                 face_normal(scene_, seen.oriented_face)};
 }
 
 void PhotonInspector::draw(const Frame& frame, DisplayedFrame& shown) {
@@ -225,7 +226,7 @@ void PhotonInspector::draw(const Frame& frame, DisplayedFrame& shown) {
     map_ = view_of_map(scene_, *photons_, picked_);
   }
   draw_photon_map(shown, frame.camera,
-                  seen_surfaces(rays(), frame.camera, shown.width, shown.height), *map_);
+                  visible_surfaces(rays(), frame.camera, shown.width, shown.height), *map_);
 }
 
 }  // namespace photile::view

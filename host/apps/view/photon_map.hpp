@@ -22,7 +22,7 @@ struct InspectablePhotons {
   double radius = 0;                    ///< metres, of the maps; infinite where they are naive
   double angle_degrees = 0;             ///< of the neighbour groups
 
-  static InspectablePhotons of(const PreparedPhotons& photons);
+  static InspectablePhotons of(const TracedPhotons& photons);
 };
 
 /// An oriented face and what an estimate on it may find.
@@ -42,12 +42,12 @@ PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
                           std::uint32_t oriented_face);
 
 /// The surfaces that the middles of pixels see, mirrors and glass themselves.
-struct SeenSurfaces {
+struct VisibleSurfaces {
   int width = 0, height = 0;
   std::vector<std::uint32_t> oriented_face;  ///< per pixel; none = nothing
   std::vector<double> distance;              ///< per pixel, metres from the eye; infinite
 };
-SeenSurfaces seen_surfaces(const RayScene& rays, const Camera& camera, int width, int height);
+VisibleSurfaces visible_surfaces(const RayScene& rays, const Camera& camera, int width, int height);
 
 /// Where a film of width x height shows a point, in pixels, (0, 0) the upper left corner: the
 /// inverse of Camera::direction. Nothing where it lies behind the eye.
@@ -56,7 +56,7 @@ std::optional<glm::dvec2> project(const Camera& camera, const glm::dvec3& point,
 
 /// Tints the triangle red, its group blue and the rest of its patch green, and draws its photons
 /// yellow and those of its group cyan where nothing hides them.
-void draw_photon_map(DisplayedFrame& shown, const Camera& camera, const SeenSurfaces& seen,
+void draw_photon_map(DisplayedFrame& shown, const Camera& camera, const VisibleSurfaces& seen,
                      const PhotonMapView& map);
 
 /// Draws the photon map of a picked triangle over each frame. Until something is picked it holds
@@ -71,10 +71,10 @@ class PhotonInspector {
 
   /// The place on a surface that a frame shows there, in the scene's coordinates, and the unit
   /// normal of the side seen; nothing where that is nothing.
-  struct Place {
+  struct Surface {
     glm::dvec3 position, normal;
   };
-  std::optional<Place> place_at(const Frame& frame, double x, double y);
+  std::optional<Surface> surface_at(const Frame& frame, double x, double y);
 
   /// Draws what is picked, by the photons of the frame.
   void draw(const Frame& frame, DisplayedFrame& shown);

@@ -47,8 +47,7 @@ class PhotonWorker::Listener : public Progress {
 
 PhotonWorker::PhotonWorker(const Scene& scene, OpenDevices open_devices,
                            const RenderParameters& parameters,
-                           std::optional<PreparedPhotons> prepared, KeepPhotons keep,
-                           Deliver deliver)
+                           std::optional<TracedPhotons> prepared, KeepPhotons keep, Deliver deliver)
     : scene_(scene),
       open_devices_(std::move(open_devices)),
       parameters_(parameters),
@@ -66,7 +65,7 @@ std::exception_ptr PhotonWorker::take_error() {
   return std::exchange(error_, nullptr);
 }
 
-void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
+void PhotonWorker::work(std::optional<TracedPhotons> prepared) {
   try {
     std::shared_ptr<MapGeneration> first;
     if (!prepared) {
@@ -92,11 +91,11 @@ void PhotonWorker::work(std::optional<PreparedPhotons> prepared) {
 }
 
 std::shared_ptr<MapGeneration> PhotonWorker::build(const RenderParameters& parameters, bool whole,
-                                                   PreparedPhotons* prepared) {
+                                                   TracedPhotons* prepared) {
   listener_->throw_if_cancelled();
   auto generation = std::make_shared<MapGeneration>();
   generation->devices = open_devices_();
-  const KeepPhotons keep = [&](const PreparedPhotons& photons) {
+  const KeepPhotons keep = [&](const TracedPhotons& photons) {
     generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
     if (whole && keep_) keep_(photons);
   };
@@ -109,7 +108,7 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(const RenderParameters& param
 }
 
 void PhotonFeed::trace(std::shared_ptr<const Scene> scene, const RenderParameters& parameters,
-                       std::optional<PreparedPhotons> prepared, KeepPhotons keep) {
+                       std::optional<TracedPhotons> prepared, KeepPhotons keep) {
   worker_.reset();
   take();  // of the scene before
   const Scene& traced = *scene;

@@ -52,7 +52,7 @@ class PhotonWorker {
   ///   keep       is given the photons of the last maps; may be empty
   ///   deliver    is called on the worker's thread with each set of maps
   PhotonWorker(const Scene& scene, OpenDevices open_devices, const RenderParameters& parameters,
-               std::optional<PreparedPhotons> prepared, KeepPhotons keep, Deliver deliver);
+               std::optional<TracedPhotons> prepared, KeepPhotons keep, Deliver deliver);
   ~PhotonWorker();
 
   WorkProgress progress() const;
@@ -63,9 +63,9 @@ class PhotonWorker {
  private:
   class Listener;
 
-  void work(std::optional<PreparedPhotons> prepared);
+  void work(std::optional<TracedPhotons> prepared);
   std::shared_ptr<MapGeneration> build(const RenderParameters& parameters, bool whole,
-                                       PreparedPhotons* prepared);
+                                       TracedPhotons* prepared);
 
   const Scene& scene_;
   const OpenDevices open_devices_;
@@ -86,7 +86,7 @@ class PhotonFeed {
 
   /// Ends what it is at, and traces this scene, which maps hold from then on. As PhotonWorker.
   void trace(std::shared_ptr<const Scene> scene, const RenderParameters& parameters,
-             std::optional<PreparedPhotons> prepared, KeepPhotons keep);
+             std::optional<TracedPhotons> prepared, KeepPhotons keep);
   void stop() { worker_.reset(); }
 
   /// The newest maps, once whenever there is something new in them.

@@ -78,7 +78,7 @@ class Viewer {
       follow_input();
       take_maps();
       const bool new_frame = take_frame();
-      if (keep_wanted_) keep_frame();
+      if (keep_requested_) keep_frame();
       take_errors();
       picked_ = pick_triangle();
       take_click();
@@ -121,7 +121,7 @@ class Viewer {
       }
     }
     if (luminaires_) luminaires_->tell_unsaved(*parameters_.notes);
-    if (keep_wanted_) parameters_.notes->note("the picture was not yet whole, and is not kept");
+    if (keep_requested_) parameters_.notes->note("the picture was not yet whole, and is not kept");
     photons_.stop();
     const std::shared_ptr<MapGeneration> maps = frames_.stop();
     if (!parameters_.keep_light_maps || !maps || maps->scene != first_scene_) return;
@@ -174,10 +174,10 @@ class Viewer {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput) return;
     if (ImGui::IsKeyPressed(GLFW_KEY_F2, false)) panels_shown_ = !panels_shown_;
-    screenshot_wanted_ = ImGui::IsKeyPressed(GLFW_KEY_F12, false);
+    screenshot_requested_ = ImGui::IsKeyPressed(GLFW_KEY_F12, false);
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
     if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_S, false)) {
-      keep_wanted_ = true;
+      keep_requested_ = true;
       told_of_luminaires_.clear();
       if (luminaires_ && luminaires_->editor().unsaved()) luminaires_->save(told_of_luminaires_);
       message_ = beside_luminaires("the picture is kept as soon as it is whole");
@@ -256,7 +256,7 @@ class Viewer {
   /// A click is a measurement, unless it asks for a triangle's photons, or for lamps.
   void take_click() {
     if (!clicked_ || display_.photon_map || !frame_ || !probe_) return;
-    const auto place = inspector_->place_at(*frame_, probe_->x, probe_->y);
+    const auto place = inspector_->surface_at(*frame_, probe_->x, probe_->y);
     const int width = window_.width(), height = window_.height();
     const glm::dvec3 direction =
         frame_->camera.direction(probe_->x * width, probe_->y * height, width, height);
@@ -323,7 +323,7 @@ class Viewer {
   }
 
   void keep_screenshot() {
-    if (!screenshot_wanted_) return;
+    if (!screenshot_requested_) return;
     message_ = keep_as(parameters_.outputs, "screenshot", ".png", [&](const auto& file) {
       write_screenshot(file, window_.width(), window_.height(), window_.read_pixels());
     });
@@ -331,7 +331,7 @@ class Viewer {
 
   void keep_frame() {
     if (!frame_ || !frame_->mixed.empty()) return;
-    keep_wanted_ = false;
+    keep_requested_ = false;
     message_ =
         beside_luminaires(keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
           write_frame(file, *scene_, *frame_, lights_.shown_mix());
@@ -372,8 +372,8 @@ class Viewer {
   bool sky_moved_ = false;
   bool exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
   bool seen_ = false;  ///< any frame
-  bool panels_shown_ = true, screenshot_wanted_ = false;
-  bool keep_wanted_ = false;  ///< a frame that has layers, which a quick one has not
+  bool panels_shown_ = true, screenshot_requested_ = false;
+  bool keep_requested_ = false;  ///< a frame that has layers, which a quick one has not
   FrameWorker frames_;
   PhotonFeed photons_;
 };

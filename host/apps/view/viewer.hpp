@@ -29,7 +29,7 @@ struct ViewerParameters {
   std::filesystem::path moods = {};     ///< file of moods; "" = beside the scene
   std::uint64_t light_map_bytes = 0;    ///< that nodes may take; 0 = no bound
   /// Photons of an earlier run in place of all tracing, or none.
-  std::optional<PreparedPhotons> prepared;
+  std::optional<TracedPhotons> prepared;
   SceneLoadOptions load;   ///< with which the scene was loaded, for copies of its file
   SkySituation situation;  ///< of a sky of patches; without a place nothing moves it
   /// Makes the mix of a scene that was loaded again, as `mix` was made of the first.

@@ -219,7 +219,7 @@ class JsonCheck {
   bool key(string_t& name) {
     Level& level = levels_.back();
     level.key = name;
-    if (!level.free) set_wanted(level);
+    if (!level.free) set_requested(level);
     return true;
   }
 
@@ -249,7 +249,7 @@ class JsonCheck {
   /// Whether what comes has to be a whole number.
   bool is_whole() const { return !levels_.empty() && levels_.back().whole; }
 
-  void set_wanted(Level& level) const {
+  void set_requested(Level& level) const {
     const bool bytes = is_one_of(of_bytes, levels_.front().key);
     const bool number = bytes && is_one_of(numbers, level.key);
     const bool size = bytes && is_one_of(sizes, level.key);
@@ -273,7 +273,7 @@ class JsonCheck {
     return false;
   }
 
-  /// "bufferViews[0].byteOffset". Their names are plain where a number is wanted.
+  /// "bufferViews[0].byteOffset". Their names are plain where a number is requested.
   std::string place() const {
     std::string text;
     for (const Level& level : levels_) {

@@ -129,7 +129,7 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
 }
 
 /// The attributes as the file has them, one after another: 3 floats a vertex, 4 of tangents, 2 of
-/// coordinates. All but the positions are empty where they are absent or not wanted.
+/// coordinates. All but the positions are empty where they are absent or not requested.
 struct VertexAttributes {
   std::vector<float> positions, normals, tangents, uv, emission_uv;
 };
@@ -315,7 +315,7 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const std::uint32_t light = context_.area_lights.find_or_add(
       visit_number, node.name.empty() ? mesh_name : node.name, material, surface.emission, traits);
   for (const auto& [a, b, c] : assemble(indices, primitive.mode)) {
-    context_.look_up();
+    context_.check_cancelled();
     const std::array<scene::Corner, 3> triangle{vertices[mirrored ? c : a], vertices[b],
                                                 vertices[mirrored ? a : c]};
     kept_.push_back(builder_.add(triangle, surface.material, light));

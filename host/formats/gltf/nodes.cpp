@@ -185,16 +185,17 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
 std::optional<std::size_t> scene_number(const tinygltf::Model& model,
                                         const reading::ImportContext& context) {
   if (model.scenes.empty()) return std::nullopt;
-  const std::string& wanted = context.options.scene;
-  if (!wanted.empty()) {
+  const std::string& requested = context.options.scene;
+  if (!requested.empty()) {
     for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-      if (model.scenes[i].name == wanted) return i;
+      if (model.scenes[i].name == requested) return i;
     }
     for (std::size_t i = 0; i < model.scenes.size(); ++i) {
-      if (std::to_string(i) == wanted) return i;
+      if (std::to_string(i) == requested) return i;
     }
     throw UsageError(fmt::format("{}: no scene '{}'; its scenes are {}",
-                                 context.folder.scene_file().string(), wanted, scene_list(model)));
+                                 context.folder.scene_file().string(), requested,
+                                 scene_list(model)));
   }
   const int scene = std::max(model.defaultScene, 0);  // else the first
   if (static_cast<std::size_t>(scene) >= model.scenes.size()) {

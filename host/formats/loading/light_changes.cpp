@@ -156,12 +156,12 @@ void apply(Scene& scene, const ReflectanceChange& change) {
   for (Material& material : scene.materials) {
     if (::fnmatch(change.glob.c_str(), material.name.c_str(), 0) != 0) continue;
     found = true;
-    if (scene::set_reflectance(scene, material, change.share)) continue;
+    if (scene::set_reflectance(scene, material, change.fraction)) continue;
     throw UsageError(fmt::format(
         "reflectance of '{}': {:g} cannot be had by making its colour brighter or darker: it is "
         "glass, its gloss reflects more alone (--set lambertian=on removes that) or a channel "
         "exceeds 1",
-        material.name, change.share));
+        material.name, change.fraction));
   }
   if (!found) {
     throw UsageError(fmt::format("reflectance of '{}': there is no such material; there are {}",

@@ -111,7 +111,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const auto room = trace::Room::of_camera(rays, axes, camera);
   if (!room) return std::nullopt;
   const glm::dvec2 plan = 0.5 * (room->low() + room->high());
-  const auto places = room->places();
+  const auto places = room->positions();
   if (places.empty()) return std::nullopt;
   const double height = glm::dot(places.front(), axes.up);
   const glm::dvec3 below = plan.x * axes.right + plan.y * axes.ahead + height * axes.up;

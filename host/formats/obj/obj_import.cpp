@@ -293,10 +293,10 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
     has_coordinates &= file.corners[c].texcoord_index >= 0;
   }
   reading::Emission emission = context.emission[material];
-  const Material& wanted = context.scene.materials[material];
-  const bool is_plain = !has_coordinates && wanted.textured();
+  const Material& requested = context.scene.materials[material];
+  const bool is_plain = !has_coordinates && requested.textured();
   if (is_plain || (!has_coordinates && emission.texture != none)) {
-    context.warnings.add("material", wanted.name,
+    context.warnings.add("material", requested.name,
                          "faces without texture coordinates have its factors, and mid grey (0.5) "
                          "in place of map_Kd");
     emission.texture = none;
@@ -385,7 +385,7 @@ void import_obj(reading::ImportContext& context) {
                              {needs.textures, reading::has_emission_texture(context), true});
   reading::PlainMaterials plain_materials(context.scene);
   for (const ObjFace& face : file.faces) {
-    context.look_up();
+    context.check_cancelled();
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
     add_face(file, face, material_index[name], builder, plain_materials, context);
   }

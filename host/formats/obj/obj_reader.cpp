@@ -35,12 +35,12 @@ class Collector {
   }
 
   void add_position(const glm::dvec3& position) {
-    context_.look_up();
+    context_.check_cancelled();
     file_.positions.push_back(position);
   }
 
   void add_face(const tinyobj::index_t* indices, int count) {
-    context_.look_up();
+    context_.check_cancelled();
     if (count < 3) {
       context_.warnings.add("object", object_name(), "faces with fewer than 3 corners are ignored");
       return;
@@ -219,7 +219,7 @@ ObjTextFindings examine_obj_text(std::string& text, reading::ImportContext& cont
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) std::fill(text.begin(), text.begin() + 3, ' ');
   while (!rest.empty()) {
-    context.look_up();
+    context.check_cancelled();
     std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     const std::string_view keyword = take_word(line);

@@ -33,11 +33,11 @@ struct ImportContext {
 
   /// To be called for each line, triangle and the like: looks now and then whether the user asked
   /// to stop. Errors: Interrupted.
-  void look_up() {
-    constexpr std::uint32_t calls_between_looks = 1024;
-    if (++calls_ % calls_between_looks == 0) progress.throw_if_cancelled();
+  void check_cancelled() {
+    constexpr std::uint32_t calls_between_checks = 1024;
+    if (++calls_ % calls_between_checks == 0) progress.throw_if_cancelled();
   }
-  std::uint32_t calls_ = 0;  ///< of look_up
+  std::uint32_t calls_ = 0;  ///< of check_cancelled
 };
 
 /// Whether some material's emission has a texture.

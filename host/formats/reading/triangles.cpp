@@ -224,9 +224,9 @@ Triangulation triangulate_polygon(std::span<const glm::dvec3> corners, const Pro
   };
   ask_all(current);
   // Where a polygon crosses itself, to ask for one ear may mean to look at all corners.
-  constexpr std::size_t rounds_between_looks = 256;
+  constexpr std::size_t rounds_between_checks = 256;
   for (std::size_t round = 1; left > 3; ++round) {
-    if (round % rounds_between_looks == 0) progress.throw_if_cancelled();
+    if (round % rounds_between_checks == 0) progress.throw_if_cancelled();
     if (!unknown.empty()) {
       const auto found = unknown.lower_bound(current);
       current = found == unknown.end() ? *unknown.begin() : *found;
@@ -353,17 +353,17 @@ void InstanceRecorder::record(int mesh, const glm::dmat4& world, std::uint32_t f
   }
   glm::dmat4 from_centre = world;
   from_centre[3] = world * glm::dvec4(known.centre, 1.0);
-  known.places.push_back({first_triangle, glm::mat4x3(from_centre)});
+  known.instances.push_back({first_triangle, glm::mat4x3(from_centre)});
 }
 
 void InstanceRecorder::finish() {
   for (auto& [number, mesh] : meshes_) {
-    const std::size_t places = std::max<std::size_t>(1, mesh.places.size());
-    if ((places - 1) * mesh.shared.triangles.size() < least_saved_triangles) continue;
+    const std::size_t instances = std::max<std::size_t>(1, mesh.instances.size());
+    if ((instances - 1) * mesh.shared.triangles.size() < least_saved_triangles) continue;
     const auto index = static_cast<std::uint32_t>(scene_.shared_meshes.size());
     scene_.shared_meshes.push_back(std::move(mesh.shared));
-    for (const Place& place : mesh.places) {
-      scene_.instances.push_back({index, place.first_triangle, place.to_world});
+    for (const Instance& instance : mesh.instances) {
+      scene_.instances.push_back({index, instance.first_triangle, instance.to_world});
     }
   }
   std::sort(scene_.instances.begin(), scene_.instances.end(),

@@ -79,7 +79,7 @@ class InstanceRecorder {
   void finish();
 
  private:
-  struct Place {
+  struct Instance {
     std::uint32_t first_triangle;
     glm::mat4x3 to_world;
   };
@@ -87,7 +87,7 @@ class InstanceRecorder {
     SharedMesh shared;
     glm::dvec3 centre{0.0};
     std::vector<bool> kept;
-    std::vector<Place> places;
+    std::vector<Instance> instances;
   };
 
   Scene& scene_;

@@ -48,7 +48,7 @@ struct Header {
   ContentHash::Digest head;  ///< of all before
 };
 static_assert(sizeof(Header) == 104 && std::is_trivially_copyable_v<Header>);
-static_assert(sizeof(LightMapContents::Place) == 12 && sizeof(LightMapContents::Tile) == 32);
+static_assert(sizeof(LightMapContents::Coordinates) == 12 && sizeof(LightMapContents::Tile) == 32);
 
 ContentHash::Digest digest_of(const Scene& scene) {
   ContentHash hash;
@@ -90,7 +90,7 @@ void for_each_array(Prepared& prepared, const Visit& visit) {
 /// Radius of the maps, radius and angle of the groups, and whether caustics are there.
 using Numbers = std::array<double, 4>;
 
-Numbers numbers_of(const PreparedPhotons& prepared) {
+Numbers numbers_of(const TracedPhotons& prepared) {
   return {prepared.radius, prepared.groups.radius, prepared.groups.angle_degrees,
           prepared.caustics ? 1.0 : 0.0};
 }
@@ -105,7 +105,7 @@ void write_array(const Array& values, const Put& put) {
 
 /// Calls `put` with all bytes of the photons' part, in runs.
 template <class Put>
-void write_photons(const PreparedPhotons& prepared, const Settings& settings, const Put& put) {
+void write_photons(const TracedPhotons& prepared, const Settings& settings, const Put& put) {
   write_array(settings.photons, put);
   write_array(prepared.has_groups() ? settings.groups : std::string(), put);
   const Numbers numbers = numbers_of(prepared);
@@ -226,12 +226,12 @@ LightMapContents read_light_maps(Reader& reader, const Part& part) {
 /// The photons' part, with the settings that it was saved with.
 struct Contents {
   Settings settings;
-  PreparedPhotons prepared;
+  TracedPhotons prepared;
 };
 
 Contents read_photons(Reader& reader, const Header& header) {
   Contents contents;
-  PreparedPhotons& prepared = contents.prepared;
+  TracedPhotons& prepared = contents.prepared;
   Numbers numbers{};
   reader.begin_part();
   reader.read_array(contents.settings.photons);
@@ -256,7 +256,7 @@ void refuse_other_settings(const Reader& reader, const std::string& saved,
 }
 
 void write(const std::filesystem::path& file, Header header, const Settings& settings,
-           const PreparedPhotons& prepared) {
+           const TracedPhotons& prepared) {
   header.photons = part_of([&](const auto& put) { write_photons(prepared, settings, put); });
   header.head = digest_of(header);
   OutputFile output(file);
@@ -313,10 +313,10 @@ class ShardCollection {
   /// Errors: InputError where shards are missing, or do not fit one another; OutputError.
   void write_whole(const std::filesystem::path& output) {
     check_complete();
-    PreparedPhotons whole;
-    whole.photons = merged([](PreparedPhotons& prepared) { return &prepared.photons; });
+    TracedPhotons whole;
+    whole.photons = merged([](TracedPhotons& prepared) { return &prepared.photons; });
     if (shards_.begin()->second.prepared.caustics) {
-      whole.caustics = merged([](PreparedPhotons& prepared) {
+      whole.caustics = merged([](TracedPhotons& prepared) {
         return prepared.caustics ? &*prepared.caustics : nullptr;
       });
     }
@@ -326,7 +326,7 @@ class ShardCollection {
  private:
   struct Read {
     std::filesystem::path file;
-    PreparedPhotons prepared;
+    TracedPhotons prepared;
   };
 
   void check_complete() const {
@@ -384,7 +384,7 @@ class ShardCollection {
 }  // namespace
 
 void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
-          const PreparedPhotons& prepared, const Shard& shard) {
+          const TracedPhotons& prepared, const Shard& shard) {
   write(file, header_of(digest_of(scene), shard), settings, prepared);
 }
 
@@ -409,8 +409,8 @@ void add_light_maps(const std::filesystem::path& file, const LightMapContents& c
   output.commit();
 }
 
-PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
-                     const Settings& settings) {
+TracedPhotons load(const std::filesystem::path& file, const Scene& scene,
+                   const Settings& settings) {
   Reader reader(file);
   note_input(file);
   const Header header = read_header(reader);
@@ -453,7 +453,7 @@ bool are_patches(const Patches& patches, std::uint64_t oriented_faces) {
 
 }  // namespace
 
-std::string problem_of(const PreparedPhotons& prepared, const Scene& scene) {
+std::string problem_of(const TracedPhotons& prepared, const Scene& scene) {
   const std::uint64_t oriented_faces = 2 * std::uint64_t{scene.triangle_count()};
   const NeighbourGroups& groups = prepared.groups;
   const std::string problem = maps::problem_of(prepared.photons, needs_of(scene), oriented_faces);

@@ -23,7 +23,7 @@ struct Settings {
 ///   shard      what part of all photons it holds
 /// Errors: OutputError naming the file; an existing file is kept then.
 void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
-          const PreparedPhotons& prepared, const Shard& shard = {});
+          const TracedPhotons& prepared, const Shard& shard = {});
 
 /// Adds light maps of these photons to a file, in place of those that it holds: through a temporary
 /// name and a rename. Errors: InputError where it is no such file; OutputError.
@@ -32,8 +32,7 @@ void add_light_maps(const std::filesystem::path& file, const LightMapContents& c
 /// Reads a file back, bit for bit. Errors: InputError naming the file where it is missing, no such
 /// file, of another version or byte order, truncated, longer than it says, damaged, inconsistent,
 /// or a shard; or where it was saved from another scene or with other settings, which it names.
-PreparedPhotons load(const std::filesystem::path& file, const Scene& scene,
-                     const Settings& settings);
+TracedPhotons load(const std::filesystem::path& file, const Scene& scene, const Settings& settings);
 
 /// Writes what one process that traces all paths would write, from the files of all shards, in any
 /// order. Their photons are in memory at once. Errors: InputError naming the file that is damaged,
@@ -42,6 +41,6 @@ void merge(std::span<const std::filesystem::path> files, const std::filesystem::
 
 /// "" where all indices and sizes fit one another and the scene, and all numbers are finite; else
 /// what does not.
-std::string problem_of(const PreparedPhotons& prepared, const Scene& scene);
+std::string problem_of(const TracedPhotons& prepared, const Scene& scene);
 
 }  // namespace photile::saved_maps

@@ -20,8 +20,8 @@ struct LightSetting {
   std::string material;    ///< of a surface
   bool textured = false;   ///< its emission has a texture
   double old_power = 0;    ///< what the file gives, > 0
-  double power = 0;        ///< wanted
-  glm::dvec3 color{1.0};   ///< wanted, of luminance 1
+  double power = 0;        ///< requested
+  glm::dvec3 color{1.0};   ///< requested, of luminance 1
   glm::dvec3 tint{1.0};    ///< what its old colour is multiplied by
   double factor = 1;       ///< of its layer's power; power = old_power x factor x luminance of the
                            ///< tinted old colour

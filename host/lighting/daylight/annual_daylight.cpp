@@ -18,7 +18,7 @@ constexpr int any_common_year = 2026;  ///< weather files join years
 template <class Number>
 void add_sun(const SkyHour& hour, const std::vector<weather::SkyPatch>& patches,
              Number* luminance) {
-  for (const auto& [patch, share] : hour.sun_shares) {
+  for (const auto& [patch, share] : hour.sun_fractions) {
     luminance[patch] += static_cast<Number>(share * hour.sun_lux / patches[patch].solid_angle());
   }
 }
@@ -86,7 +86,7 @@ std::vector<SkyHour> sky_hours(const weather::WeatherYear& weather,
     double on_ground = sky.diffuse_illuminance();
     if (hour.sun.elevation > 0 && sky.direct_illuminance() > 0) {
       hour.sun_lux = sky.direct_illuminance();
-      hour.sun_shares = in_patches.sun(hour.sun);
+      hour.sun_fractions = in_patches.sun(hour.sun);
       on_ground += hour.sun_lux * std::sin(hour.sun.elevation);
     }
     hour.luminance.push_back(static_cast<float>(ground * on_ground / glm::pi<double>()));
@@ -157,7 +157,7 @@ std::vector<float> annual_profile(const DaylightMatrix& matrix, const std::vecto
         const std::size_t at = sensor * hours.size() + lit[first + i];
         double all = double{found[sensor * hours_at_once + i]};
         if (!sun.empty()) {
-          for (const auto& [patch, share] : hour.sun_shares) {
+          for (const auto& [patch, share] : hour.sun_fractions) {
             const std::size_t of_patch = sensor * matrix.patches + patch;
             all += share * hour.sun_lux / patches[patch].solid_angle() *
                    double{matrix.from_sky[of_patch] - matrix.straight[of_patch]};

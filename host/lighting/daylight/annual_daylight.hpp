@@ -25,7 +25,7 @@ struct SkyHour {
   double sun_lux = 0;            ///< facing it; 0 below the horizon
   double diffuse_lux = 0;        ///< horizontal
   std::vector<float> luminance;  ///< cd/m2 of the patches, then of the ground, without the sun
-  std::vector<weather::PatchShare> sun_shares;  ///< empty where there is no sun
+  std::vector<weather::PatchShare> sun_fractions;  ///< empty where there is no sun
 };
 
 /// The hours of a weather file. Of hours without light the luminances are empty.

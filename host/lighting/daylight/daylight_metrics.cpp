@@ -141,7 +141,7 @@ std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours) {
 
 PointDaylight point_daylight(std::span<const float> lux, std::span<const float> sun,
                              const std::vector<bool>& occupied, const std::vector<bool>& daylight,
-                             double wanted_lux) {
+                             double target_lux) {
   PointDaylight point;
   double hours = 0;
   std::vector<double> by_day;
@@ -151,8 +151,8 @@ PointDaylight point_daylight(std::span<const float> lux, std::span<const float> 
     if (daylight[h]) by_day.push_back(value);
     if (!occupied[h]) continue;
     ++hours;
-    point.autonomy += value >= wanted_lux ? 1 : 0;
-    point.continuous_autonomy += std::min(1.0, value / wanted_lux);
+    point.autonomy += value >= target_lux ? 1 : 0;
+    point.continuous_autonomy += std::min(1.0, value / target_lux);
     const auto bin = std::upper_bound(useful_bounds.begin(), useful_bounds.end(), value);
     ++point.useful[static_cast<std::size_t>(bin - useful_bounds.begin())];
     point.sun_hours += !sun.empty() && double{sun[h]} > sun_lux ? 1 : 0;
@@ -191,21 +191,21 @@ RoomDaylight room_daylight(std::span<const PointDaylight> points) {
 
 std::vector<LampEnergy> lamp_energy(std::span<const double> mean_daylight,
                                     const std::vector<bool>& occupied,
-                                    const std::vector<std::string>& lamps,
+                                    const std::vector<std::string>& light_sampler,
                                     std::span<const double> lamp_mean,
-                                    std::span<const double> watts, double wanted_lux) {
+                                    std::span<const double> watts, double target_lux) {
   const double full = std::accumulate(lamp_mean.begin(), lamp_mean.end(), 0.0);
   double dimmed_hours = 0, hours = 0;
   for (std::size_t h = 0; h < mean_daylight.size(); ++h) {
     if (!occupied[h]) continue;
     ++hours;
-    const double lacking = wanted_lux - mean_daylight[h];
+    const double lacking = target_lux - mean_daylight[h];
     if (lacking > 0) dimmed_hours += full > 0 ? std::min(1.0, lacking / full) : 1.0;
   }
   std::vector<LampEnergy> energies;
-  for (std::size_t i = 0; i < lamps.size(); ++i) {
+  for (std::size_t i = 0; i < light_sampler.size(); ++i) {
     energies.push_back(
-        {lamps[i], watts[i], watts[i] * dimmed_hours / 1000, watts[i] * hours / 1000});
+        {light_sampler[i], watts[i], watts[i] * dimmed_hours / 1000, watts[i] * hours / 1000});
   }
   return energies;
 }

@@ -35,8 +35,8 @@ std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);
 /// The daylight of one sensor. Fractions are of the occupied hours.
 struct PointDaylight {
   double mean_lux = 0;             ///< over the whole year
-  double autonomy = 0;             ///< DA: share with the wanted lux or more
-  double continuous_autonomy = 0;  ///< cDA: hours with less count as lux over wanted lux
+  double autonomy = 0;             ///< DA: share with the requested lux or more
+  double continuous_autonomy = 0;  ///< cDA: hours with less count as lux over requested lux
   std::array<double, 4> useful{};  ///< UDI: below 100, to 300, to 3000, above (lux)
   double sun_hours = 0;   ///< occupied hours with more than 1,000 lux straight from the sun
   double median_lux = 0;  ///< that half of the daylight hours reach
@@ -44,7 +44,7 @@ struct PointDaylight {
 
 PointDaylight point_daylight(std::span<const float> lux, std::span<const float> sun,
                              const std::vector<bool>& occupied, const std::vector<bool>& daylight,
-                             double wanted_lux);
+                             double target_lux);
 
 /// The daylight of all sensors of a room.
 struct RoomDaylight {
@@ -67,14 +67,14 @@ struct LampEnergy {
   double undimmed = 0;        ///< the same at full power
 };
 
-/// All lamps together are dimmed, each hour, so that the mean over the room's sensors is the wanted
-/// lux, or are at full power where that is not enough.
+/// All lamps together are dimmed, each hour, so that the mean over the room's sensors is the
+/// requested lux, or are at full power where that is not enough.
 ///   lamp_mean   lux of each lamp, the mean over the sensors
 ///   watts       of each lamp
 std::vector<LampEnergy> lamp_energy(std::span<const double> mean_daylight,
                                     const std::vector<bool>& occupied,
-                                    const std::vector<std::string>& lamps,
+                                    const std::vector<std::string>& light_sampler,
                                     std::span<const double> lamp_mean,
-                                    std::span<const double> watts, double wanted_lux);
+                                    std::span<const double> watts, double target_lux);
 
 }  // namespace photile::daylight

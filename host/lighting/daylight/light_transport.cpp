@@ -20,7 +20,7 @@ SkyRays::SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
     : rays_(rays), patches_(patches), parameters_(parameters), portals_(rays.scene()) {}
 
 void SkyRays::follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t batch,
-                     const trace::RandomStream& random, SeenByRays& seen) const {
+                     const trace::RandomStream& random, VisibleByRays& seen) const {
   const Scene& scene = rays_.scene();
   double radiance_factor = 1;
   float distance = 0;
@@ -48,7 +48,7 @@ void SkyRays::follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, st
       direction = scattered.direction;
     } else {
       const trace::OpaqueBsdf bsdf(scene, point, direction);
-      const float share = bsdf.lobe_share();
+      const float share = bsdf.lobe_fraction();
       const trace::RandomBlock numbers = share > 0.0f
                                              ? random.block(trace::Purpose::eye_scattering, depth)
                                              : trace::RandomBlock({});
@@ -73,9 +73,9 @@ void SkyRays::follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, st
   }
 }
 
-SeenByRays SkyRays::from(std::span<const trace::Photometer> places, std::uint64_t number,
-                         int rays) const {
-  SeenByRays seen;
+VisibleByRays SkyRays::from(std::span<const trace::Photometer> places, std::uint64_t number,
+                            int rays) const {
+  VisibleByRays seen;
   thread_local std::vector<double> weights;
   const float each = glm::pi<float>() / static_cast<float>(rays * parameters_.batches);
   for (int batch = 0; batch < parameters_.batches; ++batch) {
@@ -96,8 +96,8 @@ SeenByRays SkyRays::from(std::span<const trace::Photometer> places, std::uint64_
       const auto index = static_cast<std::uint32_t>(looking > 0 ? ray / 2 : ray);
       const glm::dvec2 spread = trace::sobol_point(index, scrambles[looks ? 1 : 0]);
       const glm::vec3 direction =
-          looks ? glm::vec3(portals_.look(glm::dvec3(place.origin()), weights, sum,
-                                          own.uniform_double(0), spread.x, spread.y))
+          looks ? glm::vec3(portals_.sample_direction(glm::dvec3(place.origin()), weights, sum,
+                                                      own.uniform_double(0), spread.x, spread.y))
                 : place.sample(spread, own.uniform(0), own.uniform(1));
       const double density = place.density(direction);
       if (!(density > 0)) continue;
@@ -126,10 +126,10 @@ constexpr std::size_t least_rays = 65'536;
 constexpr int rays_of_cell = 16;
 
 /// What a row's rays saw, but for the cells of surfaces.
-TransportRow row_of(const SeenByRays& seen, const TransportParameters& parameters) {
+TransportRow row_of(const VisibleByRays& seen, const TransportParameters& parameters) {
   TransportRow row;
   row.mean_sky.assign(static_cast<std::size_t>(parameters.sky.batches), glm::vec3(0.0f));
-  for (const SeenPatch& sky : seen.patches) {
+  for (const VisiblePatch& sky : seen.patches) {
     row.patches.push_back({sky.patch, sky.weight, sky.straight ? sky.weight : glm::vec3(0.0f)});
     row.mean_sky[sky.batch] +=
         sky.weight * static_cast<float>(parameters.mean_luminance[sky.patch]);
@@ -172,10 +172,10 @@ bool is_coloured(const glm::vec3& weight) {
   return most - std::min({weight.x, weight.y, weight.z}) > 1e-4f * most;
 }
 
-double median_distance(const std::vector<SeenByRays>& seen) {
+double median_distance(const std::vector<VisibleByRays>& seen) {
   std::vector<float> distances;
-  for (const SeenByRays& row : seen) {
-    for (const SeenSurface& end : row.surfaces) distances.push_back(end.distance);
+  for (const VisibleByRays& row : seen) {
+    for (const VisibleSurface& end : row.surfaces) distances.push_back(end.distance);
   }
   if (distances.empty()) return 1;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -221,8 +221,8 @@ class Tracer {
       const std::size_t each = generation > 0 ? 1 : 1 + least_rays / from_sensors;
       const auto rays = [&, each](std::size_t i) {
         const auto most = static_cast<std::size_t>(std::max(2, parameters_.rays / rays_of_cell));
-        const std::size_t wanted = cells_->ends(i) * each / batches;
-        return wanted < 2 ? 1 : static_cast<int>(std::min(most, wanted / 2 * 2));
+        const std::size_t requested = cells_->ends(i) * each / batches;
+        return requested < 2 ? 1 : static_cast<int>(std::min(most, requested / 2 * 2));
       };
       trace_rows(transport_.cells, first, transport_.sensors.size(), places, rays);
     }
@@ -235,7 +235,7 @@ class Tracer {
   template <class Places, class Rays>
   void trace_rows(std::vector<TransportRow>& rows, std::size_t first, std::size_t first_number,
                   const Places& places, const Rays& rays) {
-    std::vector<SeenByRays> seen;
+    std::vector<VisibleByRays> seen;
     for (std::size_t begin = first; begin < rows.size(); begin += rows_at_once) {
       progress_.throw_if_cancelled();
       const std::size_t count = std::min(rows_at_once, rows.size() - begin);
@@ -250,7 +250,7 @@ class Tracer {
         cells_ = std::make_unique<SurfaceCells>(rays_, cell_of_distance * distance, distance);
       }
       for (std::size_t i = 0; i < count; ++i) {
-        for (const SeenSurface& end : seen[i].surfaces) {
+        for (const VisibleSurface& end : seen[i].surfaces) {
           rows[begin + i].cells.push_back(
               {cells_->cell_of(end.point, end.distance), end.batch, end.weight});
           transport_.coloured = transport_.coloured || is_coloured(end.weight);

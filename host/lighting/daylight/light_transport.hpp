@@ -19,7 +19,7 @@
 namespace photile::daylight {
 
 /// Lux at the point for each cd/m2 of a patch, by linear RGB.
-struct SeenPatch {
+struct VisiblePatch {
   std::uint32_t patch;  ///< the ground is the one after the sky's
   std::uint32_t batch;
   bool straight;  ///< through panes and cutouts at most
@@ -27,16 +27,16 @@ struct SeenPatch {
 };
 
 /// Lux at the point for each lux on a surface that reflects light to it.
-struct SeenSurface {
+struct VisibleSurface {
   trace::SurfacePoint point;
   std::uint32_t batch;
   float distance;  ///< metres along the ray
   glm::vec3 weight;
 };
 
-struct SeenByRays {
-  std::vector<SeenPatch> patches;
-  std::vector<SeenSurface> surfaces;
+struct VisibleByRays {
+  std::vector<VisiblePatch> patches;
+  std::vector<VisibleSurface> surfaces;
 };
 
 struct SkyRayParameters {
@@ -59,11 +59,12 @@ class SkyRays {
   ///   points   one, or several points of a surface, which take turns
   ///   number   of the point, below 2^31; that of no other
   ///   rays     of each batch
-  SeenByRays from(std::span<const trace::Photometer> places, std::uint64_t number, int rays) const;
+  VisibleByRays from(std::span<const trace::Photometer> places, std::uint64_t number,
+                     int rays) const;
 
  private:
   void follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t batch,
-              const trace::RandomStream& random, SeenByRays& seen) const;
+              const trace::RandomStream& random, VisibleByRays& seen) const;
 
   const RayScene& rays_;
   const weather::PatchFinder& patches_;

@@ -47,7 +47,7 @@ std::uint32_t SurfaceCells::find(std::uint64_t cube, const trace::SurfacePoint& 
                                  double cell_size) {
   const glm::vec3 sight =
       point.position +
-      std::max(2 * point.clearance, static_cast<float>(sight_above * cell_size)) * point.normal;
+      std::max(2 * point.ray_offset, static_cast<float>(sight_above * cell_size)) * point.normal;
   const auto [entry, fresh] = in_cube_.try_emplace(cube, static_cast<std::uint32_t>(cells_.size()));
   std::uint32_t last = none;
   int tried = 0;

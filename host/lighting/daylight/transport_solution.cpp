@@ -155,7 +155,7 @@ std::vector<double> of_batch(const LightTransport& transport, std::uint32_t batc
 }
 
 /// What a channel counts in the luminance; all of it where channels are alike.
-double channel_share(const LightTransport& transport, int channel) {
+double channel_fraction(const LightTransport& transport, int channel) {
   if (!transport.coloured) return 1;
   glm::dvec3 one(0.0);
   one[channel] = 1;
@@ -175,7 +175,7 @@ std::vector<float> lux_of_patches(const LightTransport& transport) {
   for (int channel = 0; channel < (transport.coloured ? 3 : 1); ++channel) {
     const SparseRows among_cells = cells_of(transport.cells, channel);
     const SparseRows from_cells = cells_of(transport.sensors, channel);
-    const auto share = static_cast<float>(channel_share(transport, channel));
+    const auto share = static_cast<float>(channel_fraction(transport, channel));
     tbb::parallel_for(std::size_t{0}, (columns + columns_at_once - 1) / columns_at_once,
                       [&](std::size_t part) {
                         const trace::FlushDenormals flush_denormals;
@@ -195,7 +195,7 @@ std::vector<std::vector<double>> lux_of_batches(const LightTransport& transport)
                                        std::vector<double>(transport.sensors.size(), 0.0));
   tbb::parallel_for(std::size_t{0}, lux.size(), [&](std::size_t batch) {
     for (int channel = 0; channel < (transport.coloured ? 3 : 1); ++channel) {
-      const double share = channel_share(transport, channel);
+      const double share = channel_fraction(transport, channel);
       const auto found = of_batch(transport, static_cast<std::uint32_t>(batch), channel);
       for (std::size_t i = 0; i < found.size(); ++i) lux[batch][i] += share * found[i];
     }

@@ -61,21 +61,21 @@ glm::dvec3 power_of(const LightMix& mix, std::uint32_t layer) {
 
 }  // namespace
 
-Luminaires::Luminaires(const RayScene& rays, int looks)
+Luminaires::Luminaires(const RayScene& rays, int samples)
     : rays_(rays), groups_(light_groups_of(rays.scene())) {
   const Scene& scene = rays.scene();
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(scene);
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
     const LightKind kind = scene.lights[light].kind;
     if (kind == LightKind::area) {
-      add_area_light(light, radiance[light], looks);
+      add_area_light(light, radiance[light], samples);
     } else if (kind == LightKind::point || kind == LightKind::spot) {
       luminaires_.push_back({scene.lights[light].name, light, glm::vec3(0.0f), {}});
     }
   }
 }
 
-void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, int looks) {
+void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, int samples) {
   const Scene& scene = rays_.scene();
   const auto parts = connected_parts(scene, scene.lights[light].triangles);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -85,7 +85,7 @@ void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, 
     for (const std::uint32_t triangle : parts[i]) whole += triangle_area(scene, triangle);
     for (const std::uint32_t triangle : parts[i]) {
       const double area = triangle_area(scene, triangle);
-      const int count = std::max(1, static_cast<int>(std::ceil(looks * area / whole)));
+      const int count = std::max(1, static_cast<int>(std::ceil(samples * area / whole)));
       for (int place = 0; place < count; ++place) {
         const glm::vec2 uv = place_in_triangle(place);
         for (const std::uint32_t side : {0u, 1u}) {
@@ -100,9 +100,9 @@ void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, 
   }
 }
 
-SeenLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Observer& observer,
-                                       const glm::dvec3& eye, const glm::dvec3& power) const {
-  SeenLuminaire seen{luminaire.name};
+VisibleLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Observer& observer,
+                                          const glm::dvec3& eye, const glm::dvec3& power) const {
+  VisibleLuminaire seen{luminaire.name};
   double light = 0, weighed = 0;
   for (const Patch& patch : luminaire.patches) {
     const glm::dvec3 way = glm::dvec3(patch.point.position) - eye;
@@ -135,9 +135,9 @@ SeenLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Observe
   return seen;
 }
 
-SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& observer,
-                                    const glm::dvec3& eye, const glm::dvec3& power) const {
-  SeenLuminaire seen{luminaire.name};
+VisibleLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& observer,
+                                       const glm::dvec3& eye, const glm::dvec3& power) const {
+  VisibleLuminaire seen{luminaire.name};
   const Scene& scene = rays_.scene();
   const Light& lamp = scene.lights[luminaire.light];
   const glm::dvec3 way = glm::dvec3(lamp.position) - eye;
@@ -145,7 +145,7 @@ SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& 
   const glm::dvec3 direction = way / distance;
   const double ahead = glm::dot(direction, observer.forward);
   if (!(distance > 0) || !(ahead > 0)) return seen;
-  const double share = groups_.share[luminaire.light];
+  const double share = groups_.fraction[luminaire.light];
   const double candela =
       share * trace::candela_per_lumen(scene, lamp, -direction) *
       luminance(power * glm::dvec3(lamp.color) *
@@ -155,7 +155,7 @@ SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& 
   if (lamp.distribution != none) {
     const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
     area = distribution.opening().projected_area(distribution.axes(),
-                                                 trace::LightAxes(lamp).to_lamp(-direction));
+                                                 trace::LightAxes(lamp).to_light(-direction));
   }
   seen.projected_area = std::max(area, defaults::small_source_area);
   seen.luminance = candela / seen.projected_area;
@@ -166,16 +166,18 @@ SeenLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& 
   return seen;
 }
 
-std::vector<SeenLuminaire> Luminaires::seen_by(const Observer& in_file, const LightMix& mix) const {
+std::vector<VisibleLuminaire> Luminaires::seen_by(const Observer& in_file,
+                                                  const LightMix& mix) const {
   const trace::FlushDenormals flush_denormals;
   const Observer observer = in_scene(rays_.scene(), in_file);
   const glm::dvec3& eye = observer.position;
-  std::vector<SeenLuminaire> all;
+  std::vector<VisibleLuminaire> all;
   for (const Luminaire& luminaire : luminaires_) {
     const glm::dvec3 power = power_of(mix, groups_.group_of[luminaire.light]);
     if (!(luminance(power) > 0)) continue;
-    SeenLuminaire seen = luminaire.patches.empty() ? lamp_seen(luminaire, observer, eye, power)
-                                                   : surface_seen(luminaire, observer, eye, power);
+    VisibleLuminaire seen = luminaire.patches.empty()
+                                ? lamp_seen(luminaire, observer, eye, power)
+                                : surface_seen(luminaire, observer, eye, power);
     if (!(seen.luminance > 0)) continue;
     seen.direction = direction_in_world(rays_.scene(), seen.direction);
     all.push_back(std::move(seen));

@@ -15,7 +15,7 @@
 namespace photile::glare {
 
 /// What is seen of a luminaire, through panes of thin glass too.
-struct SeenLuminaire {
+struct VisibleLuminaire {
   std::string name;
   double luminance = 0;       ///< cd/m2, mean over what is seen
   double solid_angle = 0;     ///< sr
@@ -35,12 +35,12 @@ class Luminaires {
   /// Each connected part of an area light is a luminaire of its own, and each lamp of a photometric
   /// file, spot or point light, whose opening is the file's (a lamp without any counts as the least
   /// source). Light from beyond the scene comes from no luminaire. The rays are kept.
-  ///   looks   at a luminaire, spread over its area
-  Luminaires(const RayScene& rays, int looks);
+  ///   samples   of a luminaire, spread over its area
+  Luminaires(const RayScene& rays, int samples);
 
   /// The luminaires in front of an observer that emit light, in the order of the scene.
   ///   mix   of the scene
-  std::vector<SeenLuminaire> seen_by(const Observer& observer, const LightMix& mix) const;
+  std::vector<VisibleLuminaire> seen_by(const Observer& observer, const LightMix& mix) const;
 
   /// m2 of openings larger than large_source_area, as they would be seen from straight below.
   ///   up   unit
@@ -59,11 +59,11 @@ class Luminaires {
     std::vector<Patch> patches;  ///< empty of a lamp without surface
   };
 
-  void add_area_light(std::uint32_t light, const glm::vec3& radiance, int looks);
-  SeenLuminaire surface_seen(const Luminaire& luminaire, const Observer& observer,
+  void add_area_light(std::uint32_t light, const glm::vec3& radiance, int samples);
+  VisibleLuminaire surface_seen(const Luminaire& luminaire, const Observer& observer,
+                                const glm::dvec3& eye, const glm::dvec3& power) const;
+  VisibleLuminaire lamp_seen(const Luminaire& luminaire, const Observer& observer,
                              const glm::dvec3& eye, const glm::dvec3& power) const;
-  SeenLuminaire lamp_seen(const Luminaire& luminaire, const Observer& observer,
-                          const glm::dvec3& eye, const glm::dvec3& power) const;
 
   const RayScene& rays_;
   LightGroups groups_;

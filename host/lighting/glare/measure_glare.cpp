@@ -16,8 +16,8 @@ namespace {
 measuring::SensorGrid eyes_of(std::span<const Observer> observers) {
   measuring::SensorGrid grid{"eyes", {}, {}};
   for (const Observer& observer : observers) {
-    for (const bool sees_lamps : {true, false}) {
-      grid.sensors.push_back({observer.position, observer.forward, sees_lamps});
+    for (const bool sees_lights : {true, false}) {
+      grid.sensors.push_back({observer.position, observer.forward, sees_lights});
     }
   }
   return grid;
@@ -47,7 +47,7 @@ void rate_luminaires(ObserverGlare& glare, double coverage) {
   std::vector<Source> sources;
   double direct = 0;
   bool large = false;
-  for (const SeenLuminaire& seen : glare.luminaires) {
+  for (const VisibleLuminaire& seen : glare.luminaires) {
     sources.push_back(seen.source());
     direct += seen.illuminance;
     large = large || seen.projected_area > defaults::large_source_area;
@@ -125,7 +125,7 @@ std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Obs
   const std::vector<Measured> illuminance =
       illuminance_at(eyes_of(observers), scene, mix, devices, parameters.measuring, progress);
   const RayScene rays(scene);
-  const Luminaires luminaires(rays, parameters.looks);
+  const Luminaires luminaires(rays, parameters.samples);
   std::vector<ObserverGlare> all(observers.size());
   progress.begin("luminaires", observers.size(), "observers");
   for (std::size_t i = 0; i < observers.size(); ++i) {

@@ -24,7 +24,7 @@ struct GlareParameters {
   bool by_pictures = true;  ///< whether daylight ratings are asked for: they take a picture each
   int picture_side = defaults::glare_picture_side;  ///< pixels
   SourceSearch search;
-  int looks = defaults::luminaire_looks;  ///< at each luminaire
+  int samples = defaults::samples_of_luminaire;  ///< at each luminaire
 };
 
 /// What one observer has before the eyes.
@@ -32,7 +32,7 @@ struct ObserverGlare {
   Observer observer;
   Measured illuminance;  ///< lux at the eye, on a plane that faces forward
   Measured background;   ///< cd/m2: without what comes straight from luminaires, over pi
-  std::vector<SeenLuminaire> luminaires;
+  std::vector<VisibleLuminaire> luminaires;
   std::optional<Measured> ugr;  ///< none where no luminaire is seen, or nothing lies behind them
   std::optional<double> ggr;    ///< where luminaires are larger than large_source_area
   std::optional<PictureGlare> picture;

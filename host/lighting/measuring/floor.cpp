@@ -57,7 +57,7 @@ void measure_floor_of(const trace::Room& room, const RayScene& rays, const trace
   for (Piece& piece : pieces) piece_of.emplace(piece.triangle, &piece);
   const trace::FlushDenormals flush_denormals;
   const glm::vec3 down(-axes.up);
-  for (const glm::dvec3& place : room.places()) {
+  for (const glm::dvec3& place : room.positions()) {
     double above = glm::dot(place, axes.up);
     const double lowest = above - trace::Room::most_height;
     glm::vec3 from(place);

@@ -101,7 +101,7 @@ namespace {
 
 constexpr double before_surface = 1e-3;  // metres that sensors lie before it
 constexpr double surface_slack = 0.05;   // metres that a wall may lie before or behind its plane
-constexpr double look_from = 0.3;        // metres before a wall from where it is looked for
+constexpr double probed_from = 0.3;      // metres before a wall from where it is looked for
 constexpr int sides = 4;
 
 /// Metres to the first surface and whether it is glass.
@@ -161,11 +161,11 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
   const Scene& scene = rays.scene();
   for (std::size_t i = 0; i < all.sensors.size(); ++i) {
     const Sensor& sensor = all.sensors[i];
-    const auto met = met_by(rays, sensor.position + look_from * sensor.normal, -sensor.normal);
-    const bool there = met && std::abs(met->distance - look_from) <= surface_slack;
+    const auto met = met_by(rays, sensor.position + probed_from * sensor.normal, -sensor.normal);
+    const bool there = met && std::abs(met->distance - probed_from) <= surface_slack;
     if (there && !met->glass) {
       const glm::dvec3 place =
-          sensor.position + (look_from - met->distance + before_surface) * sensor.normal;
+          sensor.position + (probed_from - met->distance + before_surface) * sensor.normal;
       grid.sensors.push_back(
           {position_in_world(scene, place), direction_in_world(scene, sensor.normal)});
       grid.layout->cells.push_back(layout.cells[i]);
@@ -184,7 +184,7 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
 double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room& room) {
   const trace::FlushDenormals flush_denormals;
   std::vector<double> heights;
-  for (const glm::dvec3& place : room.places()) {
+  for (const glm::dvec3& place : room.positions()) {
     if (const auto met = met_by(rays, place, axes.up)) heights.push_back(met->distance);
   }
   if (heights.empty()) return room.cut_height();

@@ -73,7 +73,7 @@ Json grid_json(const GridDaylight& grid, const DaylightAsked& asked) {
   const daylight::RoomDaylight& room = grid.room;
   Json entry{{"name", grid.grid.name},
              {"points", grid.grid.sensors.size()},
-             {"wanted_lux", asked.wanted_lux},
+             {"target_lux", asked.target_lux},
              {"occupied", {asked.occupancy.from, asked.occupancy.to}},
              {"occupied_hours", std::count(asked.occupied.begin(), asked.occupied.end(), true)},
              {"mean_lux", room.mean_lux},
@@ -120,9 +120,9 @@ std::vector<std::string> daylight_lines(const DaylightResults& results,
     lines.push_back(fmt::format("{}: {} points", grid.grid.name, grid.grid.sensors.size()));
     lines.push_back(fmt::format("  annual mean      {:.4g} lux, +-{:.1f}% a point", room.mean_lux,
                                 100 * mean_error(grid)));
-    lines.push_back(fmt::format("  DA {:<13.4g} {:.1f}% of {}", asked.wanted_lux,
+    lines.push_back(fmt::format("  DA {:<13.4g} {:.1f}% of {}", asked.target_lux,
                                 100 * room.autonomy, hours_of(asked)));
-    lines.push_back(fmt::format("  sDA {:.4g},50%{:<5} {:.1f}% of the points", asked.wanted_lux, "",
+    lines.push_back(fmt::format("  sDA {:.4g},50%{:<5} {:.1f}% of the points", asked.target_lux, "",
                                 100 * room.spatial_autonomy));
     if (!grid.sun.empty()) {
       lines.push_back(

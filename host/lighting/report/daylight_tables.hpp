@@ -36,7 +36,7 @@ struct DaylightResults {
 
 /// What the numbers were asked for.
 struct DaylightAsked {
-  double wanted_lux = 300;
+  double target_lux = 300;
   daylight::Occupancy occupancy;
   std::vector<bool> occupied;  ///< by the hour
 };

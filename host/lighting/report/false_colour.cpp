@@ -52,7 +52,7 @@ double ColourScale::share_of(double value) const {
   return value > 0 ? 1 + std::log10(value / top_) / decades_ : 0;
 }
 
-double ColourScale::drawn_share(double value) const {
+double ColourScale::drawn_fraction(double value) const {
   const double share = share_of(value);
   if (!stepped_ || std::isnan(share)) return share;
   return (std::floor(std::clamp(share, 0.0, 1.0 - 1e-9) * steps_) + 0.5) / steps_;

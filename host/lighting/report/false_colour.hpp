@@ -42,8 +42,8 @@ class ColourScale {
   ColourScale(const FalseColour& options, double automatic);
 
   /// The colour of a value; of the middle of its step with Contours::steps.
-  std::string hex(double value) const { return palette_.hex(drawn_share(value)); }
-  std::array<std::uint8_t, 3> rgb(double value) const { return palette_.at(drawn_share(value)); }
+  std::string hex(double value) const { return palette_.hex(drawn_fraction(value)); }
+  std::array<std::uint8_t, 3> rgb(double value) const { return palette_.at(drawn_fraction(value)); }
   double top() const { return top_; }
   /// The value at a share in [0, 1] of the scale.
   double value_at(double share) const;
@@ -59,7 +59,7 @@ class ColourScale {
 
  private:
   double share_of(double value) const;
-  double drawn_share(double value) const;
+  double drawn_fraction(double value) const;
 
   double top_, decades_;
   int steps_;

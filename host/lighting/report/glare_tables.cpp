@@ -58,7 +58,7 @@ Json number_json(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json luminaire_json(const glare::SeenLuminaire& seen) {
+Json luminaire_json(const glare::VisibleLuminaire& seen) {
   return {{"name", seen.name},
           {"direction", vector_json(seen.direction)},
           {"luminance", seen.luminance},
@@ -159,7 +159,7 @@ Json glare_json(std::span<const glare::ObserverGlare> all) {
                {"ugr", measured_json(each.ugr)},
                {"ggr", number_json(each.ggr)},
                {"luminaires", Json::array()}};
-    for (const glare::SeenLuminaire& seen : each.luminaires) {
+    for (const glare::VisibleLuminaire& seen : each.luminaires) {
       entry["luminaires"].push_back(luminaire_json(seen));
     }
     if (each.picture) {

@@ -123,7 +123,7 @@ namespace {
 constexpr double shown_around = 1.0;  ///< metres
 /// The longest cuts of a detailed scene are drawn: the rest are ornaments of less than a pixel.
 constexpr std::size_t most_walls = 20'000;
-constexpr int looks_along = 300;  ///< that find furniture, along the longer side
+constexpr int samples_along = 300;  ///< that find furniture, along the longer side
 
 /// The plane in the scene's coordinates, with positions in cells.
 class Frame {
@@ -228,7 +228,7 @@ std::vector<Segment> furniture_of(const RayScene& rays, const measuring::PlaneLa
                                   const Frame& frame) {
   const glm::dvec2 metres(glm::length(layout.u) + 2 * shown_around,
                           glm::length(layout.v) + 2 * shown_around);
-  const double step = std::max(metres.x, metres.y) / looks_along;
+  const double step = std::max(metres.x, metres.y) / samples_along;
   const int columns = std::max(2, static_cast<int>(std::lround(metres.x / step)));
   const int rows = std::max(2, static_cast<int>(std::lround(metres.y / step)));
   const std::vector<double> depths = depths_below(rays, frame, columns, rows);

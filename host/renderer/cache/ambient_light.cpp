@@ -21,22 +21,21 @@ constexpr float other_directions = 0.01f;
 int side_of_lattice(int level) { return (1 << level) + 1; }
 
 /// Weights of the six directions for a unit normal: squared cosines, whose sum is 1.
-std::array<float, 6> shares_of(const glm::vec3& normal) {
-  std::array<float, 6> shares{};
+std::array<float, 6> weights_of(const glm::vec3& normal) {
+  std::array<float, 6> weights{};
   for (int axis = 0; axis < 3; ++axis) {
     const float along = normal[axis];
-    shares[static_cast<std::size_t>(2 * axis + (along < 0 ? 1 : 0))] = along * along;
+    weights[static_cast<std::size_t>(2 * axis + (along < 0 ? 1 : 0))] = along * along;
   }
-  return shares;
+  return weights;
 }
 
 }  // namespace
 
 template <class Vertices, class Visit>
-void AmbientLight::around(Vertices& vertices, int level, const glm::vec3& place,
-                          const Visit& visit) {
+void AmbientLight::around(Vertices& vertices, int level, const glm::vec3& at, const Visit& visit) {
   const int side = side_of_lattice(level), cells = side - 1;
-  const glm::vec3 in_cells = place * static_cast<float>(cells);
+  const glm::vec3 in_cells = at * static_cast<float>(cells);
   const glm::ivec3 cell = glm::min(glm::ivec3(in_cells), cells - 1);
   const glm::vec3 within = in_cells - glm::vec3(cell);
   for (int corner = 0; corner < 8; ++corner) {
@@ -71,14 +70,14 @@ void AmbientLight::gather(const LightMaps& maps, const Scene& scene,
     finest_.assign(static_cast<std::size_t>(side * side * side), Vertex{});
     for (std::uint32_t node = 0; node < nodes; node += step) {
       const LightMaps::NodePoint& point = maps.point(node);
-      const auto shares = shares_of(glm::vec3(face_normal(scene, point.oriented_face)));
+      const auto weights = weights_of(glm::vec3(face_normal(scene, point.oriented_face)));
       const auto add_to = [&](Vertex& vertex, float weight) {
-        for (std::size_t i = 0; i < shares.size(); ++i) {
+        for (std::size_t i = 0; i < weights.size(); ++i) {
           vertex[i] +=
-              weight * (shares[i] + other_directions) * glm::vec4(glm::vec3(light[node]), 1.0f);
+              weight * (weights[i] + other_directions) * glm::vec4(glm::vec3(light[node]), 1.0f);
         }
       };
-      around(finest_, level, place_of(point.position), add_to);
+      around(finest_, level, within_bounds(point.position), add_to);
       if (level == 0) add_to(all, 1.0f);
     }
     for (int i = 0; i < side * side * side; ++i) {
@@ -87,29 +86,29 @@ void AmbientLight::gather(const LightMaps& maps, const Scene& scene,
           finest_[static_cast<std::size_t>(i)][j] += coarser_weight * weight * vertex[j];
         }
       };
-      const glm::vec3 place =
+      const glm::vec3 at =
           glm::vec3(i % side, i / side % side, i / (side * side)) / static_cast<float>(side - 1);
       if (level == 0) {
         add(all, 1.0f);
       } else {
-        around(coarser, level - 1, place, add);
+        around(coarser, level - 1, at, add);
       }
     }
     coarser = finest_;
   }
 }
 
-glm::vec3 AmbientLight::place_of(const glm::vec3& position) const {
+glm::vec3 AmbientLight::within_bounds(const glm::vec3& position) const {
   return glm::clamp((position - lowest_) / extent_, 0.0f, 1.0f);
 }
 
 glm::vec3 AmbientLight::irradiance(const glm::vec3& position, const glm::vec3& normal) const {
   if (finest_.empty()) return glm::vec3(0.0f);
-  const auto shares = shares_of(normal);
+  const auto weights = weights_of(normal);
   glm::vec4 sum(0.0f);
-  around(finest_, finest_level, place_of(position), [&](const Vertex& vertex, float weight) {
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      if (shares[i] > 0) sum += weight * shares[i] * vertex[i];
+  around(finest_, finest_level, within_bounds(position), [&](const Vertex& vertex, float weight) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] > 0) sum += weight * weights[i] * vertex[i];
     }
   });
   return sum.w > 0 ? glm::vec3(sum) / sum.w : glm::vec3(0.0f);

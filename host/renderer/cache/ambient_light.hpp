@@ -12,10 +12,10 @@
 
 namespace photile::cache {
 
-/// Irradiance by place and direction of the normal: lattices from coarse to fine (Greger et al.,
+/// Irradiance by position and direction of the normal: lattices from coarse to fine (Greger et al.,
 /// "The Irradiance Volume", 1998), whose vertices have a value for each of six directions
 /// (McTaggart, "Half-Life 2 / Valve Source Shading", 2004). Blind to what stands between a node and
-/// a place.
+/// a position.
 class AmbientLight {
  public:
   /// Takes some of the nodes, evenly.
@@ -30,11 +30,11 @@ class AmbientLight {
   /// Light times weight, and weight, for the directions +x, -x, +y ...
   using Vertex = std::array<glm::vec4, 6>;
 
-  /// Calls visit(vertex, weight) for the eight around a place.
-  ///   place   in [0, 1]^3 of the bounds
+  /// Calls visit(vertex, weight) for the eight around a position.
+  ///   at   in [0, 1]^3 of the bounds
   template <class Vertices, class Visit>
-  static void around(Vertices& vertices, int level, const glm::vec3& place, const Visit& visit);
-  glm::vec3 place_of(const glm::vec3& position) const;
+  static void around(Vertices& vertices, int level, const glm::vec3& at, const Visit& visit);
+  glm::vec3 within_bounds(const glm::vec3& position) const;
 
   glm::vec3 lowest_{0.0f}, extent_{0.0f};  ///< of the nodes, metres
   std::vector<Vertex> finest_;

@@ -3,7 +3,7 @@
 
 #include "cache/charts.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "surface/sheets.hpp"
+#include "surface/smooth_components.hpp"
 #include "surface/surface_mesh.hpp"
 
 namespace photile::cache {
@@ -36,7 +36,7 @@ IndexRows continuations_of(const SurfaceMesh& mesh,
   });
 }
 
-/// Opaque triangles that are the first at their place, largest first.
+/// Opaque triangles that are the first at their position, largest first.
 std::vector<std::uint32_t> seeds_of(const SurfaceMesh& mesh) {
   std::vector<double> area(mesh.normal.size());
   std::vector<std::uint32_t> seeds;

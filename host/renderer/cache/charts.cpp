@@ -87,7 +87,7 @@ Charts::Charts(const Scene& scene, double spacing, double angle_degrees)
   ChartGrowth growth = grow_charts(scene, spacing, angle_degrees);
   chart_of_ = std::move(growth.chart_of);
   charts_.resize(growth.seed.size());
-  places_.resize(charts_.size());
+  lattices_.resize(charts_.size());
   trees_.resize(charts_.size());
   members_ = rows_of(charts_.size(), [&](const auto& put) {
     for (std::uint32_t s = 0; s < chart_of_.size(); ++s) {
@@ -119,8 +119,8 @@ Charts::Charts(const Scene& scene, double spacing, double angle_degrees)
     chart.first_root = roots_;
     roots_ += chart.root_columns() * chart.root_rows();
     const glm::dvec3 across = chart.across / chart.spacing.x, along = chart.along / chart.spacing.y;
-    places_[i] = {glm::vec3(across), static_cast<float>(-glm::dot(across, chart.origin)),
-                  glm::vec3(along), static_cast<float>(-glm::dot(along, chart.origin))};
+    lattices_[i] = {glm::vec3(across), static_cast<float>(-glm::dot(across, chart.origin)),
+                    glm::vec3(along), static_cast<float>(-glm::dot(along, chart.origin))};
   }
 }
 
@@ -169,35 +169,36 @@ void Charts::prepare(std::uint32_t index) {
   trees_[index] = std::make_unique<geometry::BoxTree>(boxes);
 }
 
-Charts::Owner Charts::owner(const NodePlace& node, int levels) const {
+Charts::Support Charts::support(const NodeCoordinates& node, int levels) const {
   const Chart& chart = charts_[node.chart];
   const glm::dvec2 finest = chart.spacing / static_cast<double>(std::uint32_t{1} << (levels - 1));
   // A cell that surface lies in is no farther from it than the cell's diagonal.
-  return owner(node.chart, {node.x * finest.x, node.y * finest.y}, glm::length(finest));
+  return support(node.chart, {node.x * finest.x, node.y * finest.y}, glm::length(finest));
 }
 
-Charts::Owner Charts::owner(std::uint32_t index, const glm::dvec2& place, double nearby) const {
+Charts::Support Charts::support(std::uint32_t index, const glm::dvec2& position,
+                                double nearby) const {
   const Chart& chart = charts_[index];
   const std::span<const std::uint32_t> triangles = members_.of(index);
   NearestPoint nearest{std::numeric_limits<double>::infinity(), 0, 0};
-  std::uint32_t owner = none;
+  std::uint32_t support = none;
   const auto look_at = [&](std::uint32_t i) {
     const auto corners = scene_.corners(triangle_of(triangles[i]));
     const NearestPoint point = nearest_on(
         {in_plane(chart, corners[0]), in_plane(chart, corners[1]), in_plane(chart, corners[2])},
-        place);
+        position);
     if (point.squared_distance > nearest.squared_distance) return;
-    if (point.squared_distance == nearest.squared_distance && triangles[i] > owner) return;
+    if (point.squared_distance == nearest.squared_distance && triangles[i] > support) return;
     nearest = point;
-    owner = triangles[i];
+    support = triangles[i];
   };
   if (const geometry::BoxTree* tree = trees_[index].get()) {
     geometry::Box at;
-    at.extend(glm::vec3(place, 0.0f));
-    for (double reach = nearby; owner == none || nearest.squared_distance > reach * reach;
+    at.extend(glm::vec3(position, 0.0f));
+    for (double reach = nearby; support == none || nearest.squared_distance > reach * reach;
          reach *= 2) {
       // Room for boxes rounded to floats.
-      const double limit = 1.01 * reach + 1e-6 * glm::length(place);
+      const double limit = 1.01 * reach + 1e-6 * glm::length(position);
       tree->visit_within(at, static_cast<float>(limit * limit), [&](std::uint32_t i) {
         look_at(i);
         return false;
@@ -206,14 +207,14 @@ Charts::Owner Charts::owner(std::uint32_t index, const glm::dvec2& place, double
   } else {
     for (std::uint32_t i = 0; i < triangles.size(); ++i) look_at(i);
   }
-  return {{triangle_of(owner), static_cast<float>(nearest.u), static_cast<float>(nearest.v)},
-          side_of(owner)};
+  return {{triangle_of(support), static_cast<float>(nearest.u), static_cast<float>(nearest.v)},
+          side_of(support)};
 }
 
 std::uint64_t Charts::bytes() const {
   return (chart_of_.size() + members_.first.size() + members_.items.size()) *
              sizeof(std::uint32_t) +
-         charts_.size() * (sizeof(Chart) + sizeof(ChartPlace));
+         charts_.size() * (sizeof(Chart) + sizeof(LatticeCoordinates));
 }
 
 }  // namespace photile::cache

@@ -16,8 +16,8 @@
 
 namespace photile::cache {
 
-/// A plane with a lattice over the oriented faces of a chart. Lattice places are counted in cells
-/// of the coarsest level; the triangles' projections lie in [0, columns] x [0, rows].
+/// A plane with a lattice over the oriented faces of a chart. Lattice positions are counted in
+/// cells of the coarsest level; the triangles' projections lie in [0, columns] x [0, rows].
 struct Chart {
   glm::dvec3 origin{0.0};               ///< of the lattice, metres
   glm::dvec3 across{0.0}, along{0.0};   ///< unit, orthogonal, in the plane
@@ -28,8 +28,8 @@ struct Chart {
   std::uint32_t root_rows() const { return (rows + 7) / 8; }
 };
 
-/// The lattice place of a point, for lookups: a float each, in cells of the coarsest level.
-struct ChartPlace {
+/// The lattice position of a point, for queries: a float each, in cells of the coarsest level.
+struct LatticeCoordinates {
   glm::vec3 across{0.0f};
   float across_offset = 0;
   glm::vec3 along{0.0f};
@@ -40,10 +40,10 @@ struct ChartPlace {
   }
 };
 
-/// A node: a place of the finest lattice of a chart, which all coarser ones share.
-struct NodePlace {
+/// A node: a position of the finest lattice of a chart, which all coarser ones share.
+struct NodeCoordinates {
   std::uint32_t chart, x, y;  ///< x, y in cells of the finest level
-  friend bool operator==(const NodePlace&, const NodePlace&) = default;
+  friend bool operator==(const NodeCoordinates&, const NodeCoordinates&) = default;
 };
 
 /// The charts of a scene, by a rule of geometry alone.
@@ -55,7 +55,7 @@ struct NodePlace {
 class Charts {
  public:
   ///   spacing         metres, > 0: of the coarsest nodes, at most
-  ///   angle_degrees   largest angle between the normals of neighbours on a sheet
+  ///   angle_degrees   largest angle between the normals of neighbours in a smooth component
   /// Where the lattices would be too many, spacing is larger.
   Charts(const Scene& scene, double spacing, double angle_degrees);
 
@@ -63,15 +63,15 @@ class Charts {
   const Chart& operator[](std::size_t chart) const { return charts_[chart]; }
   /// Per oriented face; none where no photons are stored.
   std::span<const std::uint32_t> chart_of() const { return chart_of_; }
-  const ChartPlace& place(std::size_t chart) const { return places_[chart]; }
+  const LatticeCoordinates& lattice(std::size_t chart) const { return lattices_[chart]; }
   double spacing() const { return spacing_; }
   std::uint32_t roots() const { return roots_; }
   std::uint64_t bytes() const;
 
-  /// Makes `owner` of nodes on this chart quick. Not to be called for one chart by two threads.
+  /// Makes `support` of nodes on this chart quick. Not to be called for one chart by two threads.
   void prepare(std::uint32_t chart);
 
-  struct Owner {
+  struct Support {
     trace::TriangleHit where;
     std::uint32_t side;
   };
@@ -79,18 +79,18 @@ class Charts {
   /// it, the lowest of several at one distance, and the nearest point of that. So a node beyond
   /// an edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
   ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
-  Owner owner(const NodePlace& node, int levels) const;
+  Support support(const NodeCoordinates& node, int levels) const;
   /// The surface that any position of the chart stands for.
-  ///   place   the position, metres from its origin, across and along
+  ///   position   the position, metres from its origin, across and along
   ///   reach   metres: surface that lies so near is found fastest
-  Owner owner(std::uint32_t chart, const glm::dvec2& place, double reach) const;
+  Support support(std::uint32_t chart, const glm::dvec2& position, double reach) const;
 
-  /// The cell of the coarsest lattice that a place lies in, or the nearest one.
-  glm::uvec2 cell_at(std::uint32_t chart, const glm::vec2& place) const {
+  /// The cell of the coarsest lattice that a position lies in, or the nearest one.
+  glm::uvec2 cell_at(std::uint32_t chart, const glm::vec2& position) const {
     const auto along = [](float at, std::uint32_t cells) {
       return std::min(static_cast<std::uint32_t>(std::max(at, 0.0f)), cells - 1);
     };
-    return {along(place.x, charts_[chart].columns), along(place.y, charts_[chart].rows)};
+    return {along(position.x, charts_[chart].columns), along(position.y, charts_[chart].rows)};
   }
 
  private:
@@ -102,7 +102,7 @@ class Charts {
   std::vector<std::uint32_t> chart_of_;
   IndexRows members_;  ///< oriented faces of the charts
   std::vector<Chart> charts_;
-  std::vector<ChartPlace> places_;
+  std::vector<LatticeCoordinates> lattices_;
   std::vector<std::unique_ptr<geometry::BoxTree>>
       trees_;  ///< of charts of many triangles, prepared
   std::uint32_t roots_ = 0;
@@ -120,7 +120,7 @@ struct ChartGrowth {
 /// tiles do, where it does not fold: the two sides of a plate, and plates that lie on each other,
 /// are charts of their own. Triangles that coincide share a chart. A rule of geometry alone.
 ///   spacing         metres, > 0: how far a chart may leave its plane
-///   angle_degrees   largest angle between the normals of neighbours on a sheet
+///   angle_degrees   largest angle between the normals of neighbours in a smooth component
 ChartGrowth grow_charts(const Scene& scene, double spacing, double angle_degrees);
 
 }  // namespace photile::cache

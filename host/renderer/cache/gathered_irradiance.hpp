@@ -63,9 +63,9 @@ class BatchSums {
   /// Before anything is added to a point of this unit normal, in scenes with smooth shading.
   void begin_point(const glm::vec3& normal) { normal_ = normal; }
 
-  /// Light of a layer at power 1, W/m2 or lm/m2, that one batch found: a lamp in this direction.
-  void add_lamp(std::uint32_t layer, std::uint32_t batch, const glm::vec3& irradiance,
-                const glm::vec3& direction) {
+  /// Light of a layer at power 1, W/m2 or lm/m2, that one batch found: a light in this direction.
+  void add_light(std::uint32_t layer, std::uint32_t batch, const glm::vec3& irradiance,
+                 const glm::vec3& direction) {
     add(layer, batch, irradiance);
     if (smooth_) add_by_normal(layer, irradiance, direction, 0.0f, no_bound);
   }

@@ -12,12 +12,12 @@
 namespace photile::cache {
 namespace {
 
-/// Places that a place is averaged with.
+/// Points that a point is averaged with.
 constexpr NodeSource::Surroundings averaged{.window = defaults::averaged_window,
                                             .rounds = defaults::averaged_rounds,
                                             .fine_window = defaults::averaged_fine_window};
-/// Differences that may be noise. Light straight from lamps ends at borders: beyond the horizon of
-/// a lamp that is near, places know that they are dark, and those before it are not sure of much.
+/// Differences that may be noise. Direct light ends at borders: beyond the horizon of
+/// a light that is near, points know that they are dark, and those before it are not sure of much.
 constexpr NoiseTolerance of_indirect{.errors = defaults::tolerated_errors};
 constexpr NoiseTolerance of_direct{.errors = defaults::tolerated_errors,
                                    .ratio = defaults::tolerated_error_ratio};
@@ -58,16 +58,16 @@ std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
   return numbers;
 }
 
-/// Links between chosen points alone, by their places among those chosen.
+/// Links between chosen points alone, by their numbers among those chosen.
 PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> chosen) {
-  std::vector<std::uint32_t> place(batch.points.size(), none);
-  for (std::uint32_t i = 0; i < chosen.size(); ++i) place[chosen[i]] = i;
+  std::vector<std::uint32_t> index_of(batch.points.size(), none);
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) index_of[chosen[i]] = i;
   PointLinks links;
   links.first.push_back(0);
   for (const std::uint32_t point : chosen) {
     for (std::uint32_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1];
          ++i) {
-      links.to.push_back(place[batch.neighbour[i]]);
+      links.to.push_back(index_of[batch.neighbour[i]]);
     }
     links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
   }
@@ -85,16 +85,16 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
   // Shadow borders stand at the finer levels: there light samples matter more than rays.
   // Nine of these are averaged. In the open a shadow has a hundredth of the light of the sun beside
-  // it, and few light samples find the sky through a window: what single ones bring would show.
+  // it, and few light samples find the sky through a window: what single ones find would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
   const int times = open ? defaults::times_in_the_open : 1;
   const int rays = std::min(times * coarse, limits::max_gathering_rays);
   const int fine = std::max((rays + 3) / 4, std::min(rays, defaults::least_rays));
-  const auto looks_of = [&](int of_rays) {
-    return std::min(times * defaults::looks_per_ray * of_rays, limits::max_direct_rays);
+  const auto light_samples_of = [&](int of_rays) {
+    return std::min(times * defaults::light_samples_per_ray * of_rays, limits::max_direct_rays);
   };
-  return {{rays, looks_of(rays)}, {fine, looks_of(open ? rays : fine)}, inset};
+  return {{rays, light_samples_of(rays)}, {fine, light_samples_of(open ? rays : fine)}, inset};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
@@ -178,15 +178,15 @@ PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
   return points;
 }
 
-/// Gathers at places where nobody did.
-void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
+/// Gathers at points that have no rays yet.
+void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points,
                                const NodeRays& rays, const Progress& progress) {
   std::vector<std::uint32_t> fresh;
-  for (const std::uint32_t point : places) {
+  for (const std::uint32_t point : points) {
     if (!raw_of_.contains(batch.number[point])) fresh.push_back(point);
   }
   GatheredParts found = gather_.gather(points_at(batch, fresh), numbers_at(batch, fresh), rays.rays,
-                                       rays.looks, progress);
+                                       rays.light_samples, progress);
   for (const std::uint32_t point : fresh) {
     raw_of_.insert({batch.number[point], static_cast<std::uint32_t>(raw_of_.size())});
   }
@@ -195,7 +195,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
   raw_.distance.insert(raw_.distance.end(), found.distance.begin(), found.distance.end());
 }
 
-/// Coarse places averaged with those around them.
+/// Coarse points averaged with those around them.
 GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
                                       std::span<const std::uint32_t> coarse) const {
   const std::size_t lights = layer_powers_.size();
@@ -212,7 +212,7 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
   return parts;
 }
 
-/// Finer nodes averaged with the places next to them, as gathered.
+/// Finer nodes averaged with the points next to them, as gathered.
 GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
                                                   const NodeBatch& batch,
                                                   std::span<const std::uint32_t> fine,

@@ -15,7 +15,7 @@ namespace photile::cache {
 
 /// Rays and light samples of a node.
 struct NodeRays {
-  int rays, looks;
+  int rays, light_samples;
 };
 
 struct GatheredNodesParameters {
@@ -26,18 +26,18 @@ struct GatheredNodesParameters {
   double inset = 0;
 };
 
-/// So many rays at the coarsest level and a quarter at others, and defaults::looks_per_ray; where
-/// the sun or a sky shines more light samples, and as many at all levels.
+/// So many rays at the coarsest level and a quarter at others, and defaults::light_samples_per_ray;
+/// where the sun or a sky shines more light samples, and as many at all levels.
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
-/// finer ones with those next to them and with what coarser ones say of their place, as far as
-/// differences may be noise. Light straight from lamps and light of other surfaces are treated
+/// finer ones with those next to them and with what coarser ones say of their position, as far as
+/// differences may be noise. Direct light and light of other surfaces are treated
 /// apart.
 class GatheredNodes : public NodeSource {
  public:
-  /// References are kept. It serves one LightMaps.
+  /// References are kept. One LightMaps uses it.
   GatheredNodes(const Scene& scene, IrradianceGather& gather, std::span<const double> layer_powers,
                 const GatheredNodesParameters& parameters)
       : scene_(scene), gather_(gather), layer_powers_(layer_powers), parameters_(parameters) {}
@@ -53,7 +53,7 @@ class GatheredNodes : public NodeSource {
   Estimates errors() const;
 
  private:
-  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> places,
+  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points,
                   const NodeRays& rays, const Progress& progress);
   GatheredParts smoothed(const NodeBatch& batch, std::span<const std::uint32_t> coarse) const;
   GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
@@ -70,7 +70,7 @@ class GatheredNodes : public NodeSource {
   std::span<const double> layer_powers_;
   GatheredNodesParameters parameters_;
   tsl::robin_map<std::uint64_t, std::uint32_t> raw_of_;  ///< by number of the point
-  GatheredParts raw_;                                    ///< of places, as gathered
+  GatheredParts raw_;                                    ///< of points, as gathered
   tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
   GatheredParts nodes_;
 };

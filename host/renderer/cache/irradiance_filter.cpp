@@ -23,7 +23,7 @@ double squared_difference(const Total& a, const Total& b, const NoiseTolerance& 
 }
 
 /// How much errors that are too different leave.
-double likeness_of_errors(const Total& a, const Total& b, const NoiseTolerance& tolerated) {
+double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance& tolerated) {
   const auto [calm, noisy] = a.error < b.error ? std::pair(a, b) : std::pair(b, a);
   if (!(tolerated.ratio * calm.error < noisy.error)) return 1;
   if (!(calm.error < tolerated.known * calm.luminance)) return 1;
@@ -47,25 +47,26 @@ void KnownLight::read(const GatheredIrradiance& irradiance, std::size_t point) {
   all_ = at_powers(layer_powers_);
 }
 
-void Likeness::compare(const KnownLight& a, const KnownLight& b, const NoiseTolerance& tolerated) {
-  for (const std::uint16_t layer : parted_) different_[layer] = 0;
-  parted_.clear();
-  const double errors = likeness_of_errors(a.all(), b.all(), tolerated);
-  for (const KnownLight* place : {&a, &b}) {
-    for (const std::uint16_t layer : place->lit()) {
+void Similarity::compare(const KnownLight& a, const KnownLight& b,
+                         const NoiseTolerance& tolerated) {
+  for (const std::uint16_t layer : different_layers_) different_[layer] = 0;
+  different_layers_.clear();
+  const double errors = similarity_of_errors(a.all(), b.all(), tolerated);
+  for (const KnownLight* point : {&a, &b}) {
+    for (const std::uint16_t layer : point->lit()) {
       const double squared = squared_difference(a.of_layer(layer), b.of_layer(layer), tolerated);
       if (squared <= defaults::parting_difference || different_[layer] > 0) continue;
       // Beyond the least number it would be no difference any more.
       different_[layer] = std::max(errors * std::exp(-squared), std::numeric_limits<double>::min());
-      parted_.push_back(layer);
+      different_layers_.push_back(layer);
     }
   }
   double squared = 0;
-  if (parted_.empty()) {
+  if (different_layers_.empty()) {
     squared = squared_difference(a.all(), b.all(), tolerated);
-  } else if (parted_.size() < layer_powers_.size()) {
+  } else if (different_layers_.size() < layer_powers_.size()) {
     others_powers_.assign(layer_powers_.begin(), layer_powers_.end());
-    for (const std::uint16_t layer : parted_) others_powers_[layer] = 0;
+    for (const std::uint16_t layer : different_layers_) others_powers_[layer] = 0;
     squared =
         squared_difference(a.at_powers(others_powers_), b.at_powers(others_powers_), tolerated);
   }

@@ -27,8 +27,8 @@ struct NoiseTolerance {
   /// Where one standard error is larger than this many times the other, the two count less, by the
   /// square of what is more: they do not see the same light.
   double ratio = std::numeric_limits<double>::infinity();
-  /// The ratio counts only where the smaller error is at most this share of the light it is of: a
-  /// point that few rays brought light to, or none, does not know its error.
+  /// The ratio counts only where the smaller error is at most this fraction of the light it is of:
+  /// a point that few rays brought light to, or none, does not know its error.
   double known = defaults::known_error;
 };
 
@@ -58,12 +58,12 @@ class KnownLight {
   std::vector<std::uint16_t> lit_;
 };
 
-/// How alike the layers of two places are, in [0, 1]. One light's border is no reason to part the
+/// How alike the layers of two points are, in [0, 1]. One light's border is no reason to part the
 /// others: a layer whose own difference exceeds its noise is judged by itself; all others together,
-/// for what many lamps show is surer than what one does.
-class Likeness {
+/// for what many lights show is surer than what one does.
+class Similarity {
  public:
-  explicit Likeness(std::span<const double> layer_powers)
+  explicit Similarity(std::span<const double> layer_powers)
       : layer_powers_(layer_powers), different_(layer_powers.size()) {}
 
   void compare(const KnownLight& a, const KnownLight& b, const NoiseTolerance& tolerated);
@@ -77,7 +77,7 @@ class Likeness {
  private:
   std::span<const double> layer_powers_;
   std::vector<double> different_, others_powers_;
-  std::vector<std::uint16_t> parted_;
+  std::vector<std::uint16_t> different_layers_;
   double of_others_ = 1;
 };
 
@@ -177,15 +177,15 @@ class WeightedPoints {
   double of_none_ = 0;
 };
 
-/// A place and those around it, of which it becomes the mean.
-class MeanOfPlaces {
+/// A point and those around it, of which it becomes the mean.
+class MeanOfPoints {
  public:
-  MeanOfPlaces(std::span<const double> layer_powers, const GatheredIrradiance& like,
+  MeanOfPoints(std::span<const double> layer_powers, const GatheredIrradiance& like,
                GatheredIrradiance& to)
       : sums_(layer_powers.size(), like, to),
         own_(layer_powers),
         other_(layer_powers),
-        likeness_(layer_powers) {}
+        similarity_(layer_powers) {}
 
   void add_own(const GatheredIrradiance& from, std::size_t point) {
     own_.read(from, point);
@@ -195,19 +195,19 @@ class MeanOfPlaces {
   void add_other(const GatheredIrradiance& from, std::size_t point, const NoiseTolerance& tolerated,
                  double weight = 1) {
     other_.read(from, point);
-    likeness_.compare(own_, other_, tolerated);
-    sums_.add(from, point, weight * likeness_.of_others(),
-              [&](std::size_t layer) { return weight * likeness_.of_layer(layer); });
+    similarity_.compare(own_, other_, tolerated);
+    sums_.add(from, point, weight * similarity_.of_others(),
+              [&](std::size_t layer) { return weight * similarity_.of_layer(layer); });
   }
-  void end_place() { sums_.end_point(); }
+  void end_point() { sums_.end_point(); }
 
  private:
   WeightedPoints sums_;
   KnownLight own_, other_;
-  Likeness likeness_;
+  Similarity similarity_;
 };
 
-/// Means that add(i, mean) makes of each of so many places; `like` has their batches and form.
+/// Means that add(i, mean) makes of each of so many points; `like` has their batches and form.
 template <class Add>
 GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
                             std::span<const double> layer_powers, const Add& add) {
@@ -215,11 +215,11 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
   constexpr std::size_t per_task = 256;
   std::vector<GatheredIrradiance> parts((count + per_task - 1) / per_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    MeanOfPlaces mean(layer_powers, like, parts[part]);
+    MeanOfPoints mean(layer_powers, like, parts[part]);
     const std::size_t last = std::min(count, (part + 1) * per_task);
     for (std::size_t i = part * per_task; i < last; ++i) {
       add(i, mean);
-      mean.end_place();
+      mean.end_point();
     }
   });
   GatheredIrradiance all;
@@ -248,7 +248,7 @@ struct IrradianceFilterParameters {
 /// Replaces each point's light by the mean of it and its neighbours', weighted by exp(-d^2 / (9
 /// (se_a^2 + se_b^2))), d the difference of luminance and se its standard errors, and less where
 /// these differ more than is tolerated, a few times over. Where a layer differs by more than its
-/// own noise, that is its weight alone: the sun's border would leave the noise of lamps in their
+/// own noise, that is its weight alone: the sun's border would leave the noise of lights in their
 /// layers. All others have that of their sum at `layer_powers`. All batches of a layer have the
 /// same weights, so that errors are known afterwards, too. Points of no error stay what they are,
 /// but for equal ones. Does not depend on threads.

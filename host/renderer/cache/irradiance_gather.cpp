@@ -21,7 +21,7 @@
 #include "trace/direct_light.hpp"
 #include "trace/hemisphere_rays.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/receiver.hpp"
+#include "trace/shading_point.hpp"
 
 namespace photile::cache {
 namespace {
@@ -37,13 +37,13 @@ int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 /// What the sums of a run of points are made of.
 struct RunLight {
   const RayScene& rays;
-  const trace::LightSampler& lamps;
+  const trace::LightSampler& light_sampler;
   const IrradianceGatherParameters& parameters;
-  int rays_per_batch, looks_per_batch;
+  int rays_per_batch, light_samples_per_batch;
   const PrimaryHits& points;
   std::span<const std::uint64_t> number;
   const IndirectLight* traced;  ///< null where no rays are
-  const SecondaryLight& ends;
+  const SecondaryLight& secondary;
   const Estimates& caustics;  ///< of all points; empty where there are none
   double caustic_relative_variance;
   std::span<const double> layer_powers;
@@ -51,20 +51,20 @@ struct RunLight {
   /// Adds the indirect light of point i of the run, which is `point` of all.
   void add_indirect(std::size_t i, BatchSums& sums) const {
     if (!traced) return;
-    ends.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
-                   static_cast<std::uint32_t>(rays_per_batch), sums);
+    secondary.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
+                        static_cast<std::uint32_t>(rays_per_batch), sums);
     const trace::HemisphereRays& met = traced->rays;
     for (std::size_t e = met.first_direct[i]; e < met.first_direct[i + 1]; ++e) {
-      const SeenEmission& light = met.ends.direct[e];
+      const VisibleEmission& light = met.ray_hits.direct[e];
       sums.add_surface(light.light, batch_of(light.pixel), light.radiance,
                        met.direction_of(light.pixel));
     }
   }
   ///   indirect   luminance of the irradiance of all lights together
   void add_direct(std::size_t i, std::size_t point, double indirect, BatchSums& sums) const {
-    if (looks_per_batch > 0) {
-      look(point, indirect, sums);
-      add_seen_lamps(i, sums);
+    if (light_samples_per_batch > 0) {
+      sample_lights(point, indirect, sums);
+      add_visible_lights(i, sums);
     }
     if (caustics.irradiance.empty()) return;
     estimate::for_each_estimate(
@@ -85,7 +85,7 @@ struct RunLight {
     return ray / static_cast<std::uint32_t>(rays_per_batch) %
            static_cast<std::uint32_t>(parameters.batches);
   }
-  void look(std::size_t point, double indirect, BatchSums& sums) const {
+  void sample_lights(std::size_t point, double indirect, BatchSums& sums) const {
     const trace::SurfacePoint where = trace::point_of(rays.scene(), points, point);
     const auto batches = static_cast<std::uint32_t>(parameters.batches);
     const auto samples_of = [&](std::uint32_t batch) {
@@ -94,36 +94,37 @@ struct RunLight {
     };
     if (traced) {
       thread_local trace::SelectionProbabilities probabilities;
-      thread_local trace::ShadowRays looks;
-      lamps.weigh(where.position, where.normal, probabilities);
-      // What rays that meet lamps count is weighed by the looks of most points.
-      const auto rays_per_look =
-          static_cast<float>(rays_per_batch) / static_cast<float>(looks_per_batch);
+      thread_local trace::ShadowRays light_samples;
+      light_sampler.weigh(where.position, where.normal, probabilities);
+      // What rays that meet lights count is weighed by the light samples of most points.
+      const auto rays_per_light_sample =
+          static_cast<float>(rays_per_batch) / static_cast<float>(light_samples_per_batch);
       const auto found_by = [&](int count) {
         const glm::vec3 weight(1.0f / static_cast<float>(count));
-        looks.clear();
+        light_samples.clear();
         for (std::uint32_t batch = 0; batch < batches; ++batch) {
           const trace::LightSampleNumbers samples = samples_of(batch);
           for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
-            looks.add(lamps, where, samples.lamp(i), weight, rays_per_look, probabilities, batch);
+            light_samples.add(light_sampler, where, samples.light(i), weight, rays_per_light_sample,
+                              probabilities, batch);
           }
         }
-        return looks.found(rays);
+        return light_samples.found(rays);
       };
-      const int again = std::min(defaults::looks_again * looks_per_batch,
-                                 defaults::most_looks_again / parameters.batches);
-      std::span<const trace::ShadowRays::Found> found = found_by(looks_per_batch);
-      if (again > looks_per_batch && is_uncertain(found, indirect)) found = found_by(again);
+      const int again = std::min(defaults::light_samples_again * light_samples_per_batch,
+                                 defaults::most_light_samples_again / parameters.batches);
+      std::span<const trace::ShadowRays::Found> found = found_by(light_samples_per_batch);
+      if (again > light_samples_per_batch && is_uncertain(found, indirect)) found = found_by(again);
       for (const auto& light : found) {
-        sums.add_lamp(light.layer, light.tag, light.irradiance, light.direction);
+        sums.add_light(light.layer, light.tag, light.irradiance, light.direction);
       }
       return;
     }
     thread_local std::vector<trace::ReceivedLight> found;
     for (std::uint32_t batch = 0; batch < batches; ++batch) {
       found.clear();
-      trace::find_direct_light(rays, lamps, where, -where.normal, trace::ReflectedPart::all,
-                               looks_per_batch, samples_of(batch), found);
+      trace::find_direct_light(rays, light_sampler, where, -where.normal, trace::ReflectedPart::all,
+                               light_samples_per_batch, samples_of(batch), found);
       for (const trace::ReceivedLight& light : found) {
         sums.add_even(light.layer, batch, light.irradiance);
       }
@@ -141,16 +142,16 @@ struct RunLight {
     const double mean = std::accumulate(of_batch.begin(), of_batch.end(), 0.0) / count;
     double squares = 0;
     for (const double light : of_batch) squares += (light - mean) * (light - mean);
-    const double tolerated = defaults::tolerated_look_error * (mean + indirect);
+    const double tolerated = defaults::tolerated_light_sample_error * (mean + indirect);
     return squares > tolerated * tolerated * count * (count - 1);
   }
-  void add_seen_lamps(std::size_t i, BatchSums& sums) const {
+  void add_visible_lights(std::size_t i, BatchSums& sums) const {
     if (!traced) return;
     const trace::HemisphereRays& met = traced->rays;
     for (std::size_t e = met.first_emission[i]; e < met.first_emission[i + 1]; ++e) {
-      const SeenEmission& lamp = met.ends.emission[e];
-      sums.add_lamp(lamps.layer(lamp.light), batch_of(lamp.pixel), lamp.radiance,
-                    met.direction_of(lamp.pixel));
+      const VisibleEmission& light = met.ray_hits.emission[e];
+      sums.add_light(light_sampler.layer(light.light), batch_of(light.pixel), light.radiance,
+                     met.direction_of(light.pixel));
     }
   }
 };
@@ -235,26 +236,26 @@ void check_range(const char* what, int value, int low, int high) {
 
 IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
                                    estimate::LightAtPoints& of_nodes,
-                                   const LightMapParameters& ends,
+                                   const LightMapParameters& secondary,
                                    estimate::LightAtPoints* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
       caustics_(caustics),
       parameters_(parameters),
-      lamps_(rays.scene()),
+      light_sampler_(rays.scene()),
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
       layer_powers_(estimate::layer_powers(rays.scene())),
-      ends_(rays, photons, of_nodes, ends) {
+      secondary_(rays, photons, of_nodes, secondary) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
-  check_range("light samples from a point", parameters.looks, 0, limits::max_direct_rays);
+  check_range("light samples from a point", parameters.light_samples, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, 64);
 }
 
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,
-                                       std::span<const std::uint64_t> number, int rays, int looks,
-                                       const Progress& progress) {
-  auto* const processes = ends_.processes();
-  if (!processes) return gather_own(points, number, rays, looks, points.size(), progress);
+                                       std::span<const std::uint64_t> number, int rays,
+                                       int light_samples, const Progress& progress) {
+  auto* const processes = secondary_.processes();
+  if (!processes) return gather_own(points, number, rays, light_samples, points.size(), progress);
   const Shard shard{processes->rank(), processes->size()};
   const std::uint64_t begin = shard.begin(points.size()), end = shard.end(points.size());
   std::vector<std::uint32_t> own(end - begin);
@@ -262,7 +263,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
   const std::size_t most = (points.size() + shard.count - 1) / shard.count;
   const GatheredParts part =
       gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
-                 looks, most, progress);
+                 light_samples, most, progress);
   GatheredParts all;
   all.indirect.batches = all.direct.batches = parameters_.batches;
   for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);
@@ -271,25 +272,27 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
 
 GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            std::span<const std::uint64_t> number, int rays,
-                                           int looks, std::size_t most, const Progress& progress) {
-  const SecondaryLight::Costs before = ends_.costs();
+                                           int light_samples, std::size_t most,
+                                           const Progress& progress) {
+  const SecondaryLight::Costs before = secondary_.costs();
   const Stopwatch caustics_watch;
   const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
   costs_.estimate_seconds += caustics_watch.seconds();
   costs_.estimated += caustics_ ? points.size() : 0;
 
   const int rays_per_batch = per_batch(rays, parameters_.batches);
-  const int looks_per_batch = per_batch(looks, parameters_.batches);
+  const int light_samples_per_batch = per_batch(light_samples, parameters_.batches);
   const trace::HemisphereParameters hemisphere{
       .batches = parameters_.batches,
       .rays = rays_per_batch,
       .seed = parameters_.seed,
       .max_specular_depth = parameters_.max_specular_depth,
-      .lamps = &lamps_,
+      .light_sampler = &light_sampler_,
       .emitted_radiance = &emitted_,
-      .rays_per_look = looks_per_batch > 0 ? static_cast<float>(rays_per_batch) /
-                                                 static_cast<float>(looks_per_batch)
-                                           : 0.0f,
+      .rays_per_light_sample =
+          light_samples_per_batch > 0
+              ? static_cast<float>(rays_per_batch) / static_cast<float>(light_samples_per_batch)
+              : 0.0f,
       .near = caustics_ ? 0.0f : static_cast<float>(parameters_.near)};
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
@@ -311,35 +314,36 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
           trace::trace_hemispheres(rays_, points, first, count, number, hemisphere);
       costs_.ray_seconds += stopwatch.seconds();
       const Stopwatch estimate_watch;
-      traced = ends_.look_up(std::move(hemispheres), progress);
+      traced = secondary_.query(std::move(hemispheres), progress);
       costs_.estimate_seconds += estimate_watch.seconds();
     }
     const Stopwatch sum_watch;
     add_run({.rays = rays_,
-             .lamps = lamps_,
+             .light_sampler = light_sampler_,
              .parameters = parameters_,
              .rays_per_batch = rays_per_batch,
-             .looks_per_batch = looks_per_batch,
+             .light_samples_per_batch = light_samples_per_batch,
              .points = points,
              .number = number,
              .traced = rays_per_batch > 0 ? &traced : nullptr,
-             .ends = ends_,
+             .secondary = secondary_,
              .caustics = caustics,
              .caustic_relative_variance = caustics_ ? 1.0 / parameters_.caustic_neighbours : 0.0,
              .layer_powers = layer_powers_},
             first, count, all);
     costs_.sum_seconds += sum_watch.seconds();
   }
-  costs_.rays += ends_.costs().rays - before.rays;
-  costs_.ends += ends_.costs().ends - before.ends;
-  costs_.estimated += ends_.costs().estimated - before.estimated;
+  costs_.rays += secondary_.costs().rays - before.rays;
+  costs_.hits += secondary_.costs().hits - before.hits;
+  costs_.estimated += secondary_.costs().estimated - before.estimated;
   return all;
 }
 
 GatheredIrradiance IrradianceGather::gather(const PrimaryHits& points,
                                             std::span<const std::uint64_t> number,
                                             const Progress& progress) {
-  const GatheredParts parts = gather(points, number, parameters_.rays, parameters_.looks, progress);
+  const GatheredParts parts =
+      gather(points, number, parameters_.rays, parameters_.light_samples, progress);
   return sum_of(parts.indirect, parts.direct, rays_.needs().light_count);
 }
 

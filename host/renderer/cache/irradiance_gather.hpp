@@ -1,4 +1,4 @@
-// Irradiance at points of surfaces by rays: to lamps, and to the surfaces around, where photon
+// Irradiance at points of surfaces by rays: to lights, and to the surfaces around, where photon
 // estimates are looked up.
 #pragma once
 
@@ -20,7 +20,7 @@ struct IrradianceGatherParameters {
   /// Rays from each point to the surfaces around; 0 = indirect light is left out.
   int rays = 144;
   /// Light samples from each point; 0 = direct light is left out.
-  int looks = 96;
+  int light_samples = 96;
   /// Rays and light samples are shared by so many independent batches, rounded up to a whole number
   /// in each: their scatter is the error.
   int batches = 8;
@@ -37,7 +37,7 @@ struct IrradianceGatherParameters {
 /// Light at points in two parts, whose noise differs.
 struct GatheredParts {
   GatheredIrradiance indirect;  ///< from other surfaces
-  GatheredIrradiance direct;    ///< straight from lamps, and caustics
+  GatheredIrradiance direct;    ///< of lights, and caustics
   /// Per point: harmonic mean of the distances to what its rays met, metres; infinite where they
   /// met nothing.
   std::vector<float> distance;
@@ -60,34 +60,34 @@ struct GatheredParts {
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light, and `of_nodes`, as SecondaryLight has them; k of about 100 serves
+  ///   photons    of all light, and `of_nodes`, as SecondaryLight has them; k of about 100 suffices
   ///   ends       light maps for these photons
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
   IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
-                   estimate::LightAtPoints& of_nodes, const LightMapParameters& ends,
+                   estimate::LightAtPoints& of_nodes, const LightMapParameters& secondary,
                    estimate::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
-  ///   rays, looks   in place of the parameters'
+  ///   rays, light_samples   in place of the parameters'
   /// Where several processes have the photon maps, all give the same points; each gathers at a part
   /// of them, and all get all.
   /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
   GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
-                       int looks, const Progress& progress = Progress::none());
+                       int light_samples, const Progress& progress = Progress::none());
 
   /// All light together.
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
 
   /// What rays find where they end.
-  SecondaryLight& ends() { return ends_; }
+  SecondaryLight& secondary() { return secondary_; }
 
   /// Bytes of the light maps where rays end; `forget` empties them.
-  std::uint64_t bytes() const { return ends_.bytes(); }
-  void forget() { ends_.forget(); }
+  std::uint64_t bytes() const { return secondary_.bytes(); }
+  void forget() { secondary_.forget(); }
 
   /// What all calls took so far.
   struct Costs {
@@ -95,23 +95,23 @@ class IrradianceGather {
     double estimate_seconds = 0;  ///< photons, at ends and at points
     double sum_seconds = 0;       ///< light samples, and sums
     std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
-    std::uint64_t ends = 0;       ///< that met a surface
-    std::uint64_t estimated = 0;  ///< places where photons were looked up
+    std::uint64_t hits = 0;       ///< that met a surface
+    std::uint64_t estimated = 0;  ///< points at which photons were searched
   };
   const Costs& costs() const { return costs_; }
 
  private:
   /// Gathers at this process's points, in as many rounds as so many points take.
   GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
-                           int rays, int looks, std::size_t most, const Progress& progress);
+                           int rays, int light_samples, std::size_t most, const Progress& progress);
 
   const RayScene& rays_;
   estimate::LightAtPoints* caustics_;
   IrradianceGatherParameters parameters_;
-  trace::LightSampler lamps_;
+  trace::LightSampler light_sampler_;
   std::vector<glm::vec3> emitted_;  ///< per light
   std::vector<double> layer_powers_;
-  SecondaryLight ends_;
+  SecondaryLight secondary_;
   Costs costs_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace photile {
 
-using cache::NodePlace;
+using cache::NodeCoordinates;
 using cache::Tile;
 using cache::Tiles;
 
@@ -34,8 +34,8 @@ bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds&
 
 /// Whether the values tell light by the normal, where rays found it and the scene asks for it
 /// alone.
-bool tell_by_normal(const Estimates& values, bool wanted) {
-  return values.by_normal.size() == (wanted ? values.irradiance.size() : 0) &&
+bool tell_by_normal(const Estimates& values, bool requested) {
+  return values.by_normal.size() == (requested ? values.irradiance.size() : 0) &&
          std::all_of(values.by_normal.begin(), values.by_normal.end(), [](const glm::vec4& light) {
            return std::isfinite(light.x + light.y + light.z + light.w);
          });
@@ -72,22 +72,22 @@ std::vector<std::uint64_t> kept_cells(const Tiles& tiles, std::span<const std::u
 /// Per node of `nodes`: whether it is a corner of one of these cells.
 std::vector<std::uint8_t> corners_of(const Tiles& tiles, std::span<const std::uint64_t> cells,
                                      std::size_t nodes) {
-  std::vector<std::uint8_t> wanted(nodes, 0);
+  std::vector<std::uint8_t> requested(nodes, 0);
   for (std::uint32_t index = 0; index < cells.size(); ++index) {
     for (std::uint32_t cell = 0; cell < 64; ++cell) {
       if ((cells[index] >> cell & 1) == 0) continue;
-      for (const std::uint32_t node : tiles[index].corners(cell)) wanted[node] = 1;
+      for (const std::uint32_t node : tiles[index].corners(cell)) requested[node] = 1;
     }
   }
-  return wanted;
+  return requested;
 }
 
 }  // namespace
 
 LightMapContents LightMaps::contents() const {
   LightMapContents contents;
-  for (const NodePlace& place : impl_->places) {
-    contents.nodes.push_back({place.chart, place.x, place.y});
+  for (const NodeCoordinates& at : impl_->coordinates) {
+    contents.nodes.push_back({at.chart, at.x, at.y});
   }
   contents.values = impl_->values;
   contents.error = impl_->error;
@@ -101,14 +101,14 @@ LightMapContents LightMaps::contents() const {
 
 std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep) {
   const std::vector<std::uint64_t> kept = kept_cells(impl_->tiles, keep);
-  const std::vector<std::uint8_t> wanted = corners_of(impl_->tiles, kept, keep.size());
+  const std::vector<std::uint8_t> requested = corners_of(impl_->tiles, kept, keep.size());
   LightMapContents all = contents(), left;
   const bool many = impl_->needs.many_lights();
   const std::size_t lights = impl_->parameters.powers.size();
   std::vector<std::uint32_t> former;
   if (many) left.values.first.push_back(0);
-  for (std::uint32_t node = 0; node < wanted.size(); ++node) {
-    if (wanted[node] == 0) continue;
+  for (std::uint32_t node = 0; node < requested.size(); ++node) {
+    if (requested[node] == 0) continue;
     former.push_back(node);
     left.nodes.push_back(all.nodes[node]);
     const std::size_t first = many ? all.values.first[node] : node * lights;
@@ -145,20 +145,20 @@ void LightMaps::restore(LightMapContents contents) {
   fit(are_errors_of(contents.error, contents.distance, count));
   for (std::uint32_t node = 0; node < count; ++node) {
     const auto& [chart, x, y] = contents.nodes[node];
-    fit(impl_->node_at.insert({NodePlace{chart, x, y}, node}).second);
+    fit(impl_->node_at.insert({NodeCoordinates{chart, x, y}, node}).second);
   }
-  std::vector<NodePlace> places;
+  std::vector<NodeCoordinates> coordinates;
   for (const auto& [chart, x, y] : contents.nodes) {
     fit(chart < impl_->charts.size());
-    places.push_back({chart, x, y});
+    coordinates.push_back({chart, x, y});
   }
   const PrimaryHits points =
-      cache::node_points(impl_->scene, impl_->charts, places, impl_->levels, false);
-  impl_->append(std::move(contents.values), points, places);
+      cache::node_points(impl_->scene, impl_->charts, coordinates, impl_->levels, false);
+  impl_->append(std::move(contents.values), points, coordinates);
   impl_->error = std::move(contents.error);
   impl_->distance = std::move(contents.distance);
-  const auto place_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
-                           std::uint32_t y) {
+  const auto key_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
+                         std::uint32_t y) {
     return std::array{chart, level, x, y};
   };
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> tile_at;
@@ -173,17 +173,17 @@ void LightMaps::restore(LightMapContents contents) {
       index =
           tiles.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});
     } else {
-      const auto parent = tile_at.find(place_of(chart, level - 1, x / 16 * 8, y / 16 * 8));
+      const auto parent = tile_at.find(key_of(chart, level - 1, x / 16 * 8, y / 16 * 8));
       fit(parent != tile_at.end());
       index = tiles[parent->second].child[(y / 8 & 1) * 2 + (x / 8 & 1)];
       fit(index != none);
     }
-    fit(tile_at.emplace(place_of(chart, level, x, y), index).second);
+    fit(tile_at.emplace(key_of(chart, level, x, y), index).second);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
     for (std::uint32_t cell = 0; cell < 64; ++cell) {
       if ((known >> cell & 1) != 0) cells.emplace_back(index, cell);
     }
-    std::vector<NodePlace> added;
+    std::vector<NodeCoordinates> added;
     impl_->number_corners(cells, added);
     fit(added.empty());
     tiles[index].known = known;

@@ -39,7 +39,7 @@ constexpr double seconds_of_batch = 0.015;
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
 /// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018). The same in every
 /// pixel and frame: nothing flickers.
-glm::vec2 place_in_pixel(int i) {
+glm::vec2 position_in_pixel(int i) {
   constexpr double plastic = 1.32471795724474602596;  // the root of x^3 = x + 1
   return glm::vec2(glm::fract(0.5 + glm::dvec2(i / plastic, i / (plastic * plastic))));
 }
@@ -75,7 +75,7 @@ struct LightMapFrames::View {
     parameters.width = width;
     parameters.height = height;
     parameters.samples_per_pixel = 1;
-    for (int i = 0; i < frame.samples_per_pixel; ++i) within_pixel.push_back(place_in_pixel(i));
+    for (int i = 0; i < frame.samples_per_pixel; ++i) within_pixel.push_back(position_in_pixel(i));
   }
 
   std::size_t blocks() const {
@@ -83,7 +83,8 @@ struct LightMapFrames::View {
            static_cast<std::size_t>((height + block_side - 1) / block_side);
   }
 
-  /// Through these places of the pixels from (x, y) on; those beyond the film lie in line with it.
+  /// Through these positions of the pixels from (x, y) on; those beyond the film lie in line with
+  /// it.
   void directions(int x, int y, const glm::vec2& within,
                   trace::CoherentDirections& directions) const {
     const float per_column = 2.0f / static_cast<float>(width);
@@ -111,7 +112,7 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
       distant_(scene_),
       is_shown_(maps.charts().size(), 0),
       waits_(maps.charts().size(), 0),
-      seconds_per_place_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons) {
+      seconds_per_sample_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons) {
   const std::span<const std::uint32_t> chart_of = maps.charts().chart_of();
   for (std::uint32_t t = 0; t < surfaces_.size(); ++t) {
     const Material& material = scene_.materials[scene_.triangle_material[t]];
@@ -121,7 +122,7 @@ LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource
     surface.reflects = (material.diffuse + material.specular) * glm::one_over_pi<float>();
     const bool opaque = material.interaction == Interaction::opaque;
     surface.kind = !opaque || material.has_cutouts()  ? Surface::followed
-                   : scene_.triangle_light[t] != none ? Surface::lamp
+                   : scene_.triangle_light[t] != none ? Surface::light
                    : material.textured()              ? Surface::textured
                                                       : Surface::plain;
   }
@@ -138,7 +139,7 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
   std::vector<std::size_t> all_blocks(view.blocks());
   std::iota(all_blocks.begin(), all_blocks.end(), std::size_t{0});
   std::vector<std::size_t> blocks = all_blocks;
-  std::uint64_t places = 0;
+  std::uint64_t samples = 0;
   double left = filling.seconds;
   for (;;) {
     progress.throw_if_cancelled();
@@ -148,21 +149,21 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
     const Missing missing = draw_blocks(view, blocks, filling);
     drawn.draw_seconds += of_drawing.seconds();
     if (filling.has_ended()) return drawn;
-    places = std::max(places, missing.read);  // the first round draws all
-    const bool more = show_complete(missing.places);
+    samples = std::max(samples, missing.read);  // the first round draws all
+    const bool more = show_complete(missing.samples);
     if ((coarser && coarser->show_complete(missing.coarser)) || more) continue;
-    const bool changed = soften(missing.places);
+    const bool changed = soften(missing.samples);
     if ((coarser && coarser->soften(missing.coarser)) || changed) {
       blocks = all_blocks;
       continue;
     }
 
-    const std::vector<MissingPlace>& last = coarser ? missing.coarser : missing.places;
-    drawn.lacking = missing.places.size() + missing.coarser.size();
+    const std::vector<MissingSample>& last = coarser ? missing.coarser : missing.samples;
+    drawn.lacking = missing.samples.size() + missing.coarser.size();
     drawn.empty = static_cast<std::size_t>(
-        std::count_if(last.begin(), last.end(), [](const auto& place) { return place.empty; }));
-    drawn.lacking_share =
-        places > 0 ? static_cast<double>(missing.lacking) / static_cast<double>(places) : 0.0;
+        std::count_if(last.begin(), last.end(), [](const auto& sample) { return sample.empty; }));
+    drawn.lacking_fraction =
+        samples > 0 ? static_cast<double>(missing.lacking) / static_cast<double>(samples) : 0.0;
     if (drawn.lacking == 0) return drawn;
     if (!(left > 0)) {
       if (!filling.show) return drawn;
@@ -171,7 +172,7 @@ DrawnFrame LightMapFrames::draw(const Camera& camera, const Film& film,
     }
     const Stopwatch of_filling;
     if (missing.coarser.empty()) {
-      fill(missing.places, left, filling, progress);
+      fill(missing.samples, left, filling, progress);
     } else {
       coarser->fill(missing.coarser, left, filling, progress);
     }
@@ -211,10 +212,10 @@ void LightMapFrames::forget_unseen() {
   const auto staying = static_cast<std::size_t>(static_cast<double>(bound_) / 2 / bytes *
                                                 static_cast<double>(statistics.nodes));
   std::vector<std::uint32_t> newest_first = seen_;
-  const auto place = newest_first.begin() +
-                     static_cast<std::ptrdiff_t>(std::min(staying, newest_first.size() - 1));
-  std::nth_element(newest_first.begin(), place, newest_first.end(), std::greater<>());
-  const std::uint32_t oldest = std::min(*place + 1, frame_ - 1);
+  const auto nth = newest_first.begin() +
+                   static_cast<std::ptrdiff_t>(std::min(staying, newest_first.size() - 1));
+  std::nth_element(newest_first.begin(), nth, newest_first.end(), std::greater<>());
+  const std::uint32_t oldest = std::min(*nth + 1, frame_ - 1);
   std::vector<std::uint8_t> keep(seen_.size());
   for (std::size_t node = 0; node < keep.size(); ++node) keep[node] = seen_[node] >= oldest ? 1 : 0;
   // A view that takes more than there is keeps what it has; a few nodes are not worth the work.
@@ -227,7 +228,7 @@ void LightMapFrames::forget_unseen() {
   seen_.resize(former.size());
 }
 
-/// Draws blocks; leaves those that lack nodes. Returns places of the cells that are missing, those
+/// Draws blocks; leaves those that lack nodes. Returns samples of the cells that are missing, those
 /// without any level first, then chart by chart: that which changes most of the picture comes
 /// first, for a chart that is refined in part has steps between its cells.
 LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
@@ -247,10 +248,10 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
   for (const Missing& missing : missing_of_threads) {
     all.lacking += missing.lacking;
     all.read += missing.read;
-    all.places.insert(all.places.end(), missing.places.begin(), missing.places.end());
+    all.samples.insert(all.samples.end(), missing.samples.begin(), missing.samples.end());
     all.coarser.insert(all.coarser.end(), missing.coarser.begin(), missing.coarser.end());
   }
-  for (std::vector<MissingPlace>* places : {&all.places, &all.coarser}) put_in_order(*places);
+  for (std::vector<MissingSample>* samples : {&all.samples, &all.coarser}) put_in_order(*samples);
   std::size_t left = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (lacks[i] != 0) blocks[left++] = blocks[i];
@@ -259,24 +260,25 @@ LightMapFrames::Missing LightMapFrames::draw_blocks(const View& view,
   return all;
 }
 
-/// Leaves one place of each cell without a coarser level.
-void LightMapFrames::put_in_order(std::vector<MissingPlace>& places) {
+/// Leaves one sample of each cell without a coarser level.
+void LightMapFrames::put_in_order(std::vector<MissingSample>& samples) {
   std::unordered_map<std::uint32_t, std::array<double, 2>> gain_of_chart;
-  for (const MissingPlace& place : places) gain_of_chart[place.chart][place.empty] += place.gain;
-  for (MissingPlace& place : places) place.gain = gain_of_chart[place.chart][place.empty];
-  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
+  for (const MissingSample& sample : samples)
+    gain_of_chart[sample.chart][sample.empty] += sample.gain;
+  for (MissingSample& sample : samples) sample.gain = gain_of_chart[sample.chart][sample.empty];
+  std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) {
     return std::tie(b.empty, b.gain, a.chart, a.cell) < std::tie(a.empty, a.gain, b.chart, b.cell);
   });
-  const auto is_repeated = [](const MissingPlace& a, const MissingPlace& b) {
+  const auto is_repeated = [](const MissingSample& a, const MissingSample& b) {
     return a.empty && a.cell == b.cell;
   };
-  places.erase(std::unique(places.begin(), places.end(), is_repeated), places.end());
+  samples.erase(std::unique(samples.begin(), samples.end(), is_repeated), samples.end());
 }
 
 /// Shows the nodes of charts that were seen and have all of them. Returns whether there were any.
-bool LightMapFrames::show_complete(std::span<const MissingPlace> missing) {
-  for (const MissingPlace& place : missing) {
-    if (place.empty) waits_[place.chart] = 0;
+bool LightMapFrames::show_complete(std::span<const MissingSample> missing) {
+  for (const MissingSample& sample : missing) {
+    if (sample.empty) waits_[sample.chart] = 0;
   }
   bool any = false;
   for (std::size_t chart = 0; chart < waits_.size(); ++chart) {
@@ -289,26 +291,26 @@ bool LightMapFrames::show_complete(std::span<const MissingPlace> missing) {
 
 /// Softens what is shown around cells that lack their nodes. Returns whether there were none in the
 /// picture before, or are none any more: then it is to be drawn again.
-bool LightMapFrames::soften(std::span<const MissingPlace> missing) {
+bool LightMapFrames::soften(std::span<const MissingSample> missing) {
   const bool any_before = !lacking_.empty();
   lacking_.clear();
-  for (const MissingPlace& place : missing) {
-    if (place.cell.has_tile && (lacking_.empty() || lacking_.back() != place.cell)) {
-      lacking_.push_back(place.cell);
+  for (const MissingSample& sample : missing) {
+    if (sample.cell.has_tile && (lacking_.empty() || lacking_.back() != sample.cell)) {
+      lacking_.push_back(sample.cell);
     }
   }
   return lacking_.empty() == any_before;
 }
 
-/// Values nodes of places in their order, as long as there is time, of one at least: the coarsest
-/// alone where there are places without any, else all finer ones.
-void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
+/// Values nodes of samples in their order, as long as there is time, of one at least: the coarsest
+/// alone where there are samples without any, else all finer ones.
+void LightMapFrames::fill(std::span<const MissingSample> samples, double seconds,
                           const FrameFilling& filling, const Progress& progress) {
-  const bool empty = places.front().empty;
+  const bool empty = samples.front().empty;
   if (empty) {
-    places = {places.begin(),
-              std::partition_point(places.begin(), places.end(),
-                                   [](const MissingPlace& place) { return place.empty; })};
+    samples = {samples.begin(),
+               std::partition_point(samples.begin(), samples.end(),
+                                    [](const MissingSample& sample) { return sample.empty; })};
   }
   const Stopwatch stopwatch;
   std::size_t first = 0;
@@ -318,21 +320,21 @@ void LightMapFrames::fill(std::span<const MissingPlace> places, double seconds,
     const double of_batch = std::min(left, seconds_of_batch);
     const std::size_t count =
         std::isinf(left)
-            ? places.size()
-            : std::clamp<std::size_t>(static_cast<std::size_t>(of_batch / seconds_per_place_), 1,
-                                      places.size() - first);
+            ? samples.size()
+            : std::clamp<std::size_t>(static_cast<std::size_t>(of_batch / seconds_per_sample_), 1,
+                                      samples.size() - first);
     PrimaryHits hits;
-    for (const MissingPlace& place : places.subspan(first, count)) {
-      hits.position.push_back(place.position);
-      hits.oriented_face.push_back(place.oriented_face);
+    for (const MissingSample& sample : samples.subspan(first, count)) {
+      hits.position.push_back(sample.position);
+      hits.oriented_face.push_back(sample.oriented_face);
     }
     const Stopwatch batch_watch;
     maps_.fill(hits, source_, progress, empty ? 1 : limits::max_light_map_levels);
     const double latest = batch_watch.seconds() / static_cast<double>(count);
-    seconds_per_place_ += 0.5 * (latest - seconds_per_place_);
+    seconds_per_sample_ += 0.5 * (latest - seconds_per_sample_);
     first += count;
     left = filling.has_ended() ? 0 : seconds - stopwatch.seconds();
-  } while (first < places.size() && left > 0);
+  } while (first < samples.size() && left > 0);
 }
 
 void LightMapFrames::draw_block(const View& view, std::size_t block, Missing& missing) const {
@@ -376,16 +378,16 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   const glm::vec3 light =
       irradiance(view, oriented(triangle, side), view.eye + distance * direction, missing);
   if (surface.kind == Surface::plain) return surface.reflects * light;
-  trace::SurfacePoint point;  // its place in textures: all that is asked of it
+  trace::SurfacePoint point;  // its position in textures: all that is asked of it
   point.where = {triangle, u, v};
   point.side = side;
   const scene::Reflectance reflectance = trace::reflectance(scene_, point);
   glm::vec3 radiance = (reflectance.albedo + reflectance.f0) * glm::one_over_pi<float>() * light;
-  if (surface.kind == Surface::lamp && trace::emits(scene_, point)) {
-    const std::uint32_t lamp = scene_.triangle_light[triangle];
-    const bool even = scene_.lights[lamp].distribution == none;
+  if (surface.kind == Surface::light && trace::emits(scene_, point)) {
+    const std::uint32_t light = scene_.triangle_light[triangle];
+    const bool even = scene_.lights[light].distribution == none;
     if (!even) point = trace::surface_point(scene_, point.where, side);
-    radiance += nodes_.held().powers()[layer_of_[lamp]] * emitted_[lamp] *
+    radiance += nodes_.held().powers()[layer_of_[light]] * emitted_[light] *
                 trace::emission_towards(scene_, point, -direction);
   }
   return radiance;
@@ -395,7 +397,7 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t oriented_fa
                                      const glm::vec3& position, Missing& missing) const {
   bool lacks = false;
   std::optional<glm::vec3> light =
-      known_irradiance(oriented_face, position, missing, missing.places, lacks);
+      known_irradiance(oriented_face, position, missing, missing.samples, lacks);
   const bool is_own = light.has_value();
   if (!light && view.coarser) {
     light =
@@ -414,17 +416,18 @@ glm::vec3 LightMapFrames::irradiance(const View& view, std::uint32_t oriented_fa
 std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t oriented_face,
                                                           const glm::vec3& position,
                                                           Missing& missing,
-                                                          std::vector<MissingPlace>& places,
+                                                          std::vector<MissingSample>& samples,
                                                           bool& lacks) const {
-  NodeBlend blend{};
+  BilinearWeights bilinear{};
   const std::uint32_t chart = surfaces_[triangle_of(oriented_face)].chart[side_of(oriented_face)];
-  if (const auto cell = maps_.tiles().find(chart, position, blend)) {
-    const bool empty = blend.node[0] == none;
+  if (const auto cell = maps_.tiles().find(chart, position, bilinear)) {
+    const bool empty = bilinear.node[0] == none;
     lacks = true;
-    if (places.empty() || places.back().cell != *cell || places.back().packet != missing.packet) {
-      places.push_back({*cell, empty, chart, missing.packet, 0, position, oriented_face});
+    if (samples.empty() || samples.back().cell != *cell ||
+        samples.back().packet != missing.packet) {
+      samples.push_back({*cell, empty, chart, missing.packet, 0, position, oriented_face});
     }
-    places.back().gain += empty ? 1 : difference(blend);
+    samples.back().gain += empty ? 1 : difference(bilinear);
     if (empty) return std::nullopt;
   }
   if (is_shown_[chart] == 0) {
@@ -432,27 +435,27 @@ std::optional<glm::vec3> LightMapFrames::known_irradiance(std::uint32_t oriented
     return std::nullopt;
   }
   if (bound_ > 0) {
-    const std::atomic_ref<std::uint32_t> seen(seen_[blend.node[0]]);
+    const std::atomic_ref<std::uint32_t> seen(seen_[bilinear.node[0]]);
     if (seen.load(std::memory_order_relaxed) != frame_) {
       seen.store(frame_, std::memory_order_relaxed);
     }
   }
-  missing.any |= nodes_.lacks_beside(blend);
-  blend = nodes_.weighted(blend);
-  const auto blended = [&](std::span<const glm::vec4> of) {
-    return (blend.weight[0] * of[blend.node[0]] + blend.weight[1] * of[blend.node[1]]) +
-           (blend.weight[2] * of[blend.node[2]] + blend.weight[3] * of[blend.node[3]]);
+  missing.any |= nodes_.lacks_beside(bilinear);
+  bilinear = nodes_.weighted(bilinear);
+  const auto interpolated = [&](std::span<const glm::vec4> of) {
+    return (bilinear.weight[0] * of[bilinear.node[0]] + bilinear.weight[1] * of[bilinear.node[1]]) +
+           (bilinear.weight[2] * of[bilinear.node[2]] + bilinear.weight[3] * of[bilinear.node[3]]);
   };
-  const glm::vec3 sum(blended(nodes_.light()));
+  const glm::vec3 sum(interpolated(nodes_.light()));
   if (nodes_.by_normal().empty()) return sum;
-  return turned(sum, blended(nodes_.by_normal()),
+  return turned(sum, interpolated(nodes_.by_normal()),
                 trace::shading_normal(scene_, oriented_face, position));
 }
 
 /// Of the luminance of the nodes.
-double LightMapFrames::difference(const NodeBlend& blend) const {
+double LightMapFrames::difference(const BilinearWeights& bilinear) const {
   const auto light = [&](std::size_t corner) {
-    return luminance(glm::dvec3(nodes_.held().light()[blend.node[corner]]));
+    return luminance(glm::dvec3(nodes_.held().light()[bilinear.node[corner]]));
   };
   const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
   return most - least;
@@ -478,8 +481,8 @@ glm::vec3 LightMapFrames::followed(const View& view, std::uint32_t pixel,
     radiance += hit.throughput * (hit.diffuse_albedo + lobe) * glm::one_over_pi<float>() *
                 irradiance(view, hit.oriented_face, hit.position, missing);
   }
-  for (const SeenEmission& lamp : record.emission) {
-    radiance += nodes_.held().powers()[layer_of_[lamp.light]] * lamp.radiance;
+  for (const VisibleEmission& light : record.emission) {
+    radiance += nodes_.held().powers()[layer_of_[light.light]] * light.radiance;
   }
   return radiance;
 }

@@ -21,7 +21,7 @@
 
 namespace photile::cache {
 
-/// Draws frames from light maps. Rays through the same places of each pixel; mirrors, glass and
+/// Draws frames from light maps. Rays through the same positions of each pixel; mirrors, glass and
 /// cutouts are followed; a specular lobe is taken for matt reflection of the same strength, and
 /// normal maps are left out.
 class LightMapFrames {
@@ -52,10 +52,10 @@ class LightMapFrames {
   struct Surface {
     std::uint32_t chart[2];  ///< of its sides
     glm::vec3 reflects;      ///< radiance per irradiance, where it is plain
-    enum Kind : std::uint32_t { plain, textured, lamp, followed } kind;
+    enum Kind : std::uint32_t { plain, textured, light, followed } kind;
   };
-  /// Where a cell is seen whose nodes are not valued: one place in each packet of rays.
-  struct MissingPlace {
+  /// Where a cell is seen whose nodes are not valued: one sample in each packet of rays.
+  struct MissingSample {
     MissingCell cell;
     bool empty;  ///< without a coarser level
     std::uint32_t chart, packet;
@@ -66,11 +66,11 @@ class LightMapFrames {
     std::uint32_t oriented_face;
   };
   struct Missing {
-    std::vector<MissingPlace> places;
-    std::vector<MissingPlace> coarser;    ///< of the coarser light maps, where no level is valued
+    std::vector<MissingSample> samples;
+    std::vector<MissingSample> coarser;   ///< of the coarser light maps, where no level is valued
     bool any = false;                     ///< of the block at hand: it is to be drawn again
     std::uint32_t packet = 0;             ///< the one at hand, of those that a thread traced
-    std::uint64_t lacking = 0, read = 0;  ///< places, of both light maps together
+    std::uint64_t lacking = 0, read = 0;  ///< samples, of both light maps together
   };
   struct View;
 
@@ -79,10 +79,10 @@ class LightMapFrames {
   void forget_unseen();
   Missing draw_blocks(const View& view, std::vector<std::size_t>& blocks,
                       const FrameFilling& filling) const;
-  static void put_in_order(std::vector<MissingPlace>& places);
-  bool show_complete(std::span<const MissingPlace> missing);
-  bool soften(std::span<const MissingPlace> missing);
-  void fill(std::span<const MissingPlace> places, double seconds, const FrameFilling& filling,
+  static void put_in_order(std::vector<MissingSample>& samples);
+  bool show_complete(std::span<const MissingSample> missing);
+  bool soften(std::span<const MissingSample> missing);
+  void fill(std::span<const MissingSample> samples, double seconds, const FrameFilling& filling,
             const Progress& progress);
   void draw_block(const View& view, std::size_t block, Missing& missing) const;
   glm::vec3 seen(const View& view, std::uint32_t pixel, const glm::vec3& direction,
@@ -91,9 +91,9 @@ class LightMapFrames {
   glm::vec3 irradiance(const View& view, std::uint32_t oriented_face, const glm::vec3& position,
                        Missing& missing) const;
   std::optional<glm::vec3> known_irradiance(std::uint32_t oriented_face, const glm::vec3& position,
-                                            Missing& missing, std::vector<MissingPlace>& places,
+                                            Missing& missing, std::vector<MissingSample>& samples,
                                             bool& lacks) const;
-  double difference(const NodeBlend& blend) const;
+  double difference(const BilinearWeights& bilinear) const;
   glm::vec3 followed(const View& view, std::uint32_t pixel, const glm::vec3& direction,
                      Missing& missing) const;
   glm::vec3 background(const glm::vec3& direction) const;
@@ -115,8 +115,8 @@ class LightMapFrames {
   std::size_t ambient_nodes_ = 0;            ///< that it was gathered from
   std::vector<std::uint8_t> is_shown_;       ///< per chart: 1 = shown by its own nodes
   mutable std::vector<std::uint8_t>
-      waits_;                 ///< per chart not shown yet: 1 = seen where it has nodes
-  double seconds_per_place_;  ///< of valuing, learned from what it took
+      waits_;                  ///< per chart not shown yet: 1 = seen where it has nodes
+  double seconds_per_sample_;  ///< of valuing, learned from what it took
 };
 
 }  // namespace photile::cache

@@ -19,8 +19,8 @@ namespace cache {
 
 namespace {
 
-/// Hits that one task looks up: large enough to make its cost vanish, small enough to share work.
-constexpr std::size_t hits_per_lookup_task = 1024;
+/// Hits that one task reads: large enough to make its cost vanish, small enough to share work.
+constexpr std::size_t hits_per_query_task = 1024;
 
 /// Differences of fewer standard errors may be noise.
 constexpr double doubted_errors = 3;
@@ -34,13 +34,13 @@ constexpr double dark_of_sparse = 0.5;
 constexpr double near_of_spacing = 2;
 
 /// Places of the finest lattice are counted in 32 bits.
-int levels_that_fit(const Charts& charts, int wanted) {
+int levels_that_fit(const Charts& charts, int requested) {
   std::uint64_t cells = 1;
   for (std::size_t i = 0; i < charts.size(); ++i) {
     cells = std::max<std::uint64_t>({cells, charts[i].columns + 8, charts[i].rows + 8});
   }
-  while (wanted > 1 && cells << (wanted - 1) > std::uint64_t{1} << 31) --wanted;
-  return wanted;
+  while (requested > 1 && cells << (requested - 1) > std::uint64_t{1} << 31) --requested;
+  return requested;
 }
 
 void check(const LightMapParameters& parameters, std::size_t layers) {
@@ -65,7 +65,7 @@ std::string_view name_of(LightMapMode mode) { return name_in({"off", "on", "auto
 
 using cache::Charts;
 using cache::MissingCell;
-using cache::NodePlace;
+using cache::NodeCoordinates;
 using cache::Tile;
 using cache::Tiles;
 
@@ -88,7 +88,7 @@ void LightMaps::Impl::clear() {
   error.clear();
   distance.clear();
   points.clear();
-  places.clear();
+  coordinates.clear();
   cells = 0;
 }
 
@@ -100,16 +100,16 @@ std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
     std::vector<std::uint32_t> hits;
   };
   const std::size_t tasks =
-      (pending.size() + cache::hits_per_lookup_task - 1) / cache::hits_per_lookup_task;
+      (pending.size() + cache::hits_per_query_task - 1) / cache::hits_per_query_task;
   std::vector<Found> found(tasks);
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     Found& own = found[task];
-    const std::size_t end = std::min(pending.size(), (task + 1) * cache::hits_per_lookup_task);
-    for (std::size_t i = task * cache::hits_per_lookup_task; i < end; ++i) {
+    const std::size_t end = std::min(pending.size(), (task + 1) * cache::hits_per_query_task);
+    for (std::size_t i = task * cache::hits_per_query_task; i < end; ++i) {
       const std::uint32_t hit = pending[i];
-      NodeBlend blend;
-      const auto missing =
-          tiles.find(charts.chart_of()[hits.oriented_face[hit]], hits.position[hit], blend, levels);
+      BilinearWeights bilinear;
+      const auto missing = tiles.find(charts.chart_of()[hits.oriented_face[hit]],
+                                      hits.position[hit], bilinear, levels);
       if (!missing) continue;
       own.hits.push_back(hit);
       if (own.cells.empty() || own.cells.back() != *missing) own.cells.push_back(*missing);
@@ -129,27 +129,27 @@ std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
 }
 
 void LightMaps::Impl::number_corners(
-    std::span<const std::pair<std::uint32_t, std::uint32_t>> wanted,
-    std::vector<NodePlace>& added) {
-  for (const auto& [index, cell] : wanted) {
+    std::span<const std::pair<std::uint32_t, std::uint32_t>> requested,
+    std::vector<NodeCoordinates>& added) {
+  for (const auto& [index, cell] : requested) {
     Tile& tile = tiles[index];
     const int shift = levels - 1 - static_cast<int>(tile.level);
     for (std::uint32_t corner = 0; corner < 4; ++corner) {
       const std::uint32_t x = (cell & 7) + (corner & 1), y = (cell >> 3) + (corner >> 1);
       std::uint32_t& node = tile.node[y * 9 + x];
       if (node != none) continue;
-      const NodePlace place{tile.chart, (tile.x + x) << shift, (tile.y + y) << shift};
+      const NodeCoordinates at{tile.chart, (tile.x + x) << shift, (tile.y + y) << shift};
       const auto next = static_cast<std::uint32_t>(together.size() + added.size());
-      const auto [entry, is_new] = node_at.insert({place, next});
-      if (is_new) added.push_back(place);
+      const auto [entry, is_new] = node_at.insert({at, next});
+      if (is_new) added.push_back(at);
       node = entry->second;
     }
   }
 }
 
 void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
-                             std::span<const NodePlace> added) {
-  for (const NodePlace& place : added) node_at.erase(place);
+                             std::span<const NodeCoordinates> added) {
+  for (const NodeCoordinates& at : added) node_at.erase(at);
   for (const auto& [index, cell] : cells) {
     for (std::uint32_t& node : tiles[index].node) {
       if (node != none && node >= together.size()) node = none;
@@ -157,15 +157,15 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
   }
 }
 
-std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(std::span<const NodePlace> nodes,
-                                                              NodeSource& source,
-                                                              const Progress& progress) {
-  const auto batch_of = [&](std::span<const NodePlace> places) {
-    return cache::node_batch(scene, charts, places, levels, needs.glossy, source.surroundings());
+std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(
+    std::span<const NodeCoordinates> nodes, NodeSource& source, const Progress& progress) {
+  const auto batch_of = [&](std::span<const NodeCoordinates> coordinates) {
+    return cache::node_batch(scene, charts, coordinates, levels, needs.glossy,
+                             source.surroundings());
   };
-  for (const auto& places : cache::unknown_parents(nodes, levels, source)) {
+  for (const auto& coordinates : cache::unknown_parents(nodes, levels, source)) {
     // For the source: they have their values here.
-    if (!places.empty()) source.value(batch_of(places), progress);
+    if (!coordinates.empty()) source.value(batch_of(coordinates), progress);
   }
   NodeBatch batch = batch_of(nodes);
   NodeValues values = source.value(batch, progress);
@@ -174,7 +174,7 @@ std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(std::span<const No
 
 /// The light of the nodes that follow, at the first of these points.
 void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
-                             std::span<const NodePlace> nodes) {
+                             std::span<const NodeCoordinates> nodes) {
   estimates.radiance.clear();
   const std::size_t lights = parameters.powers.size();
   for (std::size_t node = 0; node < nodes.size(); ++node) {
@@ -193,7 +193,7 @@ void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
     points.push_back({at.position[node], at.oriented_face[node]});
   }
   values.append(std::move(estimates));
-  places.insert(places.end(), nodes.begin(), nodes.end());
+  coordinates.insert(coordinates.end(), nodes.begin(), nodes.end());
 }
 
 /// By more than contrast and noise allow.
@@ -250,7 +250,7 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     if (missing.empty()) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
     for (const MissingCell& cell : missing) cells.emplace_back(tiles.tile_of(cell), cell.cell);
-    std::vector<NodePlace> added;
+    std::vector<NodeCoordinates> added;
     impl_->number_corners(cells, added);
     try {
       if (!added.empty()) {
@@ -277,28 +277,28 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
   }
 }
 
-bool LightMaps::find(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend,
-                     int levels) const {
-  return !impl_->tiles.find(impl_->charts.chart_of()[oriented_face], position, blend, levels);
+bool LightMaps::find(std::uint32_t oriented_face, const glm::vec3& position,
+                     BilinearWeights& bilinear, int levels) const {
+  return !impl_->tiles.find(impl_->charts.chart_of()[oriented_face], position, bilinear, levels);
 }
 
-double LightMaps::relative_error(const NodeBlend& blend) const {
+double LightMaps::relative_error(const BilinearWeights& bilinear) const {
   if (impl_->error.empty()) return 0;
   double error = 0, light = 0;
-  for (std::size_t i = 0; i < blend.node.size(); ++i) {
-    error += double{blend.weight[i]} * impl_->error[blend.node[i]];
-    light += double{blend.weight[i]} * impl_->together[blend.node[i]];
+  for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+    error += double{bilinear.weight[i]} * impl_->error[bilinear.node[i]];
+    light += double{bilinear.weight[i]} * impl_->together[bilinear.node[i]];
   }
   return light > 0 ? error / light : 0;
 }
 
-bool LightMaps::uneven(const NodeBlend& blend, double contrast) const {
-  const auto light = [&](std::size_t corner) { return impl_->together[blend.node[corner]]; };
+bool LightMaps::uneven(const BilinearWeights& bilinear, double contrast) const {
+  const auto light = [&](std::size_t corner) { return impl_->together[bilinear.node[corner]]; };
   const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
   if (most - least > most * contrast || impl_->is_dark(most)) return true;
   if (impl_->distance.empty()) return false;
   const auto finest = static_cast<float>(std::ldexp(impl_->charts.spacing(), 1 - impl_->levels));
-  return std::any_of(blend.node.begin(), blend.node.end(),
+  return std::any_of(bilinear.node.begin(), bilinear.node.end(),
                      [&](std::uint32_t node) { return impl_->distance[node] < finest; });
 }
 
@@ -317,19 +317,20 @@ const Estimates& LightMaps::values() const { return impl_->values; }
 
 LightMapStatistics LightMaps::statistics() const {
   const Estimates& values = impl_->values;
-  return {.nodes = impl_->together.size(),
-          .tiles = impl_->tiles.size(),
-          .cells = impl_->cells,
-          .charts = impl_->charts.size(),
-          .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
-                         values.first.size() * sizeof(std::uint64_t) +
-                         values.light.size() * sizeof(std::uint16_t) +
-                         values.by_normal.size() * sizeof(glm::vec4) +
-                         (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
-                         impl_->points.size() * (sizeof(NodePoint) + sizeof(NodePlace)),
-          .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
-                         impl_->node_at.size() * 2 * sizeof(std::pair<NodePlace, std::uint32_t>),
-          .chart_seconds = impl_->chart_seconds};
+  return {
+      .nodes = impl_->together.size(),
+      .tiles = impl_->tiles.size(),
+      .cells = impl_->cells,
+      .charts = impl_->charts.size(),
+      .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
+                     values.first.size() * sizeof(std::uint64_t) +
+                     values.light.size() * sizeof(std::uint16_t) +
+                     values.by_normal.size() * sizeof(glm::vec4) +
+                     (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
+                     impl_->points.size() * (sizeof(NodePoint) + sizeof(NodeCoordinates)),
+      .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
+                     impl_->node_at.size() * 2 * sizeof(std::pair<NodeCoordinates, std::uint32_t>),
+      .chart_seconds = impl_->chart_seconds};
 }
 
 }  // namespace photile

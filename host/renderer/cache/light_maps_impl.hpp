@@ -22,16 +22,17 @@ struct LightMaps::Impl {
                                                 int levels) const;
   /// Numbers of the nodes at the corners of cells; new ones are appended to `added`.
   void number_corners(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
-                      std::vector<cache::NodePlace>& added);
+                      std::vector<cache::NodeCoordinates>& added);
   /// Takes numbers back.
   void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
-              std::span<const cache::NodePlace> added);
+              std::span<const cache::NodeCoordinates> added);
   /// Lets go of all nodes.
   void clear();
   /// What the source says of nodes, and where they are.
-  std::pair<NodeValues, PrimaryHits> values_of(std::span<const cache::NodePlace> nodes,
+  std::pair<NodeValues, PrimaryHits> values_of(std::span<const cache::NodeCoordinates> nodes,
                                                NodeSource& source, const Progress& progress);
-  void append(Estimates estimates, const PrimaryHits& at, std::span<const cache::NodePlace> nodes);
+  void append(Estimates estimates, const PrimaryHits& at,
+              std::span<const cache::NodeCoordinates> nodes);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool is_dark(double light) const;
   bool differ_by_photons(double high, double low) const;
@@ -43,8 +44,8 @@ struct LightMaps::Impl {
   const int levels;
   cache::Tiles tiles;
   cache::NodeIndex node_at;
-  std::vector<cache::NodePlace> places;  ///< of nodes
-  Estimates values;                      ///< of nodes
+  std::vector<cache::NodeCoordinates> coordinates;  ///< of nodes
+  Estimates values;                                 ///< of nodes
   /// Per node: luminance of all lights at their powers.
   std::vector<float> together;
   std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues

@@ -9,7 +9,7 @@
 #include "photile/ray_scene.hpp"
 
 namespace photile::trace {
-struct SurfacePlace;
+struct SurfaceLocation;
 }
 
 namespace photile::cache {
@@ -26,26 +26,27 @@ class NodeVisibility {
 
   /// Leaves out the nodes that something hides from the point, or covers and not the point, where
   /// the nodes differ so much that it matters: their weight becomes 0, and those of the others 1
-  /// together. Returns false where none is left; then the blend is what it was. Depends on the
-  /// point and its nodes alone. Thread-safe; the caller's thread must flush denormals
+  /// together. Returns false where none is left; then the weights are what they it was. Depends on
+  /// the point and its nodes alone. Thread-safe; the caller's thread must flush denormals
   /// (ray_query.hpp).
   ///   position   of an opaque surface, metres
-  ///   blend      of LightMaps::find, which found all nodes
-  bool look(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend) const;
+  ///   bilinear   of LightMaps::find, which found all nodes
+  bool keep_visible(std::uint32_t oriented_face, const glm::vec3& position,
+                    BilinearWeights& bilinear) const;
 
   /// Whether the middle of the cell sees all of its nodes.
-  bool is_open(const NodeBlend& cell) const;
+  bool is_open(const BilinearWeights& cell) const;
 
-  /// Whether nothing stands between two places, metres, on the plane of a triangle's side.
+  /// Whether nothing stands between two positions, metres, on the plane of a triangle's side.
   bool sees(std::uint32_t oriented_face, const glm::vec3& from, const glm::vec3& to) const;
 
   /// Whether something that lies on the surface covers `there`, closer than `reach`, but not
-  /// `here`: the slit behind it sees the place beside it, but no light.
-  bool is_in_slit(const trace::SurfacePlace& here, const trace::SurfacePlace& there,
+  /// `here`: the slit behind it sees the surface beside it, but no light.
+  bool is_in_slit(const trace::SurfaceLocation& here, const trace::SurfaceLocation& there,
                   float reach) const;
 
  private:
-  bool is_in_slit(const trace::SurfacePlace& here, std::uint32_t node) const;
+  bool is_in_slit(const trace::SurfaceLocation& here, std::uint32_t node) const;
 
   const RayScene& rays_;
   const LightMaps& maps_;

@@ -31,8 +31,8 @@ double sum_of_weights(const PrimaryHits& hits, std::span<const std::uint32_t> ch
   return sum;
 }
 
-/// The variance of the weighted mean over some hits, of those of one hit: 1 where all lie in one
-/// blotch, less where they lie in several.
+/// The variance of the weighted mean over some hits, of those of one hit: 1 where all err
+/// alike, less where they lie farther apart.
 double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
                          double width) {
   const std::size_t step = (chosen.size() + most_compared - 1) / most_compared;
@@ -51,7 +51,7 @@ double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t>
 }  // namespace
 
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
-                                        int runs, const PhotonNoise& blotches) {
+                                        int runs, const PhotonNoise& noise) {
   std::vector<std::uint8_t> suits(reflected.size(), 0);
   if (reflected.size() == 0) return suits;
   const auto [low, high] = std::minmax_element(reflected.pixel.begin(), reflected.pixel.end());
@@ -73,9 +73,10 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
           const double weight = sum_of_weights(reflected, hits);
           const double tolerated =
               defaults::tolerated_reflection_noise * (weight + seen_weight[pixel]);
-          const double noise = weight * blotches.noise;
-          if (noise > tolerated &&
-              noise * std::sqrt(relative_variance(reflected, hits, blotches.width)) > tolerated) {
+          const double of_estimates = weight * noise.noise;
+          if (of_estimates > tolerated &&
+              of_estimates * std::sqrt(relative_variance(reflected, hits, noise.width)) >
+                  tolerated) {
             continue;
           }
           for (const std::uint32_t hit : hits) suits[hit] = 1;

@@ -24,37 +24,37 @@ constexpr std::size_t hits_per_task = 1024;
 
 }  // namespace
 
-IndirectLight SecondaryLight::look_up(trace::HemisphereRays rays, const Progress& progress) {
+IndirectLight SecondaryLight::query(trace::HemisphereRays rays, const Progress& progress) {
   IndirectLight light{.rays = std::move(rays), .own_of = {}, .nodes = {}, .weight = {}, .own = {}};
   std::vector<std::uint8_t> has_own;
   classify(light, has_own);
-  const trace::EyeRecord& ends = light.rays.ends;
+  const trace::EyeRecord& ray_hits = light.rays.ray_hits;
   PrimaryHits served;
-  for (std::size_t end = 0; end < has_own.size(); ++end) {
-    if (has_own[end]) continue;
-    served.position.push_back(ends.hits[end].position);
-    served.oriented_face.push_back(ends.hits[end].oriented_face);
+  for (std::size_t index = 0; index < has_own.size(); ++index) {
+    if (has_own[index]) continue;
+    served.position.push_back(ray_hits.hits[index].position);
+    served.oriented_face.push_back(ray_hits.hits[index].oriented_face);
   }
   fill(served, progress);
   find_nodes(light, has_own);
-  light.own_of.assign(ends.hits.size(), none);
+  light.own_of.assign(ray_hits.hits.size(), none);
   std::vector<std::uint32_t> own;
-  for (std::uint32_t end = 0; end < has_own.size(); ++end) {
-    if (!has_own[end]) continue;
-    light.own_of[end] = static_cast<std::uint32_t>(own.size());
-    own.push_back(end);
+  for (std::uint32_t index = 0; index < has_own.size(); ++index) {
+    if (!has_own[index]) continue;
+    light.own_of[index] = static_cast<std::uint32_t>(own.size());
+    own.push_back(index);
   }
-  if (!own.empty() || processes()) light.own = estimates_at(ends, own, progress);
+  if (!own.empty() || processes()) light.own = estimates_at(ray_hits, own, progress);
   costs_.estimated += own.size();
-  costs_.ends += ends.hits.size();
-  costs_.rays += ends.rays;
+  costs_.hits += ray_hits.hits.size();
+  costs_.rays += ray_hits.rays;
   return light;
 }
 
-std::vector<NodeBlend> SecondaryLight::nodes_around(const PrimaryHits& hits,
-                                                    const Progress& progress) {
+std::vector<BilinearWeights> SecondaryLight::nodes_around(const PrimaryHits& hits,
+                                                          const Progress& progress) {
   fill(hits, progress);
-  std::vector<NodeBlend> nodes(hits.size());
+  std::vector<BilinearWeights> nodes(hits.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
@@ -81,26 +81,27 @@ void SecondaryLight::add_point(const IndirectLight& light, std::size_t point, st
                                std::uint32_t rays_per_batch, BatchSums& sums) const {
   const std::size_t lights = rays_.needs().light_count;
   const Estimates& values = maps_->maps.values();
-  for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
-    const trace::EyeHit& hit = light.rays.ends.hits[end];
+  for (std::size_t index = light.rays.first[point]; index < light.rays.first[point + 1]; ++index) {
+    const trace::EyeHit& hit = light.rays.ray_hits.hits[index];
     const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
     const glm::vec3 direction = light.rays.direction_of(hit.pixel);
-    if (light.own_of[end] != none) {
-      const EndEstimates& own = light.own;
+    if (light.own_of[index] != none) {
+      const SecondaryEstimates& own = light.own;
       estimate::for_each_estimate(
-          own.estimates, light.own_of[end], lights, [&](std::size_t layer, std::size_t i) {
-            sums.add_surface(static_cast<std::uint32_t>(layer), batch,
-                             light.weight[end] * estimate::reflected_radiance(
-                                                     own.hits, light.own_of[end], own.estimates, i),
-                             direction);
+          own.estimates, light.own_of[index], lights, [&](std::size_t layer, std::size_t i) {
+            sums.add_surface(
+                static_cast<std::uint32_t>(layer), batch,
+                light.weight[index] *
+                    estimate::reflected_radiance(own.hits, light.own_of[index], own.estimates, i),
+                direction);
           });
       continue;
     }
-    const NodeBlend& blend = light.nodes[end];
-    for (std::size_t corner = 0; corner < blend.node.size(); ++corner) {
-      if (blend.weight[corner] == 0.0f) continue;
-      const glm::vec3 weight = blend.weight[corner] * light.weight[end];
-      estimate::for_each_estimate(values, blend.node[corner], lights,
+    const BilinearWeights& bilinear = light.nodes[index];
+    for (std::size_t corner = 0; corner < bilinear.node.size(); ++corner) {
+      if (bilinear.weight[corner] == 0.0f) continue;
+      const glm::vec3 weight = bilinear.weight[corner] * light.weight[index];
+      estimate::for_each_estimate(values, bilinear.node[corner], lights,
                                   [&](std::size_t layer, std::size_t i) {
                                     sums.add_surface(static_cast<std::uint32_t>(layer), batch,
                                                      weight * values.irradiance[i], direction);
@@ -111,17 +112,18 @@ void SecondaryLight::add_point(const IndirectLight& light, std::size_t point, st
 
 /// Finds which ends have estimates of their own, and what estimates weigh at each.
 void SecondaryLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
-  const trace::EyeRecord& ends = light.rays.ends;
-  light.weight.resize(ends.hits.size());
-  has_own.resize(ends.hits.size());
+  const trace::EyeRecord& ray_hits = light.rays.ray_hits;
+  light.weight.resize(ray_hits.hits.size());
+  has_own.resize(ray_hits.hits.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
     const trace::FlushDenormals flush_denormals;
-    for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
-      const trace::EndReflection reflection = trace::reflection_of(ends, end);
-      has_own[end] = reflection.strong_lobe;
-      light.weight[end] = ends.hits[end].throughput;
+    for (std::size_t index = light.rays.first[point]; index < light.rays.first[point + 1];
+         ++index) {
+      const trace::HitReflection reflection = trace::reflection_of(ray_hits, index);
+      has_own[index] = reflection.strong_lobe;
+      light.weight[index] = ray_hits.hits[index].throughput;
       if (reflection.strong_lobe) continue;
-      light.weight[end] *= reflection.reflectance * glm::one_over_pi<float>();
+      light.weight[index] *= reflection.reflectance * glm::one_over_pi<float>();
     }
   });
 }
@@ -133,19 +135,19 @@ void SecondaryLight::fill(const PrimaryHits& hits, const Progress& progress) {
   maps_->cells.resize(maps_->maps.statistics().nodes, unknown_cell);
 }
 
-/// The nodes around a place, of those that it sees. Returns false where it sees none; then all.
+/// The nodes around a point, of those that it sees. Returns false where it sees none; then all.
 bool SecondaryLight::find(std::uint32_t oriented_face, const glm::vec3& position,
-                          NodeBlend& blend) const {
-  maps_->maps.find(oriented_face, position, blend);
-  return is_open(blend) || maps_->sight.look(oriented_face, position, blend);
+                          BilinearWeights& bilinear) const {
+  maps_->maps.find(oriented_face, position, bilinear);
+  return is_open(bilinear) || maps_->visibility.keep_visible(oriented_face, position, bilinear);
 }
 
 /// Whether the middle of a cell sees all of its nodes. All who ask at once find the same.
-bool SecondaryLight::is_open(const NodeBlend& cell) const {
+bool SecondaryLight::is_open(const BilinearWeights& cell) const {
   const std::atomic_ref<std::uint8_t> known(maps_->cells[cell.node[0]]);
   std::uint8_t state = known.load(std::memory_order_relaxed);
   if (state == unknown_cell) {
-    state = maps_->sight.is_open(cell) ? open_cell : crossed_cell;
+    state = maps_->visibility.is_open(cell) ? open_cell : crossed_cell;
     known.store(state, std::memory_order_relaxed);
   }
   return state == open_cell;
@@ -157,29 +159,30 @@ void SecondaryLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>&
   light.nodes.resize(has_own.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
     const trace::FlushDenormals flush_denormals;
-    for (std::size_t end = light.rays.first[point]; end < light.rays.first[point + 1]; ++end) {
-      if (has_own[end]) continue;
-      const trace::EyeHit& hit = light.rays.ends.hits[end];
-      if (find(hit.oriented_face, hit.position, light.nodes[end])) continue;
-      has_own[end] = 1;
+    for (std::size_t index = light.rays.first[point]; index < light.rays.first[point + 1];
+         ++index) {
+      if (has_own[index]) continue;
+      const trace::EyeHit& hit = light.rays.ray_hits.hits[index];
+      if (find(hit.oriented_face, hit.position, light.nodes[index])) continue;
+      has_own[index] = 1;
       // Estimates of ends are radiance.
-      light.weight[end] = hit.throughput;
+      light.weight[index] = hit.throughput;
     }
   });
 }
 
 /// In the order of the ends that are chosen.
-EndEstimates SecondaryLight::estimates_at(const trace::EyeRecord& ends,
-                                          std::span<const std::uint32_t> chosen,
-                                          const Progress& progress) {
+SecondaryEstimates SecondaryLight::estimates_at(const trace::EyeRecord& ray_hits,
+                                                std::span<const std::uint32_t> chosen,
+                                                const Progress& progress) {
   trace::EyeRecord record;
-  for (const std::uint32_t end : chosen) {
-    record.hits.push_back(ends.hits[end]);
-    if (!ends.glossy.empty()) record.glossy.push_back(ends.glossy[end]);
+  for (const std::uint32_t index : chosen) {
+    record.hits.push_back(ray_hits.hits[index]);
+    if (!ray_hits.glossy.empty()) record.glossy.push_back(ray_hits.glossy[index]);
   }
-  std::vector<trace::HitPlace> places;
-  for (std::uint32_t i = 0; i < chosen.size(); ++i) places.push_back({0, i});
-  PrimaryHits hits = trace::hits_at({&record, 1}, places);
+  std::vector<trace::HitIndex> indices;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) indices.push_back({0, i});
+  PrimaryHits hits = trace::hits_at({&record, 1}, indices);
   Estimates estimates = photons_.at(hits, progress);
   return {std::move(hits), std::move(estimates)};
 }

@@ -19,7 +19,7 @@
 namespace photile::cache {
 
 /// Photon estimates at some of the ends of rays.
-struct EndEstimates {
+struct SecondaryEstimates {
   PrimaryHits hits;
   Estimates estimates;  ///< of each hit
 };
@@ -27,10 +27,10 @@ struct EndEstimates {
 /// Where the rays of a run of points end, and what counts there.
 struct IndirectLight {
   trace::HemisphereRays rays;
-  std::vector<std::uint32_t> own_of;  ///< of each end: its own estimate, or none: light maps serve
-  std::vector<NodeBlend> nodes;       ///< of each end that they serve
-  std::vector<glm::vec3> weight;      ///< of each end: of irradiance, or of radiance
-  EndEstimates own;                   ///< of the run
+  std::vector<std::uint32_t> own_of;  ///< of each hit: its own estimate, or none: light maps answer
+  std::vector<BilinearWeights> nodes;  ///< of each hit that they answer
+  std::vector<glm::vec3> weight;       ///< of each end: of irradiance, or of radiance
+  SecondaryEstimates own;              ///< of the run
 };
 
 /// Values nodes by the light at their points.
@@ -57,7 +57,7 @@ class ValuedBy : public NodeSource {
 class SecondaryLight {
  public:
   /// References are kept.
-  ///   photons   answers for ends that light maps do not serve, and `of_nodes` for nodes: the same
+  ///   photons   answers for hits that light maps do not answer, and `of_nodes` for nodes: the same
   ///             but where several processes have the photons. What a point gets does not depend on
   ///             the points beside it.
   ///   maps      of one level: a cell is known by its first node
@@ -67,7 +67,7 @@ class SecondaryLight {
 
   /// Finds an estimate for each end.
   /// Errors: as DeviceEstimators; Interrupted.
-  IndirectLight look_up(trace::HemisphereRays rays, const Progress& progress);
+  IndirectLight query(trace::HemisphereRays rays, const Progress& progress);
 
   /// Adds what the rays of a point of the run see, its batches having so many rays each.
   void add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
@@ -75,7 +75,7 @@ class SecondaryLight {
 
   /// The nodes around hits, and what nodes hold, in the form of estimates: node n is hit n. They
   /// are valued where none did so yet. Errors: as DeviceEstimators; Interrupted.
-  std::vector<NodeBlend> nodes_around(const PrimaryHits& hits, const Progress& progress);
+  std::vector<BilinearWeights> nodes_around(const PrimaryHits& hits, const Progress& progress);
   const Estimates& values() const { return maps_->maps.values(); }
 
   /// The processes that have the photon maps, and make the same calls; null where this one is
@@ -92,8 +92,8 @@ class SecondaryLight {
   /// What all calls took so far.
   struct Costs {
     std::uint64_t rays = 0;  ///< traced; those along mirrors and glass included
-    std::uint64_t ends = 0;
-    std::uint64_t estimated = 0;  ///< places where photons were looked up
+    std::uint64_t hits = 0;
+    std::uint64_t estimated = 0;  ///< points at which photons were searched
   };
   Costs costs() const;
 
@@ -101,10 +101,11 @@ class SecondaryLight {
   void classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const;
   void fill(const PrimaryHits& hits, const Progress& progress);
-  bool find(std::uint32_t oriented_face, const glm::vec3& position, NodeBlend& blend) const;
-  bool is_open(const NodeBlend& cell) const;
-  EndEstimates estimates_at(const trace::EyeRecord& ends, std::span<const std::uint32_t> chosen,
-                            const Progress& progress);
+  bool find(std::uint32_t oriented_face, const glm::vec3& position,
+            BilinearWeights& bilinear) const;
+  bool is_open(const BilinearWeights& cell) const;
+  SecondaryEstimates estimates_at(const trace::EyeRecord& ray_hits,
+                                  std::span<const std::uint32_t> chosen, const Progress& progress);
 
   const RayScene& rays_;
   estimate::LightAtPoints& photons_;
@@ -114,9 +115,9 @@ class SecondaryLight {
 
   struct Maps {
     Maps(const RayScene& rays, const LightMapParameters& parameters)
-        : maps(rays.scene(), parameters), sight(rays, maps, any_contrast) {}
+        : maps(rays.scene(), parameters), visibility(rays, maps, any_contrast) {}
     LightMaps maps;
-    NodeVisibility sight;
+    NodeVisibility visibility;
     /// Whether the middle of a cell sees all nodes, by the first node; known once an end asked.
     mutable std::vector<std::uint8_t> cells;
   };

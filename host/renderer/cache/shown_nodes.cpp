@@ -97,9 +97,9 @@ class ShownNodes::Softening {
       const double own = luminance_of(nodes_.light_[node]);
       const double most = most_over_others * brightest_other_[node];
       if (own <= most || most == 0) continue;
-      const auto share = static_cast<float>(most / own);
-      nodes_.light_[node] *= share;
-      if (!nodes_.by_normal_.empty()) nodes_.by_normal_[node] *= share;
+      const auto fraction = static_cast<float>(most / own);
+      nodes_.light_[node] *= fraction;
+      if (!nodes_.by_normal_.empty()) nodes_.by_normal_[node] *= fraction;
     }
     // A tile comes after the one that it refines: nodes are known before those between them.
     for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
@@ -193,20 +193,20 @@ void ShownNodes::mix(const LightMaps& maps, std::span<const glm::vec3> powers,
   softening.apply();
 }
 
-bool ShownNodes::lacks_beside(const NodeBlend& blend) const {
+bool ShownNodes::lacks_beside(const BilinearWeights& bilinear) const {
   return !lacks_beside_.empty() &&
-         std::any_of(blend.node.begin(), blend.node.end(),
+         std::any_of(bilinear.node.begin(), bilinear.node.end(),
                      [&](std::uint32_t node) { return lacks_beside_[node] != 0; });
 }
 
-NodeBlend ShownNodes::weighted(NodeBlend blend) const {
-  if (weight_.empty()) return blend;
+BilinearWeights ShownNodes::weighted(BilinearWeights bilinear) const {
+  if (weight_.empty()) return bilinear;
   float sum = 0;
-  for (std::size_t i = 0; i < blend.node.size(); ++i) {
-    sum += blend.weight[i] *= weight_[blend.node[i]];
+  for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+    sum += bilinear.weight[i] *= weight_[bilinear.node[i]];
   }
-  for (float& weight : blend.weight) weight /= sum;
-  return blend;
+  for (float& weight : bilinear.weight) weight /= sum;
+  return bilinear;
 }
 
 }  // namespace photile::cache

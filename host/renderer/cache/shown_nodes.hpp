@@ -14,11 +14,11 @@ namespace photile::cache {
 
 /// The light of all lights together at the nodes, at their powers, and how much each node counts
 /// between others. Where nodes are lacking it is softened, so that nobody sees where:
-///   - Nodes on the border of a larger cell show the mean which that cell has at their place,
+///   - Nodes on the border of a larger cell show the mean which that cell has at their position,
 ///     whatever they hold: otherwise there would be a step along that border.
 ///   - A corner of a cell counts less where its surroundings are nearer than the next corner: it
 ///     may stand behind a door, and tells little of the surface before that.
-///   - No corner of a cell is more than so many times as bright as all others: nodes beside lamps
+///   - No corner of a cell is more than so many times as bright as all others: nodes beside lights
 ///     would show as bright squares.
 class ShownNodes {
  public:
@@ -41,9 +41,9 @@ class ShownNodes {
   std::span<const glm::vec4> by_normal() const { return by_normal_; }
 
   /// Whether the light of one of these nodes is softened because a cell beside it lacks nodes.
-  bool lacks_beside(const NodeBlend& blend) const;
+  bool lacks_beside(const BilinearWeights& bilinear) const;
   /// The same nodes, with the weights that they have by what each counts. They sum to 1.
-  NodeBlend weighted(NodeBlend blend) const;
+  BilinearWeights weighted(BilinearWeights bilinear) const;
 
   /// What the nodes hold.
   const NodeMix& held() const { return held_; }

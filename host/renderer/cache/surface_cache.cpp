@@ -25,15 +25,15 @@ namespace photile::cache {
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
-constexpr std::size_t hits_per_blend_task = 1024;
+constexpr std::size_t hits_per_interpolation_task = 1024;
 
 /// Hits of these levels.
-std::vector<std::uint32_t> places_of(std::span<const int> levels, int level) {
-  std::vector<std::uint32_t> places;
+std::vector<std::uint32_t> hits_of(std::span<const int> levels, int level) {
+  std::vector<std::uint32_t> chosen;
   for (std::uint32_t hit = 0; hit < levels.size(); ++hit) {
-    if (levels[hit] == level) places.push_back(hit);
+    if (levels[hit] == level) chosen.push_back(hit);
   }
-  return places;
+  return chosen;
 }
 
 /// Per oriented face: flux of its photons at the powers, luminance. Of those that this process
@@ -67,11 +67,11 @@ double mean_photon(const Photons& photons, std::span<const double> powers) {
 /// Metres: that of photons spread evenly over the triangles that have some; 0 without photons.
 double mean_distance(const Scene& scene, const Photons& photons) {
   double area = 0;
-  for (std::uint32_t sided = 0; sided + 1 < photons.first_of.size(); ++sided) {
+  for (std::uint32_t face = 0; face + 1 < photons.first_of.size(); ++face) {
     const std::uint32_t landed = photons.of_all
-                                     ? photons.of_all->landed[sided]
-                                     : photons.first_of[sided + 1] - photons.first_of[sided];
-    if (landed > 0) area += triangle_area(scene, sided / 2);
+                                     ? photons.of_all->landed[face]
+                                     : photons.first_of[face + 1] - photons.first_of[face];
+    if (landed > 0) area += triangle_area(scene, face / 2);
   }
   return photons.total() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.total()));
 }
@@ -100,21 +100,21 @@ const Material& material_of(const Scene& scene, std::uint32_t oriented_face) {
 
 /// Writes the light of hits, or its errors, one after another, from nodes, from ends of rays or
 /// from their own estimates.
-class Blend {
+class Interpolation {
  public:
-  ///   place    per hit: that of its own estimate, or none
+  ///   row      per hit: that of its own estimate, or none
   ///   ends     null where no hit reads them
-  Blend(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& hits,
-        const HitReading& reading, const Estimates& nodes, const Estimates* ends,
-        const Estimates& alone, std::span<const std::uint32_t> place)
+  Interpolation(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& hits,
+                const HitReading& reading, const Estimates& nodes, const Estimates* secondary,
+                const Estimates& alone, std::span<const std::uint32_t> row)
       : scene_(scene),
         needs_(needs),
         hits_(hits),
         reading_(reading),
         nodes_(nodes),
-        ends_(ends),
+        secondary_(secondary),
         alone_(alone),
-        place_(place) {}
+        row_(row) {}
 
   /// The estimates of hits [first, last).
   Estimates of(std::size_t first, std::size_t last) const {
@@ -122,24 +122,25 @@ class Blend {
     estimate::EstimateWriter writer(needs_, estimates);
     std::vector<ByNormal> layers(nodes_.by_normal.empty() ? 0 : needs_.light_count);
     for (std::size_t hit = first; hit < last; ++hit) {
-      if (place_[hit] == none && reading_.levels[hit] != HitReading::ends && !layers.empty()) {
+      if (row_[hit] == none && reading_.levels[hit] != HitReading::secondary && !layers.empty()) {
         add_smoothly(hit, layers, writer);
-      } else if (place_[hit] == none) {
-        add_from_maps(hit, reading_.levels[hit] == HitReading::ends ? *ends_ : nodes_, writer);
+      } else if (row_[hit] == none) {
+        add_from_maps(hit, reading_.levels[hit] == HitReading::secondary ? *secondary_ : nodes_,
+                      writer);
       } else {
-        add_alone(hit, place_[hit], writer);
+        add_alone(hit, row_[hit], writer);
       }
       writer.end_hit();
     }
     return estimates;
   }
 
-  /// Sum of the squares of relative standard errors of hits [first, last) that nodes serve.
+  /// Sum of the squares of relative standard errors of hits [first, last) that nodes answer.
   double squared_errors(const LightMaps& maps, std::size_t first, std::size_t last) const {
     double sum = 0;
     for (std::size_t hit = first; hit < last; ++hit) {
       if (reading_.levels[hit] <= 0) continue;
-      const double error = maps.relative_error(reading_.blends[hit]);
+      const double error = maps.relative_error(reading_.bilinear[hit]);
       sum += error * error;
     }
     return sum;
@@ -157,13 +158,13 @@ class Blend {
   ///   layers   of none
   void add_smoothly(std::size_t hit, std::vector<ByNormal>& layers,
                     estimate::EstimateWriter& writer) const {
-    const NodeBlend& blend = reading_.blends[hit];
+    const BilinearWeights& bilinear = reading_.bilinear[hit];
     const auto for_each_corner = [&](const auto& visit) {
-      for (std::size_t i = 0; i < blend.node.size(); ++i) {
-        if (blend.weight[i] == 0.0f) continue;
-        estimate::for_each_estimate(nodes_, blend.node[i], needs_.light_count,
+      for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+        if (bilinear.weight[i] == 0.0f) continue;
+        estimate::for_each_estimate(nodes_, bilinear.node[i], needs_.light_count,
                                     [&](std::size_t layer, std::size_t value) {
-                                      visit(layers[layer], layer, value, blend.weight[i]);
+                                      visit(layers[layer], layer, value, bilinear.weight[i]);
                                     });
       }
     };
@@ -186,21 +187,21 @@ class Blend {
 
   void add_from_maps(std::size_t hit, const Estimates& nodes,
                      estimate::EstimateWriter& writer) const {
-    const NodeBlend& blend = reading_.blends[hit];
+    const BilinearWeights& bilinear = reading_.bilinear[hit];
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
-    for (std::size_t i = 0; i < blend.node.size(); ++i) {
-      if (blend.weight[i] == 0.0f) continue;
+    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+      if (bilinear.weight[i] == 0.0f) continue;
       estimate::for_each_estimate(
-          nodes, blend.node[i], needs_.light_count, [&](std::size_t layer, std::size_t value) {
-            const glm::vec3 light = blend.weight[i] * nodes.irradiance[value];
+          nodes, bilinear.node[i], needs_.light_count, [&](std::size_t layer, std::size_t value) {
+            const glm::vec3 light = bilinear.weight[i] * nodes.irradiance[value];
             writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
           });
     }
   }
 
-  void add_alone(std::size_t hit, std::uint32_t place, estimate::EstimateWriter& writer) const {
+  void add_alone(std::size_t hit, std::uint32_t row, estimate::EstimateWriter& writer) const {
     estimate::for_each_estimate(
-        alone_, place, needs_.light_count, [&](std::size_t layer, std::size_t value) {
+        alone_, row, needs_.light_count, [&](std::size_t layer, std::size_t value) {
           const glm::vec3& light = alone_.irradiance[value];
           writer.add(static_cast<std::uint32_t>(layer), light,
                      alone_.radiance.empty()
@@ -214,9 +215,9 @@ class Blend {
   const PrimaryHits& hits_;
   const HitReading& reading_;
   const Estimates& nodes_;
-  const Estimates* ends_;
+  const Estimates* secondary_;
   const Estimates& alone_;
-  std::span<const std::uint32_t> place_;
+  std::span<const std::uint32_t> row_;
 };
 
 }  // namespace
@@ -252,40 +253,41 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
                            estimate::LightAtPoints& elsewhere, NodeSource& source,
-                           SecondaryLight* ends)
+                           SecondaryLight* secondary)
     : scene_(rays.scene()),
       needs_(rays.needs()),
       shared_(parameters.processes != nullptr),
       neighbours_(parameters.neighbours),
       elsewhere_(elsewhere),
       source_(source),
-      ends_(ends),
+      secondary_(secondary),
       maps_(scene_, parameters),
-      sight_(rays, maps_) {}
+      visibility_(rays, maps_) {}
 
 Estimates SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
   const HitReading reading = read(hits, progress);
-  std::vector<std::uint32_t> alone, place(hits.size(), none);
+  std::vector<std::uint32_t> alone, row(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (reading.levels[hit] != HitReading::own_estimate) continue;
-    place[hit] = static_cast<std::uint32_t>(alone.size());
+    row[hit] = static_cast<std::uint32_t>(alone.size());
     alone.push_back(hit);
   }
   hits_alone_ += alone.size();
   const Estimates own = alone.empty() && !shared_
                             ? Estimates{}
                             : elsewhere_.at(estimate::reordered(hits, 0, alone), progress);
-  const bool reads_ends = std::find(reading.levels.begin(), reading.levels.end(),
-                                    int{HitReading::ends}) != reading.levels.end();
-  const Estimates* ends = reads_ends ? &ends_->values() : nullptr;
-  const Blend blend(scene_, needs_, hits, reading, maps_.values(), ends, own, place);
-  std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
+  const bool reads_secondary = std::find(reading.levels.begin(), reading.levels.end(),
+                                         int{HitReading::secondary}) != reading.levels.end();
+  const Estimates* secondary = reads_secondary ? &secondary_->values() : nullptr;
+  const Interpolation bilinear(scene_, needs_, hits, reading, maps_.values(), secondary, own, row);
+  std::vector<Estimates> parts((hits.size() + hits_per_interpolation_task - 1) /
+                               hits_per_interpolation_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    const std::size_t first = part * hits_per_blend_task;
-    const std::size_t last = std::min(hits.size(), first + hits_per_blend_task);
-    parts[part] = blend.of(first, last);
-    squared_errors[part] = blend.squared_errors(maps_, first, last);
+    const std::size_t first = part * hits_per_interpolation_task;
+    const std::size_t last = std::min(hits.size(), first + hits_per_interpolation_task);
+    parts[part] = bilinear.of(first, last);
+    squared_errors[part] = bilinear.squared_errors(maps_, first, last);
   });
   for (const double part : squared_errors) errors_read_.squares += part;
   errors_read_.hits += static_cast<std::uint64_t>(
@@ -296,19 +298,20 @@ Estimates SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
 Estimates SurfaceCache::errors(const PrimaryHits& hits, const Estimates& estimates,
                                const Estimates& of_nodes) {
   const HitReading reading = read(hits, Progress::none());
-  std::vector<std::uint32_t> place(hits.size(), none);
+  std::vector<std::uint32_t> row(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (reading.levels[hit] <= 0) place[hit] = hit;  // photons
+    if (reading.levels[hit] <= 0) row[hit] = hit;  // photons
   }
   Estimates own = estimates;
   const auto relative = static_cast<float>(photon_noise().noise);
   for (glm::vec3& light : own.irradiance) light *= relative;
   for (glm::vec3& light : own.radiance) light *= relative;
-  const Blend blend(scene_, needs_, hits, reading, of_nodes, nullptr, own, place);
-  std::vector<Estimates> parts((hits.size() + hits_per_blend_task - 1) / hits_per_blend_task);
+  const Interpolation bilinear(scene_, needs_, hits, reading, of_nodes, nullptr, own, row);
+  std::vector<Estimates> parts((hits.size() + hits_per_interpolation_task - 1) /
+                               hits_per_interpolation_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    const std::size_t first = part * hits_per_blend_task;
-    parts[part] = blend.of(first, std::min(hits.size(), first + hits_per_blend_task));
+    const std::size_t first = part * hits_per_interpolation_task;
+    parts[part] = bilinear.of(first, std::min(hits.size(), first + hits_per_interpolation_task));
   });
   return joined(std::move(parts));
 }
@@ -322,17 +325,17 @@ Estimates SurfaceCache::joined(std::vector<Estimates> parts) const {
 
 HitReading SurfaceCache::read(const PrimaryHits& hits, const Progress& progress) {
   HitReading reading{std::vector<int>(hits.size(), LightMaps::all_rounds),
-                     std::vector<NodeBlend>(hits.size())};
+                     std::vector<BilinearWeights>(hits.size())};
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     if (!serves(hits, hit)) {
       reading.levels[hit] = HitReading::own_estimate;
     } else if (!hits.coarse.empty() && hits.coarse[hit] != 0) {
-      reading.levels[hit] = ends_ ? HitReading::ends : 1;
+      reading.levels[hit] = secondary_ ? HitReading::secondary : 1;
     }
   }
   const Stopwatch stopwatch;
   fill(hits, reading.levels, progress);
-  find_ends(hits, progress, reading);
+  find_secondary(hits, progress, reading);
   fill_time_ += stopwatch.taken();
   find_nodes(hits, reading);
   return reading;
@@ -348,47 +351,49 @@ void SurfaceCache::fill(const PrimaryHits& hits, std::span<const int> levels,
     return;
   }
   for (const int level : {LightMaps::all_rounds, 1}) {
-    maps_.fill(estimate::reordered(hits, 0, places_of(levels, level)), source_, progress,
+    maps_.fill(estimate::reordered(hits, 0, hits_of(levels, level)), source_, progress,
                LightMaps::all_rounds, level);
   }
 }
 
-void SurfaceCache::find_ends(const PrimaryHits& hits, const Progress& progress,
-                             HitReading& reading) {
-  const std::vector<std::uint32_t> chosen = places_of(reading.levels, HitReading::ends);
-  if (chosen.empty() && !(ends_ && shared_)) return;
-  const std::vector<NodeBlend> blends =
-      ends_->nodes_around(estimate::reordered(hits, 0, chosen), progress);
-  for (std::size_t i = 0; i < chosen.size(); ++i) reading.blends[chosen[i]] = blends[i];
+void SurfaceCache::find_secondary(const PrimaryHits& hits, const Progress& progress,
+                                  HitReading& reading) {
+  const std::vector<std::uint32_t> chosen = hits_of(reading.levels, HitReading::secondary);
+  if (chosen.empty() && !(secondary_ && shared_)) return;
+  const std::vector<BilinearWeights> bilinear =
+      secondary_->nodes_around(estimate::reordered(hits, 0, chosen), progress);
+  for (std::size_t i = 0; i < chosen.size(); ++i) reading.bilinear[chosen[i]] = bilinear[i];
 }
 
 /// Hits that no node sees are to have estimates of their own.
 void SurfaceCache::find_nodes(const PrimaryHits& hits, HitReading& reading) const {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_blend_task),
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_interpolation_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
                       for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
                         int& levels = reading.levels[hit];
                         if (levels <= 0) continue;
-                        const std::uint32_t sided = hits.oriented_face[hit];
-                        NodeBlend& blend = reading.blends[hit];
-                        maps_.find(sided, hits.position[hit], blend, levels);
-                        const bool seen = sight_.look(sided, hits.position[hit], blend);
+                        const std::uint32_t face = hits.oriented_face[hit];
+                        BilinearWeights& bilinear = reading.bilinear[hit];
+                        maps_.find(face, hits.position[hit], bilinear, levels);
+                        const bool seen =
+                            visibility_.keep_visible(face, hits.position[hit], bilinear);
                         // Where photons value nodes they would say no more at the hit, and may
                         // have to be traced first.
-                        if (ends_ && !seen && levels > 1) levels = HitReading::own_estimate;
+                        if (secondary_ && !seen && levels > 1) levels = HitReading::own_estimate;
                       }
                     });
 }
 
 PhotonNoise SurfaceCache::photon_noise() const {
-  return {ends_ ? ends_->spacing() : maps_.charts().spacing(), 1 / std::sqrt(neighbours_)};
+  return {secondary_ ? secondary_->spacing() : maps_.charts().spacing(),
+          1 / std::sqrt(neighbours_)};
 }
 
 bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {
   const bool has_lobe = !hits.lobe.empty() && hits.lobe[hit].f90 > 0.0f;
   const bool mapped = material_of(scene_, hits.oriented_face[hit]).normal_texture != none;
-  return !has_lobe && (!mapped || ends_ != nullptr);
+  return !has_lobe && (!mapped || secondary_ != nullptr);
 }
 
 }  // namespace photile::cache

@@ -1,5 +1,5 @@
-// The cache on surfaces: light read between samples where those serve, and asked for where they do
-// not; and which reflections need no light gathered at nodes.
+// The cache on surfaces: light read between samples where those suffice, and asked for where they
+// do not; and which reflections need no light gathered at nodes.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct PhotonNoise {
 };
 
 /// Whether the light that lobes reflect may be that of photon estimates: where they would add
-/// little noise to the pixel, for they err alike within blotches and apart between them, and a
+/// little noise to the pixel, for they err alike nearby and independently farther apart, and a
 /// pixel sees many of them in a rough or curved surface, or weighs them little. Depends on the hits
 /// of a pixel alone; so the same number of a pixel's samples must be there.
 ///   seen        hits of the pixels themselves
@@ -32,7 +32,7 @@ struct PhotonNoise {
 ///   runs        of the samples of a pixel, as PrimaryHitParameters has them
 /// Returns 1 or 0 for each of `reflected`.
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
-                                        int runs, const PhotonNoise& blotches);
+                                        int runs, const PhotonNoise& noise);
 
 /// A sum of squared relative standard errors.
 struct ErrorSum {
@@ -57,23 +57,23 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 
 /// What the light of hits is read from.
 struct HitReading {
-  static constexpr int own_estimate = -1, ends = 0;
-  std::vector<int> levels;        ///< of nodes; or `ends`, or `own_estimate`
-  std::vector<NodeBlend> blends;  ///< of nodes or ends
+  static constexpr int own_estimate = -1, secondary = 0;
+  std::vector<int> levels;                ///< of nodes; or `ends`, or `own_estimate`
+  std::vector<BilinearWeights> bilinear;  ///< of nodes or ends
 };
 
 class SurfaceCache : public estimate::LightAtPoints {
  public:
   /// References are kept.
-  ///   elsewhere   answers for points that no node serves: those with a specular lobe, and those
+  ///   elsewhere   answers for points that no node answers: those with a specular lobe, and those
   ///               with a normal map where photons value nodes, which ask where light comes from.
   ///               What a point gets from it does not depend on the points beside it.
   ///   source      values nodes
-  ///   ends        where rays value nodes, the light that they find where they end, which is read
+  ///   secondary   where rays value nodes, the light that they find where they end, which is read
   ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
   ///               the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-               estimate::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* ends);
+               estimate::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* secondary);
 
   /// The light at points in any order.
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
@@ -90,7 +90,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
   NodeSource& source() { return source_; }
-  const NodeVisibility& sight() const { return sight_; }
+  const NodeVisibility& visibility() const { return visibility_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -106,7 +106,7 @@ class SurfaceCache : public estimate::LightAtPoints {
   /// Values what the hits read.
   HitReading read(const PrimaryHits& hits, const Progress& progress);
   void fill(const PrimaryHits& hits, std::span<const int> levels, const Progress& progress);
-  void find_ends(const PrimaryHits& hits, const Progress& progress, HitReading& reading);
+  void find_secondary(const PrimaryHits& hits, const Progress& progress, HitReading& reading);
   void find_nodes(const PrimaryHits& hits, HitReading& reading) const;
 
   /// Estimates of hits that follow each other.
@@ -118,9 +118,9 @@ class SurfaceCache : public estimate::LightAtPoints {
   const double neighbours_;  ///< of a photon estimate
   estimate::LightAtPoints& elsewhere_;
   NodeSource& source_;
-  SecondaryLight* ends_;
+  SecondaryLight* secondary_;
   LightMaps maps_;
-  NodeVisibility sight_;
+  NodeVisibility visibility_;
   std::uint64_t hits_alone_ = 0;
   ErrorSum errors_read_;
   TimeTaken fill_time_;

@@ -43,19 +43,20 @@ class Tiles {
  public:
   explicit Tiles(const Charts& charts) : charts_(charts), root_(charts.roots(), none) {}
 
-  /// The nodes around a place of a chart: of the cell that is not split, or of the last one known
-  /// above a missing one, which is returned then. Without any, nodes are none.
+  /// The nodes around a position of a chart: of the cell that is not split, or of the last one
+  /// known above a missing one, which is returned then. Without any, nodes are none.
   ///   levels   that are looked at, the coarsest first
-  std::optional<MissingCell> find(std::uint32_t chart, const glm::vec3& position, NodeBlend& blend,
+  std::optional<MissingCell> find(std::uint32_t chart, const glm::vec3& position,
+                                  BilinearWeights& bilinear,
                                   int levels = std::numeric_limits<int>::max()) const {
     const Chart& lattice = charts_[chart];
-    const glm::vec2 place = charts_.place(chart).of(position);
-    const glm::uvec2 coarse = charts_.cell_at(chart, place);
+    const glm::vec2 at = charts_.lattice(chart).of(position);
+    const glm::uvec2 coarse = charts_.cell_at(chart, at);
     std::uint32_t x = coarse.x, y = coarse.y;
-    glm::vec2 within = glm::clamp(place - glm::vec2(x, y), 0.0f, 1.0f);
+    glm::vec2 within = glm::clamp(at - glm::vec2(x, y), 0.0f, 1.0f);
     const std::uint32_t root = lattice.first_root + (y >> 3) * lattice.root_columns() + (x >> 3);
     x &= 7, y &= 7;
-    blend.node[0] = none;
+    bilinear.node[0] = none;
     std::uint32_t index = root_[root];
     if (index == none) return MissingCell{root, y * 8 + x, false};
     for (;;) {
@@ -69,7 +70,7 @@ class Tiles {
       if (split) {
         const std::uint32_t child_cell = ((y & 3) * 2 + up) * 8 + (x & 3) * 2 + right;
         if ((tiles_[tile.child[quadrant]].known >> child_cell & 1) == 0) {
-          blend_of(tile, x, y, within, blend);
+          bilinear_of(tile, x, y, within, bilinear);
           return MissingCell{tile.child[quadrant], child_cell, true};
         }
         index = tile.child[quadrant];
@@ -77,7 +78,7 @@ class Tiles {
         within = doubled - glm::vec2(right, up);
         continue;
       }
-      blend_of(tile, x, y, within, blend);
+      bilinear_of(tile, x, y, within, bilinear);
       return std::nullopt;
     }
   }
@@ -109,11 +110,11 @@ class Tiles {
   }
 
  private:
-  static void blend_of(const Tile& tile, std::uint32_t x, std::uint32_t y, const glm::vec2& within,
-                       NodeBlend& blend) {
-    blend.node = tile.corners(y * 8 + x);
-    blend.weight = {(1 - within.x) * (1 - within.y), within.x * (1 - within.y),
-                    (1 - within.x) * within.y, within.x * within.y};
+  static void bilinear_of(const Tile& tile, std::uint32_t x, std::uint32_t y,
+                          const glm::vec2& within, BilinearWeights& bilinear) {
+    bilinear.node = tile.corners(y * 8 + x);
+    bilinear.weight = {(1 - within.x) * (1 - within.y), within.x * (1 - within.y),
+                       (1 - within.x) * within.y, within.x * within.y};
   }
 
   std::uint32_t add(std::uint32_t chart, std::uint32_t level, std::uint32_t x, std::uint32_t y);

@@ -168,14 +168,14 @@ void OutputFile::write(const void* bytes, std::size_t count) {
   std::size_t written = 0;
   while (written < count && write_error_ == 0) {
     const ssize_t result = ::pwrite(descriptor_, static_cast<const char*>(bytes) + written,
-                                    count - written, static_cast<off_t>(place_ + written));
+                                    count - written, static_cast<off_t>(position_ + written));
     if (result > 0) {
       written += static_cast<std::size_t>(result);
     } else if (result == 0 || errno != EINTR) {
       write_error_ = result == 0 ? ENOSPC : errno;
     }
   }
-  place_ += written;
+  position_ += written;
 }
 
 void write_file(const fs::path& file, std::string_view content) {

@@ -63,8 +63,8 @@ class OutputFile {
   /// At the position of the last write's end, or that of `seek`. Does nothing after a failure: what
   /// encoders cannot report is reported by `commit`.
   void write(const void* bytes, std::size_t count);
-  std::uint64_t place() const { return place_; }
-  void seek(std::uint64_t place) { place_ = place; }
+  std::uint64_t position() const { return position_; }
+  void seek(std::uint64_t position) { position_ = position; }
   /// Whether a write has failed.
   bool failed() const { return write_error_ != 0; }
 
@@ -73,7 +73,7 @@ class OutputFile {
   std::filesystem::path target_;     ///< links resolved
   std::filesystem::path temporary_;  ///< empty once renamed
   int descriptor_ = -1;
-  std::uint64_t place_ = 0;
+  std::uint64_t position_ = 0;
   int write_error_ = 0;  ///< errno of the first failed write
 };
 

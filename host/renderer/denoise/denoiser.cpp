@@ -33,7 +33,7 @@ void add(DenoisingGuides& guides, const Scene& scene, const PrimaryHitBatch& bat
     guides.albedo[pixel] += hits.throughput[i] * (hits.diffuse_albedo[i] + specular);
     guides.normal[pixel] += mean(hits.throughput[i]) * normal;
   }
-  for (const SeenEmission& seen : batch.emission) {
+  for (const VisibleEmission& seen : batch.emission) {
     guides.albedo[seen.pixel] += glm::vec3(sample_weight);
   }
 }

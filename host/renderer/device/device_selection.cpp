@@ -48,25 +48,25 @@ std::optional<std::size_t> best(std::span<const DeviceInfo> devices,
   return found;
 }
 
-std::optional<std::size_t> find(std::span<const DeviceInfo> devices, const std::string& wanted) {
-  if (wanted.empty()) {
+std::optional<std::size_t> find(std::span<const DeviceInfo> devices, const std::string& requested) {
+  if (requested.empty()) {
     return best(
         devices, [](const DeviceInfo&) { return true; }, default_rank);
   }
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    if (devices[i].id == wanted) return i;
+    if (devices[i].id == requested) return i;
   }
-  if (wanted.find_first_not_of("0123456789") == std::string::npos) {
-    const auto index = parse_number<std::size_t>(wanted);
+  if (requested.find_first_not_of("0123456789") == std::string::npos) {
+    const auto index = parse_number<std::size_t>(requested);
     return index && *index < devices.size() ? index : std::nullopt;
   }
-  if (wanted == "cpu" || wanted == "gpu") {
-    const auto type = wanted == "cpu" ? DeviceType::cpu : DeviceType::gpu;
+  if (requested == "cpu" || requested == "gpu") {
+    const auto type = requested == "cpu" ? DeviceType::cpu : DeviceType::gpu;
     return best(devices, [&](const DeviceInfo& device) { return device.type == type; });
   }
   return best(devices, [&](const DeviceInfo& device) {
-    return lower(device.name).find(wanted) != std::string::npos ||
-           lower(device.platform).find(wanted) != std::string::npos;
+    return lower(device.name).find(requested) != std::string::npos ||
+           lower(device.platform).find(requested) != std::string::npos;
   });
 }
 
@@ -119,12 +119,12 @@ Partition take_partition(std::string& name) {
 /// Compute units of each sub-device. Parts that cannot be equal differ by one unit.
 std::vector<std::uint32_t> compute_units_of(const Partition& partition, const DeviceInfo& device,
                                             const Source& source) {
-  const std::uint64_t wanted =
+  const std::uint64_t requested =
       std::accumulate(partition.compute_units.begin(), partition.compute_units.end(),
                       std::uint64_t{partition.equal_parts});
-  if (wanted > device.compute_units) {
-    source.refuse(fmt::format("asks for {} compute units, and {} {} has {}; ask for fewer", wanted,
-                              device.id, device.name, device.compute_units));
+  if (requested > device.compute_units) {
+    source.refuse(fmt::format("asks for {} compute units, and {} {} has {}; ask for fewer",
+                              requested, device.id, device.name, device.compute_units));
   }
   std::vector<std::uint32_t> units = partition.compute_units;
   for (std::uint32_t part = 0; part < partition.equal_parts; ++part) {

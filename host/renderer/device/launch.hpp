@@ -61,9 +61,10 @@ class Launch {
 /// Items of the next launch, from what the last one took: as many as take a tenth of a second, at
 /// most four times as many as the last, for the first launches of a kernel are slow.
 inline std::uint32_t next_launch(std::uint32_t last, double seconds) {
-  constexpr double wanted_seconds = 0.1, most_growth = 4;
+  constexpr double requested_seconds = 0.1, most_growth = 4;
   constexpr double least = 1024, most = 1u << 30;
-  const double growth = seconds > 0 ? std::min(wanted_seconds / seconds, most_growth) : most_growth;
+  const double growth =
+      seconds > 0 ? std::min(requested_seconds / seconds, most_growth) : most_growth;
   return static_cast<std::uint32_t>(std::clamp(last * growth, least, most));
 }
 

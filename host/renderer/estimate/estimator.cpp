@@ -80,9 +80,9 @@ struct Estimator::Impl {
             estimate::hit_bytes(store.needs, !store.normals.empty(), surface != nullptr) + outputs};
   }
 
-  /// The estimates of hits [first, first + count) become those of hits from `place` on in
+  /// The estimates of hits [first, first + count) become those of hits from `offset` on in
   /// `result`.
-  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t place,
+  void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t offset,
                 Estimates& result) {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
@@ -91,7 +91,7 @@ struct Estimator::Impl {
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
       query->estimate(page_hits, *estimates);
     });
-    estimates->read(result, place);
+    estimates->read(result, offset);
   }
 
   /// The neighbours of hits [first, first + count).

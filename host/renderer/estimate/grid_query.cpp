@@ -70,7 +70,7 @@ class GridQuery : public Query {
 
   device::Defines defines(const maps::MapPage& page) const {
     device::Defines defines = choice_.defines();
-    if (page.entry_normal.size() > 0) defines.set("NORMALS");
+    if (page.record_normal.size() > 0) defines.set("NORMALS");
     return defines;
   }
 

@@ -18,14 +18,15 @@ SurfaceBuffers::SurfaceBuffers(const maps::MapStore& store, const Scene& scene,
     centroid[t] = (corners[0] + corners[1] + corners[2]) / 3.0f;
   });
   device::Context& context = device::context_of(*store.device);
-  const std::vector<std::uint8_t> lit = lit_sheets(surface, store.landed);
+  const std::vector<std::uint8_t> lit = lit_components(surface, store.landed);
   std::vector<PhotileSurfaceLeaf> marked = surface.leaves;
-  const auto mark = [&](std::uint32_t& sheet) {
-    if ((sheet & PHOTILE_SHEET_UNLIT) == 0 && lit[sheet] == 0) sheet |= PHOTILE_SHEET_UNLIT;
+  const auto mark = [&](std::uint32_t& component) {
+    if ((component & PHOTILE_COMPONENT_UNLIT) == 0 && lit[component] == 0)
+      component |= PHOTILE_COMPONENT_UNLIT;
   };
   for (PhotileSurfaceLeaf& leaf : marked) {
-    for (std::uint32_t& sheet : leaf.front_sheet) mark(sheet);
-    for (std::uint32_t& sheet : leaf.back_sheet) mark(sheet);
+    for (std::uint32_t& component : leaf.front_component) mark(component);
+    for (std::uint32_t& component : leaf.back_component) mark(component);
   }
   nodes = context.upload(std::span(surface.nodes), "surface tree");
   leaves = context.upload(std::span<const PhotileSurfaceLeaf>(marked), "surface pieces");
@@ -49,9 +50,9 @@ PhotileHitSurface clipped_surface(const SurfaceBuffers& surface, std::uint32_t o
   PhotileHitSurface at{};
   store(at.normal, index.normal[oriented_face]);
   store(at.inwards, surface.centroid[triangle] - position);
-  at.facet = index.facet[triangle];
+  at.region = index.region[triangle];
   at.triangle = triangle;
-  at.sheet = index.sheet_at(oriented_face, position);
+  at.component = index.component_at(oriented_face, position);
   return at;
 }
 

@@ -17,8 +17,8 @@
 namespace photile::estimate {
 
 struct SurfaceBuffers {
-  /// The sheets of `surface` on which the photons of `store` landed count as lit. A reference to
-  /// `surface` is kept.
+  /// The components of `surface` on which the photons of `store` landed count as lit. A reference
+  /// to `surface` is kept.
   SurfaceBuffers(const maps::MapStore& store, const Scene& scene, const SurfaceIndex& surface);
 
   const SurfaceIndex& index;
@@ -42,9 +42,8 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 
 /// The hits [first, first + maps.size()).
 ///   maps      of those hits
-///   normals   per oriented face, if a map is mixed (maps::MapStore::normals), else empty
-///   surface   where areas are clipped, else null
-///   needs     of which `glossy` asks for lobes
+///   normals   per oriented face, if a map is filtered by normals (maps::MapStore::normals); or
+///   empty surface   where areas are clipped, else null needs     of which `glossy` asks for lobes
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
                        const SurfaceBuffers* surface, const SceneNeeds& needs);

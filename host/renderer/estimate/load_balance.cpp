@@ -139,14 +139,14 @@ void LoadBalance::record(std::size_t device, std::size_t hits, double seconds) {
   work.seconds += seconds;
 }
 
-std::vector<double> LoadBalance::shares() const {
+std::vector<double> LoadBalance::fractions() const {
   std::size_t all = 0;
   for (const Work& work : work_) all += work.hits;
-  std::vector<double> shares;
+  std::vector<double> fractions;
   for (const Work& work : work_) {
-    shares.push_back(all == 0 ? 0 : static_cast<double>(work.hits) / static_cast<double>(all));
+    fractions.push_back(all == 0 ? 0 : static_cast<double>(work.hits) / static_cast<double>(all));
   }
-  return shares;
+  return fractions;
 }
 
 }  // namespace photile::estimate

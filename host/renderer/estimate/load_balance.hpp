@@ -36,7 +36,7 @@ class LoadBalance {
   void end_round() { ++rounds_; }
 
   /// Each device's part of all hits so far, in [0, 1]; together 1, or 0 without hits.
-  std::vector<double> shares() const;
+  std::vector<double> fractions() const;
 
  private:
   struct Work {

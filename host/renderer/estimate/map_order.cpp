@@ -35,11 +35,11 @@ Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,
     restore_rows(estimates.radiance, order, light_count);
     return estimates;
   }
-  std::vector<std::uint32_t> place(order.size());  // of each hit among the reordered
-  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  std::vector<std::uint32_t> position_of(order.size());  // of each hit among the reordered
+  for (std::uint32_t i = 0; i < order.size(); ++i) position_of[order[i]] = i;
   std::vector<std::uint32_t> slots;
   std::vector<std::uint64_t> first{0};
-  for (const std::uint32_t i : place) {
+  for (const std::uint32_t i : position_of) {
     for (std::uint64_t slot = estimates.first[i]; slot < estimates.first[i + 1]; ++slot) {
       slots.push_back(static_cast<std::uint32_t>(slot));
     }

@@ -24,14 +24,15 @@ std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scen
                                            Photons photons, const NeighbourGroups& groups,
                                            const PhotonMapParameters& parameters,
                                            Progress& progress,
-                                           std::span<const std::uint8_t> wanted) {
+                                           std::span<const std::uint8_t> requested) {
   std::vector<std::optional<PhotonMaps>> built(devices.size());
   for_each_device(devices, progress, [&](std::size_t i, Progress& shared) {
     if (devices.size() == 1) {
-      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared, wanted);
+      built[i].emplace(devices[i], scene, std::move(photons), groups, parameters, shared,
+                       requested);
     } else {
       built[i].emplace(devices[i], scene, std::as_const(photons), groups, parameters, shared,
-                       wanted);
+                       requested);
     }
   });
   std::vector<PhotonMaps> maps;
@@ -120,7 +121,7 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
 
 void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result) {
   const std::vector<std::uint32_t> lit =
-      SeenPhotons::lit(result, points.size(), layer_powers_.size());
+      VisiblePhotons::lit(result, points.size(), layer_powers_.size());
   for (std::size_t first = 0; first < lit.size(); first += lists_at_a_time) {
     const std::span<const std::uint32_t> chosen =
         std::span(lit).subspan(first, std::min(lists_at_a_time, lit.size() - first));

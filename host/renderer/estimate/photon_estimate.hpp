@@ -9,7 +9,7 @@
 
 #include "estimate/light_at_points.hpp"
 #include "estimate/load_balance.hpp"
-#include "estimate/seen_photons.hpp"
+#include "estimate/visible_photons.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_maps.hpp"
 #include "trace/hit_batch.hpp"
@@ -18,12 +18,12 @@ namespace photile::estimate {
 
 /// Builds the same maps on every device, all at once; for one alone, photons are given back on the
 /// way. Errors: as PhotonMaps, see for_each_device.
-///   wanted   as PhotonMaps has it
+///   requested   as PhotonMaps has it
 std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
                                            Photons photons, const NeighbourGroups& groups,
                                            const PhotonMapParameters& parameters,
                                            Progress& progress,
-                                           std::span<const std::uint8_t> wanted = {});
+                                           std::span<const std::uint8_t> requested = {});
 
 /// Light by the k nearest photons of each point, found on every device at once. On devices of one
 /// kind the result is that of one device, bit for bit, however the points are shared. Points are
@@ -35,7 +35,7 @@ class PhotonEstimate : public LightAtPoints {
     std::vector<EstimateParameters> levels;  ///< ascending in k: points choose one, each its own
     /// Tells which photons of these maps are visible from a point: hidden ones do not count. Null:
     /// all count.
-    std::shared_ptr<const SeenPhotons> seen = nullptr;
+    std::shared_ptr<const VisiblePhotons> seen = nullptr;
   };
   /// References are kept.
   ///   layer_powers   by which points choose their own k
@@ -49,7 +49,7 @@ class PhotonEstimate : public LightAtPoints {
   std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
 
   /// Each device's part of all points so far.
-  std::vector<double> shares() const { return levels_.back().balance.shares(); }
+  std::vector<double> fractions() const { return levels_.back().balance.fractions(); }
 
  private:
   /// Estimators of one k, one for each device.
@@ -73,7 +73,7 @@ class PhotonEstimate : public LightAtPoints {
   trace::HitCells cells_;         ///< of the scene
   std::vector<PhotonMaps> maps_;  ///< on each device
   std::vector<Level> levels_;     ///< ascending in k
-  std::shared_ptr<const SeenPhotons> seen_;
+  std::shared_ptr<const VisiblePhotons> seen_;
 };
 
 }  // namespace photile::estimate

@@ -80,13 +80,13 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// What kernels are told of a page's hits.
+/// What kernels get to know of a page's hits.
 inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
                              const QueryParameters& parameters) {
   return {.first_hit = hits.first,
           .hit_count = hits.count,
           .first_map = hits.page.first_map,
-          .entry_stride = hits.page.entry_stride,
+          .record_stride = hits.page.record_stride,
           .k = parameters.neighbours,
           .radius = parameters.radius,
           .least_radius = parameters.least_radius,
@@ -98,9 +98,9 @@ inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
 inline void set_page_arguments(device::Launch& launch, const PageHits& hits) {
   launch.set("hits", hits.hits.hits)
       .set("hit_surfaces", hits.hits.surfaces)
-      .set("entry_photon", hits.page.entry_photon)
-      .set("entry_position", hits.page.entry_position)
-      .set("entry_normal", hits.page.entry_normal);
+      .set("record_photon", hits.page.record_photon)
+      .set("record_position", hits.page.record_position)
+      .set("record_normal", hits.page.record_normal);
 }
 
 /// Sets those of every kernel of the estimate. What the scene does not need is empty.
@@ -109,9 +109,9 @@ inline void set_estimate_arguments(device::Launch& launch, const PageHits& hits,
                                    const EstimateBuffers& estimates) {
   set_page_arguments(launch, hits);
   launch.set("hit_lobes", hits.hits.lobes)
-      .set("entry_flux", hits.page.entry_flux)
-      .set("entry_light", hits.page.entry_light)
-      .set("entry_incoming", hits.page.entry_incoming)
+      .set("record_flux", hits.page.record_flux)
+      .set("record_light", hits.page.record_light)
+      .set("record_incoming", hits.page.record_incoming)
       .set("irradiance", estimates.irradiance)
       .set("radiance", estimates.radiance)
       .set("slot_light", estimates.slot_light)

@@ -75,7 +75,7 @@ namespace photile::estimate {
 
 namespace {
 
-/// Near entries listed before they are added, where they are: about all of k = 50.
+/// Near records listed before they are added, where they are: about all of k = 50.
 constexpr int near_capacity = 128;
 
 int rounded_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
@@ -102,10 +102,10 @@ device::Defines Specialisation::defines() const {
   if (private_distances) defines.set("PRIVATE_DISTANCES");
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
-  // Lanes list the near entries of a hit all at once.
+  // Lanes list the near records of a hit all at once.
   defines.set("NEAR_CAPACITY", static_cast<long long>(lanes ? neighbours : near_capacity));
   defines.set("HITS_PER_ITEM", static_cast<long long>(hits_per_item));
-  maps::set_entry_defines(defines, needs);
+  maps::set_record_defines(defines, needs);
   sums.set_defines(defines);
   if (needs.normal_maps) defines.set("NORMAL_MAPS");
   return defines;

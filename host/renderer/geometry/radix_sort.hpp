@@ -21,30 +21,30 @@ namespace photile::geometry {
 template <class Item, class KeyOf>
 void radix_sort(std::vector<Item>& items, int bits, const KeyOf& key_of) {
   constexpr int digit_bits = 8;  // as many positions to write to as caches and TLBs keep at hand
-  constexpr std::size_t digits = std::size_t{1} << digit_bits, least_share = 4096;
+  constexpr std::size_t digits = std::size_t{1} << digit_bits, least_chunk = 4096;
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-  const std::size_t shares = std::clamp<std::size_t>(items.size() / least_share, 1, threads);
-  const auto begin_of = [&](std::size_t share) { return share * items.size() / shares; };
+  const std::size_t chunks = std::clamp<std::size_t>(items.size() / least_chunk, 1, threads);
+  const auto begin_of = [&](std::size_t chunk) { return chunk * items.size() / chunks; };
 
   std::vector<Item> moved(items.size());
-  std::vector<std::array<std::size_t, digits>> next(shares);  // position of a digit's next item
+  std::vector<std::array<std::size_t, digits>> next(chunks);  // position of a digit's next item
   for (int shift = 0; shift < bits; shift += digit_bits) {
     const auto digit_of = [&](const Item& item) {
       return static_cast<std::size_t>(key_of(item) >> shift) & (digits - 1);
     };
-    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
-      next[share].fill(0);
-      for (std::size_t i = begin_of(share); i < begin_of(share + 1); ++i) {
-        ++next[share][digit_of(items[i])];
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+      next[chunk].fill(0);
+      for (std::size_t i = begin_of(chunk); i < begin_of(chunk + 1); ++i) {
+        ++next[chunk][digit_of(items[i])];
       }
     });
-    std::size_t place = 0;
+    std::size_t position = 0;
     for (std::size_t digit = 0; digit < digits; ++digit) {
-      for (auto& of_share : next) place += std::exchange(of_share[digit], place);
+      for (auto& of_chunk : next) position += std::exchange(of_chunk[digit], position);
     }
-    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
-      for (std::size_t i = begin_of(share); i < begin_of(share + 1); ++i) {
-        moved[next[share][digit_of(items[i])]++] = items[i];
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+      for (std::size_t i = begin_of(chunk); i < begin_of(chunk + 1); ++i) {
+        moved[next[chunk][digit_of(items[i])]++] = items[i];
       }
     });
     items.swap(moved);

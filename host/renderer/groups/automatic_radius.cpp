@@ -60,8 +60,9 @@ PhotonBlocks::PhotonBlocks(const std::vector<glm::vec3>& positions, std::size_t 
     taken[i] = positions[spread_index(i, size, positions.size())];
   }
   const std::vector<CodedPhoton> coded = along_curve(taken);
-  place_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) place_[coded[i].photon] = static_cast<std::uint32_t>(i);
+  position_on_curve_.resize(size);
+  for (std::size_t i = 0; i < size; ++i)
+    position_on_curve_[coded[i].photon] = static_cast<std::uint32_t>(i);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float>& values = coordinate_[axis];
     for (const CodedPhoton& photon : coded) values.push_back(taken[photon.photon][axis]);
@@ -77,7 +78,7 @@ PhotonBlocks::PhotonBlocks(const std::vector<glm::vec3>& positions, std::size_t 
 
 float PhotonBlocks::squared_distance(std::size_t i, std::size_t m,
                                      std::vector<float>& scratch) const {
-  const std::size_t own = place_[i];
+  const std::size_t own = position_on_curve_[i];
   const glm::vec3 query(coordinate_[0][own], coordinate_[1][own], coordinate_[2][own]);
   // No farther than the m-th of those near on the curve.
   const std::size_t window = 2 * m + block_size;
@@ -173,12 +174,13 @@ double automatic_radius(const Photons& photons, int k) {
   }
   const groups::PhotonBlocks subsample(photons.of_all ? photons.of_all->spread : photons.position,
                                        groups::max_subsample);
-  const double share = static_cast<double>(subsample.size()) / static_cast<double>(photons.total());
+  const double fraction =
+      static_cast<double>(subsample.size()) / static_cast<double>(photons.total());
   const double rank =
-      std::clamp(std::round(k * share), 1.0, static_cast<double>(subsample.size() - 1));
+      std::clamp(std::round(k * fraction), 1.0, static_cast<double>(subsample.size() - 1));
   // With fewer than k others this extrapolates from the farthest, as if its density went on.
   const double squared = median_squared_distance(subsample, static_cast<std::size_t>(rank)) *
-                         share * gamma_median(k) / gamma_median(rank);
+                         fraction * gamma_median(k) / gamma_median(rank);
   if (!(squared > 0)) {
     throw UsageError(
         fmt::format("automatic radius: most of the {} stored photons lie in the same "

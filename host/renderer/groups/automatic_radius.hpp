@@ -27,7 +27,7 @@ class PhotonBlocks {
   /// Takes `most` of the positions, in equal steps, or all where they are fewer.
   PhotonBlocks(const std::vector<glm::vec3>& positions, std::size_t most);
 
-  std::size_t size() const { return place_.size(); }
+  std::size_t size() const { return position_on_curve_.size(); }
 
   /// Squared distance from photon i of the subsample to its m-th nearest, itself the 0th; m is
   /// below size().
@@ -42,7 +42,7 @@ class PhotonBlocks {
   void append_distances(const glm::vec3& query, std::size_t first, std::size_t last,
                         std::vector<float>& distances) const;
 
-  std::vector<std::uint32_t> place_;              ///< of each photon along the curve
+  std::vector<std::uint32_t> position_on_curve_;  ///< of each photon
   std::array<std::vector<float>, 3> coordinate_;  ///< per axis, along the curve
   std::array<std::vector<float>, 3> low_, high_;  ///< per axis, of the blocks
 };

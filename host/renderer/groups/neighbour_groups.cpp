@@ -147,10 +147,10 @@ std::vector<Chunk> find_chunks(std::size_t triangle_count, double radius,
     for (std::size_t triangle = first; triangle < last; ++triangle) {
       const std::size_t before = neighbours.size();
       std::uint64_t members = 0;
-      const auto wanted = [&](std::size_t side) {
+      const auto requested = [&](std::size_t side) {
         return landed.empty() || landed[2 * triangle + side] != 0;
       };
-      if (wanted(0) || wanted(1)) {
+      if (requested(0) || requested(1)) {
         append_neighbours(static_cast<std::uint32_t>(triangle), neighbours);
       }
       // Both groups have one size: what agrees with a normal is the mirror image of what agrees
@@ -161,7 +161,7 @@ std::vector<Chunk> find_chunks(std::size_t triangle_count, double radius,
           [](std::uint64_t sum, std::uint32_t neighbour) { return sum + members_of(neighbour); });
       chunks[c].list_sizes.push_back(static_cast<std::uint32_t>(neighbours.size() - before));
       for (const std::size_t side : {0u, 1u}) {
-        chunks[c].group_sizes.push_back(wanted(side) ? group_size : 0);
+        chunks[c].group_sizes.push_back(requested(side) ? group_size : 0);
         members += chunks[c].group_sizes.back();
       }
       if ((total_members += members) > limits::max_group_members) {

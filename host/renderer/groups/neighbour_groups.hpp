@@ -55,7 +55,7 @@ class ProximityTest {
 inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 
 /// The normal test of photile::normals_agree for both pairs of sides. In single precision, as
-/// kernels/structures/search.clh filters: facets of a cylinder may meet the angle within rounding,
+/// kernels/structures/search.clh filters: faces of a cylinder may meet the angle within rounding,
 /// and every structure must decide alike.
 inline std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
   const glm::vec3 u(a), v(b);
@@ -73,9 +73,9 @@ void check(const NeighbourGroupParameters& parameters);
 
 /// Groups of both sides of all triangles, searched in parallel. Errors: UsageError when they have
 /// more members than limits.hpp allows; Interrupted.
-///   landed   per oriented face: 1 where a group is wanted, 0 where an empty one will do; empty:
+///   landed   per oriented face: 1 where a group is requested, 0 where an empty one will do; empty:
 ///   all
-///            are wanted
+///            are requested
 NeighbourGroups collect_groups(std::size_t triangle_count,
                                const NeighbourGroupParameters& parameters,
                                const AppendNeighbours& append_neighbours, Progress& progress,

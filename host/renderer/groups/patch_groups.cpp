@@ -102,15 +102,15 @@ class PatchSearch {
   /// Which sides of the patch have a triangle near the box that agrees; `found` are known.
   std::uint32_t sides_near(const glm::dvec3& normal, const Box& box, std::uint32_t patch,
                            std::uint32_t found) const {
-    const std::uint32_t wanted = found | cones_[patch].sides_within(normal);
-    if (found == wanted) return found;
+    const std::uint32_t requested = found | cones_[patch].sides_within(normal);
+    if (found == requested) return found;
     const std::span<const Box> boxes = members_of(boxes_, patch);
     const std::span<const glm::dvec3> normals = members_of(normals_, patch);
     const auto visit = [&](std::uint32_t member) {
       if (squared_distance(boxes[member], box) <= limit_) {
         found |= agreeing_sides(normal, normals[member], cos_angle_);
       }
-      return found == wanted;
+      return found == requested;
     };
     if (boxes.size() >= fewest_for_tree) {
       trees_[patch].visit_within(box, limit_, visit);

@@ -26,27 +26,27 @@ class MemoryStream : public Imf::IStream {
   explicit MemoryStream(std::span<const unsigned char> bytes) : IStream("memory"), bytes_(bytes) {}
 
   bool read(char* to, int count) override {
-    const auto wanted = static_cast<std::uint64_t>(count);
-    if (place_ > bytes_.size() || wanted > bytes_.size() - place_) {
+    const auto requested = static_cast<std::uint64_t>(count);
+    if (position_ > bytes_.size() || requested > bytes_.size() - position_) {
       throw DecodeError("the file ends too early");
     }
-    if (wanted > 0) std::memcpy(to, bytes_.data() + place_, wanted);
-    place_ += wanted;
-    return place_ < bytes_.size();
+    if (requested > 0) std::memcpy(to, bytes_.data() + position_, requested);
+    position_ += requested;
+    return position_ < bytes_.size();
   }
-  std::uint64_t tellg() override { return place_; }
-  void seekg(std::uint64_t place) override { place_ = place; }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override { position_ = position; }
 
  private:
   std::span<const unsigned char> bytes_;
-  std::uint64_t place_ = 0;
+  std::uint64_t position_ = 0;
 };
 
 /// The colours of the root, so that viewers and photile find the picture first.
 int rank(const std::string& channel) {
   static constexpr std::string_view root = "RGBA";
-  const std::size_t place = channel.size() == 1 ? root.find(channel) : std::string_view::npos;
-  return static_cast<int>(std::min(place, root.size()));
+  const std::size_t position = channel.size() == 1 ? root.find(channel) : std::string_view::npos;
+  return static_cast<int>(std::min(position, root.size()));
 }
 
 /// Rows that are compressed together.

@@ -44,7 +44,7 @@ Glare find_glare(const LightLayers& picture, const LightLayers& reflections, con
                      LightGlare& its = glare.lights[light];
                      its.peak = std::max(its.peak, reflected);
                      if (reflected <= glare.limit) return;
-                     its.share += 1.0 / static_cast<double>(glare.marks.size());
+                     its.fraction += 1.0 / static_cast<double>(glare.marks.size());
                      if (reflected <= brightest) return;
                      brightest = reflected;
                      glare.marks[pixel] = static_cast<int>(light);
@@ -78,9 +78,10 @@ std::vector<std::string> glare_lines(const Glare& glare, PowerUnit unit) {
   const char* symbol = unit == PowerUnit::lumen ? "cd/m2" : "W/(m2 sr)";
   std::vector<std::string> lines;
   for (const LightGlare& light : glare.lights) {
-    if (!(light.share > 0)) continue;
+    if (!(light.fraction > 0)) continue;
     lines.push_back(fmt::format("glare: {}: {:.2g}% of the picture above {:.4g} {}, up to {:.4g}",
-                                light.light, 100 * light.share, glare.limit, symbol, light.peak));
+                                light.light, 100 * light.fraction, glare.limit, symbol,
+                                light.peak));
   }
   if (lines.empty()) {
     lines.push_back(fmt::format("glare: no reflection is above {:.4g} {}", glare.limit, symbol));

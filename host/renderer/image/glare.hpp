@@ -14,8 +14,8 @@ namespace photile::image {
 /// The reflection of one light.
 struct LightGlare {
   std::string light;
-  double share = 0;  ///< of the pixels, in [0, 1], whose reflection of it is above the limit
-  double peak = 0;   ///< brightest of its reflections: cd/m2 or W/(m2 sr)
+  double fraction = 0;  ///< of the pixels, in [0, 1], whose reflection of it is above the limit
+  double peak = 0;      ///< brightest of its reflections: cd/m2 or W/(m2 sr)
 };
 
 struct Glare {

@@ -201,12 +201,12 @@ class MixedPicture : public LayeredPicture {
 
   void read_sparse_row(std::size_t light, int y, std::size_t offset, LightRows& rows) const {
     const LightLayers::Row& row = source_.rows[static_cast<std::size_t>(y)];
-    const auto wanted = static_cast<std::uint16_t>(light);
+    const auto requested = static_cast<std::uint16_t>(light);
     for (std::size_t x = 0; x + 1 < row.first.size(); ++x) {
       const auto begin = row.light.begin() + row.first[x],
                  end = row.light.begin() + row.first[x + 1];
-      const auto found = std::lower_bound(begin, end, wanted);
-      if (found == end || *found != wanted) continue;
+      const auto found = std::lower_bound(begin, end, requested);
+      if (found == end || *found != requested) continue;
       const auto i = static_cast<std::size_t>(found - row.light.begin());
       set(rows, offset + x, light, row.radiance[i], row.illuminance[i]);
     }

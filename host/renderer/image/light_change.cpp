@@ -107,14 +107,14 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
   }
   if (const auto* temperature = std::get_if<SetTemperature>(&request)) {
     const glm::dvec3 own(light.color);
-    const glm::dvec3 wanted = scene::color_of_temperature(temperature->kelvin);
+    const glm::dvec3 requested = scene::color_of_temperature(temperature->kelvin);
     for (int c = 0; c < 3; ++c) {
-      if (own[c] > 0.0 || wanted[c] == 0.0) continue;
+      if (own[c] > 0.0 || requested[c] == 0.0) continue;
       throw UsageError(fmt::format(
           "light '{}' lacks a colour that {} K has; give the temperature when it is rendered",
           light.name, temperature->kelvin));
     }
-    light.tint = glm::vec3(wanted / glm::max(own, glm::dvec3(1e-30)));
+    light.tint = glm::vec3(requested / glm::max(own, glm::dvec3(1e-30)));
     return;
   }
   double power = light.power;

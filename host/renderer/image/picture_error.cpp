@@ -10,8 +10,8 @@
 namespace photile {
 namespace {
 
-constexpr double lamp_level = 20;     ///< medians
-constexpr double floor_share = 0.01;  ///< of the squared mean, below the squared error
+constexpr double light_level = 20;       ///< medians
+constexpr double floor_fraction = 0.01;  ///< of the squared mean, below the squared error
 constexpr int tiles_per_height = 16;
 constexpr double dark_tile = 0.1;  ///< of the mean
 constexpr double middle_grey = 0.18;
@@ -94,8 +94,8 @@ void find_worst_region(const Image& picture, const Image& reference,
     const int x = side * (static_cast<int>(i) % columns),
               y = side * (static_cast<int>(i) / columns);
     error.worst_region = deviation;
-    error.worst_place = {x, y, std::min(side, reference.width - x),
-                         std::min(side, reference.height - y)};
+    error.worst_area = {x, y, std::min(side, reference.width - x),
+                        std::min(side, reference.height - y)};
   }
 }
 
@@ -128,13 +128,13 @@ RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
   std::vector<double> sorted = luminances;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   if (middle != sorted.end()) std::nth_element(sorted.begin(), middle, sorted.end());
-  const double lamp = middle != sorted.end() ? lamp_level * *middle : 0.0;
+  const double least = middle != sorted.end() ? light_level * *middle : 0.0;
 
-  std::vector<bool> lamps(luminances.size());
-  for (std::size_t pixel = 0; pixel < lamps.size(); ++pixel) {
-    lamps[pixel] = !(luminances[pixel] <= lamp);
+  std::vector<bool> lights(luminances.size());
+  for (std::size_t pixel = 0; pixel < lights.size(); ++pixel) {
+    lights[pixel] = !(luminances[pixel] <= least);
   }
-  counts_ = grown(lamps, reference.width, reference.height);
+  counts_ = grown(lights, reference.width, reference.height);
   counts_.flip();
   double sum = 0;
   for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {
@@ -151,7 +151,7 @@ RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
     if (!counts_[pixel]) continue;
     for (std::size_t channel = 0; channel < 3; ++channel) {
       const double value = (*planes[channel])[pixel];
-      divisor_[3 * pixel + channel] = value * value + floor_share * mean_ * mean_;
+      divisor_[3 * pixel + channel] = value * value + floor_fraction * mean_ * mean_;
     }
   }
 }

@@ -93,7 +93,7 @@ std::vector<unsigned char> bytes_of(const fs::path& file) {
   return bytes;
 }
 
-/// Interleaved values as planes of floats; integers as shares of the largest.
+/// Interleaved values as planes of floats; integers as fractions of the largest.
 std::vector<float> planes_of(const Pixels& pixels, std::size_t channels) {
   return std::visit(
       [&](const auto& values) {
@@ -192,13 +192,13 @@ void PictureFile::add_channel(const ExrInput::Part& part, std::size_t index) {
     refuse(fmt::format("has more than {} channels; leave some out", limits::max_layered_channels));
   }
   header_.channel_names.push_back(name);
-  places_.push_back({parts_ - 1, index});
+  slots_.push_back({parts_ - 1, index});
 }
 
 std::vector<std::size_t> PictureFile::first_channels() const {
   std::vector<std::size_t> channels;
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (static_cast<std::size_t>(places_[i].part) == channels.size()) channels.push_back(i);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    if (static_cast<std::size_t>(slots_[i].part) == channels.size()) channels.push_back(i);
   }
   return channels;
 }
@@ -216,10 +216,10 @@ void PictureFile::check_total() const {
 }
 
 std::vector<float> PictureFile::read(std::size_t channel, int first, int end) {
-  const Place& place = places_[channel];
-  if (block_.part != place.part || first < block_.first || end > block_.end) {
+  const Slot& slot = slots_[channel];
+  if (block_.part != slot.part || first < block_.first || end > block_.end) {
     try {
-      decode(place.part, first, end);
+      decode(slot.part, first, end);
     } catch (const Error&) {
       throw;
     } catch (const std::exception& error) {  // a decoder's own, or no memory for what it announces
@@ -229,7 +229,7 @@ std::vector<float> PictureFile::read(std::size_t channel, int first, int end) {
   const auto width = static_cast<std::size_t>(header_.width),
              rows = static_cast<std::size_t>(block_.end - block_.first);
   const float* const begin =
-      &block_.planes[(place.index * rows + static_cast<std::size_t>(first - block_.first)) * width];
+      &block_.planes[(slot.index * rows + static_cast<std::size_t>(first - block_.first)) * width];
   return {begin, begin + static_cast<std::size_t>(end - first) * width};
 }
 

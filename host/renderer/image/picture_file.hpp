@@ -65,7 +65,7 @@ class PictureFile : public ChannelRows {
 
  private:
   /// Where a channel is.
-  struct Place {
+  struct Slot {
     int part;
     std::size_t index;  ///< among ExrInput::Part::channels
   };
@@ -85,7 +85,7 @@ class PictureFile : public ChannelRows {
   std::filesystem::path file_;
   std::unique_ptr<ExrInput> exr_;  ///< null for other formats
   PictureHeader header_;
-  std::vector<Place> places_;    ///< per channel
+  std::vector<Slot> slots_;      ///< per channel
   std::set<std::string> names_;  ///< of the channels
   int parts_ = 0;
   std::size_t largest_part_ = 0;

@@ -68,8 +68,8 @@ class ExrStream : public Imf::OStream {
   void write(const char* bytes, int count) override {
     output_.write(bytes, static_cast<std::size_t>(count));
   }
-  std::uint64_t tellp() override { return output_.place(); }
-  void seekp(std::uint64_t place) override { output_.seek(place); }
+  std::uint64_t tellp() override { return output_.position(); }
+  void seekp(std::uint64_t position) override { output_.seek(position); }
 
  private:
   OutputFile& output_;

@@ -52,7 +52,7 @@ std::unique_ptr<PhotonPages> photon_pages(const Build& build, const CandidateMap
       [&](PhotonRange range) {
         progress.throw_if_cancelled();
         PhotonPage page = upload_photon_page(context, photons, candidates, range);
-        find_entered(build, page);
+        find_insertions(build, page);
         return page;
       },
       std::min(context.largest_buffer(), context.memory_limit() / 32));
@@ -70,13 +70,13 @@ void give_back_records(Photons& photons) {
 /// A page of maps takes at most half of the memory: beside it lie a page of photons and what the
 /// build needs, later a batch of hits and its estimates.
 PageLimits page_limits(const Context& context, const MapStore& store, bool normals) {
-  const std::uint64_t record = bytes_per_entry(store.needs) + (normals ? 3 * sizeof(float) : 0);
+  const std::uint64_t record = bytes_per_record(store.needs) + (normals ? 3 * sizeof(float) : 0);
   // Two cells for what photons_per_cell asks of one: grids reach beyond the photons.
   const double cells = 2.0 / store.parameters.photons_per_cell;
   const auto cell_bytes = static_cast<std::uint64_t>(std::ceil(sizeof(std::uint32_t) * cells));
   return {.largest_buffer = context.largest_buffer(),
           .page_bytes = context.memory_limit() / 2,
-          .bytes_per_entry = record + cell_bytes,
+          .bytes_per_record = record + cell_bytes,
           .bytes_per_map = sizeof(PhotileGrid) + sizeof(std::uint32_t)};
 }
 
@@ -89,29 +89,30 @@ std::string surface_name(std::uint32_t pair, const Patches& patches) {
 /// MapCounts on the host.
 struct CountedMaps {
   std::vector<std::uint32_t> photons;
-  std::vector<std::uint32_t> mixed;  ///< 1 where queries filter by normal; empty without patches
+  std::vector<std::uint32_t>
+      normal_filtered;  ///< 1 where queries filter by normal; empty without patches
 
-  bool any_mixed(const MapRange& range) const {
-    if (mixed.empty()) return false;
-    const auto maps = std::span(mixed).subspan(range.first, range.last - range.first);
+  bool any_normal_filtered(const MapRange& range) const {
+    if (normal_filtered.empty()) return false;
+    const auto maps = std::span(normal_filtered).subspan(range.first, range.last - range.first);
     return std::find(maps.begin(), maps.end(), 1u) != maps.end();
   }
 };
 
-///   release   as EntryGathering
+///   release   as RecordCopying
 MapPage build_page(const Build& build, const CountedMaps& counted, const MapRange& range,
                    const PhotonRelease* release) {
   const MapStore& store = build.store;
   MapPage page;
   page.first_map = range.first;
   page.last_map = range.last;
-  place_grids(build, page);
+  lay_out_grids(build, page);
   fill_cells(build, page);
-  gather_entries(build.kernels, store.needs, *build.photon_pages,
-                 {.normals = counted.any_mixed(range) ? &build.normals : nullptr,
-                  .release = release,
-                  .memory = memory_pages(store)},
-                 page);
+  copy_records(build.kernels, store.needs, *build.photon_pages,
+               {.normals = counted.any_normal_filtered(range) ? &build.normals : nullptr,
+                .release = release,
+                .memory = memory_pages(store)},
+               page);
   build.context.finish();
   return page;
 }
@@ -133,7 +134,7 @@ void build_pages(MapStore& store, const Build& build, const CountedMaps& counted
     progress.throw_if_cancelled();
     try {
       add_page(store, build_page(build, counted, *range, queue.empty() ? release : nullptr));
-      progress.advance(range->entries);
+      progress.advance(range->records);
     } catch (const DeviceMemoryError&) {
       if (build.photon_pages->released()) throw;
       // The larger one of what lies on the device together, if it can be made smaller.
@@ -152,7 +153,7 @@ void build_pages(MapStore& store, const Build& build, const CountedMaps& counted
 
 void add_page(MapStore& store, MapPage page) {
   PhotonMapStatistics& statistics = store.statistics;
-  statistics.references += page.entry_count;
+  statistics.references += page.record_count;
   statistics.cells += page.cell_count;
   statistics.device_bytes += page.device_bytes();
   ++statistics.pages;
@@ -170,23 +171,23 @@ std::vector<glm::vec3> face_normals(const Scene& scene) {
 }
 
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
-                          Photons* spent, const NeighbourGroups& groups,
-                          std::span<const std::uint8_t> wanted, Progress& progress) {
+                          Photons* consumed, const NeighbourGroups& groups,
+                          std::span<const std::uint8_t> requested, Progress& progress) {
   const Patches& patches = groups.patches;
   MapPlan plan;
   plan.reach = reach_of(scene, store.parameters.radius);
   plan.normals = !patches.empty();
   if (plan.normals) store.normals = face_normals(scene);
-  plan.candidates = find_candidate_maps(scene, photons, groups, plan.reach, wanted);
+  plan.candidates = find_candidate_maps(scene, photons, groups, plan.reach, requested);
   MapNumbers numbers = number_maps(plan.candidates, patches, 2 * scene.triangle_count());
   store.map_of = std::move(numbers.map_of);
   plan.surfaces = map_shapes(scene, patches, numbers.pairs, glm::radians(groups.angle_degrees));
   plan.density_ratio = of_numbered(numbers, photon_density_ratio(scene, photons, patches));
   plan.name_of = [&](std::uint32_t pair) { return surface_name(numbers.pairs[pair], patches); };
-  build_maps(store, photons, spent, std::move(plan), progress);
+  build_maps(store, photons, consumed, std::move(plan), progress);
 }
 
-void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan plan,
+void build_maps(MapStore& store, const Photons& photons, Photons* consumed, MapPlan plan,
                 Progress& progress) {
   Context& context = device::context_of(*store.device);
   Build build{.context = context,
@@ -206,17 +207,17 @@ void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan
   plan.surfaces = {};
   count_photons(build, plan.density_ratio.size());
   const CountedMaps counted{read_all(context, build.counts.photons),
-                            read_all(context, build.counts.mixed)};
+                            read_all(context, build.counts.normal_filtered)};
 
   PhotonMapStatistics& statistics = store.statistics;
-  statistics.mixed_maps =
-      static_cast<std::uint64_t>(std::count(counted.mixed.begin(), counted.mixed.end(), 1u));
-  PageQueue queue(counted.photons, page_limits(context, store, statistics.mixed_maps > 0),
+  statistics.normal_filtered_maps = static_cast<std::uint64_t>(
+      std::count(counted.normal_filtered.begin(), counted.normal_filtered.end(), 1u));
+  PageQueue queue(counted.photons, page_limits(context, store, statistics.normal_filtered_maps > 0),
                   [&](std::uint32_t map) { return plan.name_of(map / 2); });
   const PhotonRelease release{[&] { plan.candidates = CandidateMaps(); },
-                              [&] { give_back_records(*spent); }};
-  build_pages(store, build, counted, queue, spent ? &release : nullptr, progress);
-  if (statistics.mixed_maps == 0) store.normals.clear();
+                              [&] { give_back_records(*consumed); }};
+  build_pages(store, build, counted, queue, consumed ? &release : nullptr, progress);
+  if (statistics.normal_filtered_maps == 0) store.normals.clear();
   set_map_sizes(counted.photons, statistics);
 }
 

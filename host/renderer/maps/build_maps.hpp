@@ -17,11 +17,11 @@ namespace photile::maps {
 
 /// Builds one map per oriented face or side of a patch. Fills the pages and statistics of `store`,
 /// whose device, needs and parameters are set.
-///   spent    the same photons where their arrays may be given back on the way, else null
-///   wanted   as PhotonMaps has it
+///   consumed    the same photons where their arrays may be given back on the way, else null
+///   requested   as PhotonMaps has it
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
-                          Photons* spent, const NeighbourGroups& groups,
-                          std::span<const std::uint8_t> wanted, Progress& progress);
+                          Photons* consumed, const NeighbourGroups& groups,
+                          std::span<const std::uint8_t> requested, Progress& progress);
 
 /// Where maps lie, and which photons may enter them.
 struct MapPlan {
@@ -36,8 +36,8 @@ struct MapPlan {
 
 /// Builds the maps of a plan. `store.map_of` is set, and with plan.normals `store.normals`, which
 /// is empty afterwards where no map needs it.
-///   spent   as for build_maps_of_groups
-void build_maps(MapStore& store, const Photons& photons, Photons* spent, MapPlan plan,
+///   consumed   as for build_maps_of_groups
+void build_maps(MapStore& store, const Photons& photons, Photons* consumed, MapPlan plan,
                 Progress& progress);
 
 /// Adds a page whose maps are built to the store and its statistics.

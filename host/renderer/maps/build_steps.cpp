@@ -14,7 +14,7 @@ namespace photile::maps {
 
 device::KernelSet build_kernels(const MapStore& store, bool patches) {
   device::Defines defines = group_defines(store.device->info());
-  set_entry_defines(defines, store.needs);
+  set_record_defines(defines, store.needs);
   if (patches) defines.set("PATCHES");
   return {device::context_of(*store.device), "grid/build.cl", std::move(defines)};
 }
@@ -52,19 +52,19 @@ device::Launch photon_launch(const Build& build, const char* kernel, const Photo
 /// A launch over the photons where the maps that they are inserted into are found.
 device::Launch entered_launch(const Build& build, const char* kernel, const PhotonPage& photons) {
   device::Launch launch = photon_launch(build, kernel, photons);
-  launch.set("entered", photons.entered);
+  launch.set("inserted", photons.inserted);
   return launch;
 }
 
 /// Counts with the pages of photons as they are. Errors: DeviceMemoryError where they do not fit.
 void try_to_count(Build& build) {
   build.context.fill(build.counts.photons, 0u);
-  build.context.fill(build.counts.mixed, 0u);
+  build.context.fill(build.counts.normal_filtered, 0u);
   for (const PhotonPage& page : *build.photon_pages) {
     device::Launch launch = entered_launch(build, "count_photons", page);
     launch.set("map_count", build.counts.photons)
         .set("normal", build.normals)
-        .set("map_mixed", build.counts.mixed);
+        .set("map_normal_filtered", build.counts.normal_filtered);
     launch.run(page.count, work_group_size);
   }
 }
@@ -96,7 +96,7 @@ Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
       .set("shapes", build.shapes)
       .set("map_count", build.counts.photons)
       .set("map_density_ratio", build.density_ratio)
-      .set("map_mixed", build.counts.mixed)
+      .set("map_normal_filtered", build.counts.normal_filtered)
       .set("radius", build.radius)
       .set("photons_per_cell", build.store.parameters.photons_per_cell)
       .set("grids", page.grids)
@@ -112,34 +112,34 @@ void sort_cells(const device::KernelSet& kernels, const MapPage& page) {
   device::Launch launch = kernels.launch("sort_cells");
   launch.set("cell_count", page.cell_count)
       .set("cell_start", page.cell_start)
-      .set("entry_photon", page.entry_photon);
+      .set("record_photon", page.record_photon);
   const bool in_groups = works_in_groups(context.info());
   auto crowded = context.allocate<std::uint32_t>(in_groups ? 1 : 0, "number of crowded cells");
   auto crowded_cell = context.allocate<std::uint32_t>(
-      in_groups ? page.entry_count / PHOTILE_INSERTION_LIMIT + 1 : 0, "crowded cells");
+      in_groups ? page.record_count / PHOTILE_INSERTION_LIMIT + 1 : 0, "crowded cells");
   context.fill(crowded, 0u);
   launch.set("crowded", crowded).set("crowded_cell", crowded_cell);
   launch.run(page.cell_count, work_group_size);
   if (!in_groups) return;
   kernels.launch("sort_crowded")
       .set("cell_start", page.cell_start)
-      .set("entry_photon", page.entry_photon)
+      .set("record_photon", page.record_photon)
       .set("crowded", crowded)
       .set("crowded_cell", crowded_cell)
       .run_no_more(sorting_groups * group_size, group_size);
 }
 
-void find_entered(const Build& build, PhotonPage& page) {
-  page.entered = build.context.allocate<std::uint32_t>(page.count, "maps that photons enter");
-  photon_launch(build, "find_entered", page)
-      .set("entered", page.entered)
+void find_insertions(const Build& build, PhotonPage& page) {
+  page.inserted = build.context.allocate<std::uint32_t>(page.count, "maps that photons enter");
+  photon_launch(build, "find_insertions", page)
+      .set("inserted", page.inserted)
       .run(page.count, work_group_size);
 }
 
 void count_photons(Build& build, std::size_t map_count) {
   build.counts.photons = build.context.allocate<std::uint32_t>(map_count, "photons per map");
-  build.counts.mixed =
-      build.context.allocate<std::uint32_t>(build.patches ? map_count : 0, "mixed maps");
+  build.counts.normal_filtered =
+      build.context.allocate<std::uint32_t>(build.patches ? map_count : 0, "normal-filtered maps");
   for (;;) {
     try {
       try_to_count(build);
@@ -156,12 +156,12 @@ std::vector<std::uint32_t> read_all(Context& context, const Buffer<std::uint32_t
   return values;
 }
 
-void place_grids(const Build& build, MapPage& page) {
+void lay_out_grids(const Build& build, MapPage& page) {
   auto first_cell = size_grids(build, page);
   page.cell_count = total_cells(build.context, first_cell);
   exclusive_prefix_sum(build.kernels, first_cell);
   const std::uint32_t maps = page.last_map - page.first_map;
-  build.kernels.launch("place_grids")
+  build.kernels.launch("lay_out_grids")
       .set("map_total", maps)
       .set("first_cell", first_cell)
       .set("grids", page.grids)
@@ -184,41 +184,42 @@ void fill_cells(const Build& build, MapPage& page) {
     over_photons("count_cells", photons).run(photons.count, work_group_size);
   }
   exclusive_prefix_sum(build.kernels, page.cell_start);
-  build.context.read(page.cell_start, std::span(&page.entry_count, 1),
+  build.context.read(page.cell_start, std::span(&page.record_count, 1),
                      std::size_t{page.cell_count} + 1);
 
-  page.entry_photon = build.context.allocate<std::uint32_t>(page.entry_count, "photon references");
+  page.record_photon =
+      build.context.allocate<std::uint32_t>(page.record_count, "photon references");
   for (const PhotonPage& photons : photon_pages) {
     over_photons("scatter", photons)
-        .set("entry_photon", page.entry_photon)
+        .set("record_photon", page.record_photon)
         .run(photons.count, work_group_size);
   }
   sort_cells(build.kernels, page);
 }
 
-void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
-                    PhotonPages& photon_pages, const EntryGathering& gathering, MapPage& page) {
+void copy_records(const device::KernelSet& build, const SceneNeeds& needs,
+                  PhotonPages& photon_pages, const RecordCopying& gathering, MapPage& page) {
   device::Context& context = build.context();
-  page.entry_stride = entry_stride(page.entry_count);
+  page.record_stride = record_stride(page.record_count);
   // Vector loads reach into padding; what they find there is masked, but must be a number.
   const auto planes = [&](std::string_view what) {
     auto buffer =
-        context.allocate<float>(3 * std::size_t{page.entry_stride}, what, gathering.memory);
+        context.allocate<float>(3 * std::size_t{page.record_stride}, what, gathering.memory);
     for (std::size_t plane = 0; plane < 3; ++plane) {
-      context.fill(buffer, 0.0f, plane * page.entry_stride + page.entry_count,
-                   page.entry_stride - page.entry_count);
+      context.fill(buffer, 0.0f, plane * page.record_stride + page.record_count,
+                   page.record_stride - page.record_count);
     }
     return buffer;
   };
-  page.entry_position = planes("photon map positions");
-  page.entry_flux = planes("photon map flux");
+  page.record_position = planes("photon map positions");
+  page.record_flux = planes("photon map flux");
   if (needs.several_lights()) {
-    page.entry_light =
-        context.allocate<std::uint8_t>(std::size_t{bytes_per_light(needs)} * page.entry_stride,
+    page.record_light =
+        context.allocate<std::uint8_t>(std::size_t{bytes_per_light(needs)} * page.record_stride,
                                        "photon map lights", gathering.memory);
   }
-  if (needs.glossy) page.entry_incoming = planes("photon map directions");
-  if (gathering.normals != nullptr) page.entry_normal = planes("photon map normals");
+  if (needs.glossy) page.record_incoming = planes("photon map directions");
+  if (gathering.normals != nullptr) page.record_normal = planes("photon map normals");
   const PhotonRelease* const release = photon_pages.single() ? gathering.release : nullptr;
   for (const PhotonPage& photons : photon_pages.entering(page.first_map, page.last_map)) {
     if (release != nullptr) {  // all memory is allocated: the page in use stays to the end
@@ -229,21 +230,21 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
     const auto launch_of = [&](const char* kernel) {
       device::Launch launch = build.launch(kernel);
       launch.set("page", photon_page(photons, 0))
-          .set("entry_count", page.entry_count)
-          .set("entry_stride", page.entry_stride)
-          .set("entry_photon", page.entry_photon);
+          .set("record_count", page.record_count)
+          .set("record_stride", page.record_stride)
+          .set("record_photon", page.record_photon);
       return launch;
     };
-    device::Launch gather = launch_of("gather_entries");
+    device::Launch gather = launch_of("copy_records");
     gather.set("position", photons.position)
         .set("flux", photons.flux)
         .set("light", photons.light)
         .set("incoming", photons.incoming)
-        .set("entry_position", page.entry_position)
-        .set("entry_flux", page.entry_flux)
-        .set("entry_light", page.entry_light)
-        .set("entry_incoming", page.entry_incoming);
-    gather.run(page.entry_count, work_group_size);
+        .set("record_position", page.record_position)
+        .set("record_flux", page.record_flux)
+        .set("record_light", page.record_light)
+        .set("record_incoming", page.record_incoming);
+    gather.run(page.record_count, work_group_size);
     if (release != nullptr) {
       context.finish();
       photon_pages.release_records();
@@ -253,8 +254,8 @@ void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
       launch_of("gather_normals")
           .set("oriented_face", photons.oriented_face)
           .set("normal", *gathering.normals)
-          .set("entry_normal", page.entry_normal)
-          .run(page.entry_count, work_group_size);
+          .set("record_normal", page.record_normal)
+          .run(page.record_count, work_group_size);
     }
   }
 }

@@ -24,7 +24,7 @@ device::KernelSet build_kernels(const MapStore& store, bool patches);
 
 /// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
 struct MapCounts {
-  device::Buffer<std::uint32_t> photons, mixed;  ///< `mixed` only with patches
+  device::Buffer<std::uint32_t> photons, normal_filtered;  ///< `normal_filtered` only with patches
 };
 
 /// What every step needs.
@@ -32,7 +32,7 @@ struct Build {
   device::Context& context;
   const MapStore& store;
   device::KernelSet kernels;
-  bool patches;         ///< maps may serve several triangles
+  bool patches;         ///< maps may be of several triangles
   float squared_reach;  ///< square metres: within it of a triangle photons enter its map
   float radius;         ///< metres, of the search
   device::Buffer<std::uint32_t> map_of = {};    ///< per oriented face
@@ -46,8 +46,8 @@ struct Build {
 
 // Errors: DeviceMemoryError, after which a step may be taken again on smaller pages.
 
-/// Fills page.entered.
-void find_entered(const Build& build, PhotonPage& page);
+/// Fills page.inserted.
+void find_insertions(const Build& build, PhotonPage& page);
 
 /// Counts the photons of `map_count` maps: build.counts.
 void count_photons(Build& build, std::size_t map_count);
@@ -57,9 +57,9 @@ std::vector<std::uint32_t> read_all(device::Context& context,
                                     const device::Buffer<std::uint32_t>& buffer);
 
 /// Grids and cells of the page's maps, whose photons are counted.
-void place_grids(const Build& build, MapPage& page);
+void lay_out_grids(const Build& build, MapPage& page);
 
-/// References to the photons of the page's cells: cell_start, entry_count and entry_photon.
+/// References to the photons of the page's cells: cell_start, record_count and record_photon.
 void fill_cells(const Build& build, MapPage& page);
 
 /// Brings the photons of each of page.cell_count cells into ascending order. `kernels`: of a
@@ -69,12 +69,12 @@ void sort_cells(const device::KernelSet& kernels, const MapPage& page);
 /// What lets go of photons on the host, once their one page has let go of them.
 struct PhotonRelease {
   std::function<void()> lists;    ///< of candidate maps
-  std::function<void()> records;  ///< all that entries copy, but for the photons' triangles
+  std::function<void()> records;  ///< all that records copy, but for the photons' triangles
 };
 
-/// How entries are gathered.
-struct EntryGathering {
-  /// 3 floats per oriented face, where the entries keep normals; else null.
+/// How records are gathered.
+struct RecordCopying {
+  /// 3 floats per oriented face, where the records keep normals; else null.
   const device::Buffer<float>* normals = nullptr;
   /// Is called as soon as no kernel reads what it lets go of, where photons are one page; null:
   /// photons are needed for further pages of maps.
@@ -87,10 +87,10 @@ inline device::MemoryPages memory_pages(const MapStore& store) {
   return store.parameters.large_pages ? device::MemoryPages::large : device::MemoryPages::ordinary;
 }
 
-/// `build`: see build_kernels. Before: page.entry_count and page.entry_photon are set. After: the
-/// other entry buffers that the scene needs are filled.
-void gather_entries(const device::KernelSet& build, const SceneNeeds& needs,
-                    PhotonPages& photon_pages, const EntryGathering& gathering, MapPage& page);
+/// `build`: see build_kernels. Before: page.record_count and page.record_photon are set. After: the
+/// other record buffers that the scene needs are filled.
+void copy_records(const device::KernelSet& build, const SceneNeeds& needs,
+                  PhotonPages& photon_pages, const RecordCopying& gathering, MapPage& page);
 
 // Exclusive prefix sum on the device.
 

@@ -29,19 +29,19 @@ struct Lists {
   std::vector<std::uint32_t> members;
 };
 
-bool is_wanted(std::span<const std::uint8_t> wanted, std::uint32_t map) {
-  return wanted.empty() || wanted[map] != 0;
+bool is_requested(std::span<const std::uint8_t> requested, std::uint32_t map) {
+  return requested.empty() || requested[map] != 0;
 }
 
 class Splitter {
  public:
   /// `positions`: of the photons that the next lists are for; the last of `lists.list_of_photon`.
   Splitter(const std::vector<geometry::Box>& map_boxes, std::span<const glm::vec3> positions,
-           float reach, std::span<const std::uint8_t> wanted, Lists& lists)
+           float reach, std::span<const std::uint8_t> requested, Lists& lists)
       : boxes_(map_boxes),
         positions_(positions),
         reach_(reach),
-        wanted_(wanted),
+        requested_(requested),
         lists_(lists),
         first_photon_(lists.list_of_photon.size() - positions.size()) {}
 
@@ -71,7 +71,7 @@ class Splitter {
 
  private:
   void add_list(std::span<const std::uint32_t> photons, std::vector<std::uint32_t>& members) {
-    std::erase_if(members, [&](std::uint32_t map) { return !is_wanted(wanted_, map); });
+    std::erase_if(members, [&](std::uint32_t map) { return !is_requested(requested_, map); });
     for (const std::uint32_t photon : photons) {
       lists_.list_of_photon[first_photon_ + photon] =
           static_cast<std::uint32_t>(lists_.sizes.size());
@@ -83,7 +83,7 @@ class Splitter {
   const std::vector<geometry::Box>& boxes_;
   std::span<const glm::vec3> positions_;
   float reach_;
-  std::span<const std::uint8_t> wanted_;
+  std::span<const std::uint8_t> requested_;
   Lists& lists_;
   std::size_t first_photon_;
 };
@@ -101,7 +101,7 @@ std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches)
 
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
                                   const NeighbourGroups& groups, float reach,
-                                  std::span<const std::uint8_t> wanted) {
+                                  std::span<const std::uint8_t> requested) {
   const std::vector<geometry::Box> boxes = map_boxes(scene, groups.patches);
   const std::size_t triangle_total = groups.offsets.size() - 1;
   std::vector<Lists> chunks((triangle_total + triangles_per_chunk - 1) / triangles_per_chunk);
@@ -119,10 +119,11 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
         order.resize(count);
         std::iota(order.begin(), order.end(), 0u);
         std::span<const std::uint32_t> group = groups.of(static_cast<std::uint32_t>(triangle));
-        const bool any = std::any_of(group.begin(), group.end(),
-                                     [&](std::uint32_t map) { return is_wanted(wanted, map); });
+        const bool any = std::any_of(group.begin(), group.end(), [&](std::uint32_t map) {
+          return is_requested(requested, map);
+        });
         if (!any) group = {};  // one list without members for all
-        Splitter(boxes, {photons.position.data() + first_photon, count}, reach, wanted, lists)
+        Splitter(boxes, {photons.position.data() + first_photon, count}, reach, requested, lists)
             .split(order, group);
       }
       lists.lists_of_triangle.push_back(
@@ -171,9 +172,9 @@ void for_each_member(std::vector<std::uint32_t>& members, const Visit& visit) {
 
 }  // namespace
 
-MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t sided_count) {
+MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t face_count) {
   constexpr std::uint32_t reached = 0;
-  std::vector<std::uint32_t> number_of(patches.empty() ? sided_count / 2 : patches.count(), none);
+  std::vector<std::uint32_t> number_of(patches.empty() ? face_count / 2 : patches.count(), none);
   for_each_member(candidates.members, [&](std::uint32_t map) {
     // Reading first keeps the cache lines of pairs with many photons shared.
     const std::atomic_ref<std::uint32_t> number(number_of[map / 2]);
@@ -189,8 +190,8 @@ MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::s
   }
   for_each_member(candidates.members,
                   [&](std::uint32_t& map) { map = 2 * number_of[map / 2] + map % 2; });
-  numbers.map_of.resize(sided_count);
-  for (std::uint32_t own = 0; own < sided_count; ++own) {
+  numbers.map_of.resize(face_count);
+  for (std::uint32_t own = 0; own < face_count; ++own) {
     const std::uint32_t map = patches.map(own);
     const std::uint32_t number = number_of[map / 2];
     numbers.map_of[own] = number == none ? none : 2 * number + map % 2;

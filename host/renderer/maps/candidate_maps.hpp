@@ -26,11 +26,11 @@ struct CandidateMaps {
 /// Every list of a photon holds each member of its group whose surface lies within `reach` metres
 /// of the photon, and seldom many more. Splits the photons of an oriented face in halves until the
 /// members near each half are few. Parallel; the result does not depend on the number of threads.
-///   wanted   per map of the groups: 1 for those that lists name; empty: all. Which photons a list
-///            is for does not depend on it
+///   requested   per map of the groups: 1 for those that lists name; empty: all. Which
+///               photons a list is for does not depend on it
 CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
                                   const NeighbourGroups& groups, float reach,
-                                  std::span<const std::uint8_t> wanted = {});
+                                  std::span<const std::uint8_t> requested = {});
 
 /// The box of each pair of maps: of a triangle, or of a patch.
 std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches);
@@ -47,7 +47,7 @@ struct MapNumbers {
 
 /// Numbers the maps that are members of candidate lists, and renames the members.
 ///   sided_count   oriented faces of the scene
-MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t sided_count);
+MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t face_count);
 
 /// `values` of all oriented faces' or patches' maps: those of the numbered ones.
 std::vector<float> of_numbered(const MapNumbers& numbers, std::span<const float> values);

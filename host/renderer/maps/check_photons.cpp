@@ -37,9 +37,9 @@ bool has_all_arrays(const Photons& photons, const SceneNeeds& needs) {
 /// Whether photons lie in the rows of their oriented faces.
 bool are_in_their_rows(const Photons& photons) {
   return all_parts(photons.first_of.size() - 1, 1 << 8, [&](std::size_t first, std::size_t last) {
-    for (std::size_t sided = first; sided < last; ++sided) {
-      for (std::uint32_t i = photons.first_of[sided]; i < photons.first_of[sided + 1]; ++i) {
-        if (photons.oriented_face[i] != sided) return false;
+    for (std::size_t face = first; face < last; ++face) {
+      for (std::uint32_t i = photons.first_of[face]; i < photons.first_of[face + 1]; ++i) {
+        if (photons.oriented_face[i] != face) return false;
       }
     }
     return true;

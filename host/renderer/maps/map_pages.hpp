@@ -17,7 +17,7 @@ namespace photile::maps {
 /// Maps [first, last) with their photons.
 struct MapRange {
   std::uint32_t first = 0, last = 0;
-  std::uint64_t entries = 0;
+  std::uint64_t records = 0;
 };
 
 /// How large a page may be.
@@ -25,15 +25,15 @@ struct PageLimits {
   std::uint64_t largest_buffer = 0;  ///< bytes; no buffer is larger
   /// Bytes that the page is to take together.
   std::uint64_t page_bytes = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t bytes_per_entry = 0;  ///< of page_bytes
-  std::uint64_t bytes_per_map = 0;    ///< of page_bytes
+  std::uint64_t bytes_per_record = 0;  ///< of page_bytes
+  std::uint64_t bytes_per_map = 0;     ///< of page_bytes
 
   /// Three planes of floats are the largest buffer, and kernels index them in 32 bits.
-  std::uint64_t most_entries() const;
+  std::uint64_t most_records() const;
   /// What a page takes.
-  std::uint64_t bytes(std::uint64_t entries, std::uint64_t maps) const;
+  std::uint64_t bytes(std::uint64_t records, std::uint64_t maps) const;
   /// Whether a page keeps to all limits.
-  bool fit(std::uint64_t entries, std::uint64_t maps) const;
+  bool fit(std::uint64_t records, std::uint64_t maps) const;
 };
 
 /// Splits the maps into pages; maps without photons at either end of a page are left out. A map
@@ -41,7 +41,7 @@ struct PageLimits {
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
                                      const PageLimits& limits);
 
-/// The maps with photons of `range` in two parts of about as many entries; nothing where there is
+/// The maps with photons of `range` in two parts of about as many records; nothing where there is
 /// only one map.
 std::optional<std::pair<MapRange, MapRange>> halves_of(const MapRange& range,
                                                        std::span<const std::uint32_t> map_count);

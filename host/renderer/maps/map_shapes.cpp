@@ -107,11 +107,11 @@ MapShapes map_shapes(const Scene& scene, const Patches& patches,
   });
   for (PhotileMapShape& shape : result.shapes) {
     if (shape.triangle == PHOTILE_NO_TRIANGLE) continue;
-    const auto place = static_cast<std::uint32_t>(result.corners.size() / 9);
+    const auto index = static_cast<std::uint32_t>(result.corners.size() / 9);
     for (const glm::vec3& corner : scene.corners(shape.triangle)) {
       result.corners.insert(result.corners.end(), {corner.x, corner.y, corner.z});
     }
-    shape.triangle = place;
+    shape.triangle = index;
   }
   return result;
 }
@@ -164,9 +164,9 @@ double squared_density(const std::array<glm::vec3, 3>& corners, double area,
 
 std::vector<float> photon_density_ratio(const Scene& scene, const Photons& photons,
                                         const Patches& patches) {
-  const std::size_t sided_count = 2 * scene.triangle_count();
-  std::vector<double> squared(sided_count, 0);
-  tbb::parallel_for(std::size_t{0}, sided_count, [&](std::size_t s) {
+  const std::size_t face_count = 2 * scene.triangle_count();
+  std::vector<double> squared(face_count, 0);
+  tbb::parallel_for(std::size_t{0}, face_count, [&](std::size_t s) {
     const std::uint32_t first = photons.first_of[s], count = photons.first_of[s + 1] - first;
     if (count < 2) return;
     const auto triangle = static_cast<std::uint32_t>(s / 2);
@@ -177,8 +177,8 @@ std::vector<float> photon_density_ratio(const Scene& scene, const Photons& photo
   struct Sums {
     double area = 0, photons = 0, squared = 0;
   };
-  std::vector<Sums> sums(patches.empty() ? sided_count : 2 * patches.count());
-  for (std::uint32_t s = 0; s < sided_count; ++s) {
+  std::vector<Sums> sums(patches.empty() ? face_count : 2 * patches.count());
+  for (std::uint32_t s = 0; s < face_count; ++s) {
     Sums& sum = sums[patches.map(s)];
     sum.area += triangle_area(scene, triangle_of(s));
     sum.photons += photons.first_of[s + 1] - photons.first_of[s];

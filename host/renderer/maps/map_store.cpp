@@ -53,20 +53,21 @@ void check(const Scene& scene, const Photons& photons, const NeighbourGroups& gr
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       Progress& progress, std::span<const std::uint8_t> wanted) {
-  build(device, scene, photons, nullptr, groups, parameters, wanted, progress);
+                       Progress& progress, std::span<const std::uint8_t> requested) {
+  build(device, scene, photons, nullptr, groups, parameters, requested, progress);
 }
 
 PhotonMaps::PhotonMaps(Device& device, const Scene& scene, Photons&& photons,
                        const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       Progress& progress, std::span<const std::uint8_t> wanted) {
+                       Progress& progress, std::span<const std::uint8_t> requested) {
   Photons own = std::move(photons);
-  build(device, scene, own, &own, groups, parameters, wanted, progress);
+  build(device, scene, own, &own, groups, parameters, requested, progress);
 }
 
-void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photons, Photons* spent,
-                       const NeighbourGroups& groups, const PhotonMapParameters& parameters,
-                       std::span<const std::uint8_t> wanted, Progress& progress) {
+void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photons,
+                       Photons* consumed, const NeighbourGroups& groups,
+                       const PhotonMapParameters& parameters,
+                       std::span<const std::uint8_t> requested, Progress& progress) {
   check_scene(scene);
   check(scene, photons, groups, parameters);
   const Stopwatch stopwatch;
@@ -85,7 +86,7 @@ void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photon
     throw InputError(
         fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
   }
-  maps::build_maps_of_groups(*store_, scene, photons, spent, groups, wanted, progress);
+  maps::build_maps_of_groups(*store_, scene, photons, consumed, groups, requested, progress);
 
   store_->statistics.spilled_bytes = store_->pages.spilled_bytes();
   store_->statistics.seconds = stopwatch.seconds();

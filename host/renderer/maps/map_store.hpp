@@ -35,7 +35,7 @@ struct MapStore {
   double cos_angle = 0;               ///< its cosine
   bool naive = false;                 ///< maps hold the photons of their own triangle only
   std::vector<std::uint32_t> landed;  ///< per oriented face: photons that landed there
-  std::vector<glm::vec3> normals;     ///< per oriented face; only if a page has entry_normal
+  std::vector<glm::vec3> normals;     ///< per oriented face; only if a page has record_normal
 
   /// Makes what answers queries on these maps where they are no grids: what grids are compared with
   /// is made so (bench/structures). Empty for grids.

@@ -163,7 +163,7 @@ void PhotonPages::load(std::size_t page) {
 
 void PhotonPages::release_lists() {
   PhotonPage& page = pages_.front();
-  for (auto* lists : {&page.list, &page.list_offsets, &page.list_members, &page.entered}) {
+  for (auto* lists : {&page.list, &page.list_offsets, &page.list_members, &page.inserted}) {
     *lists = {};
   }
   released_ = true;

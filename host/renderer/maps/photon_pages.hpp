@@ -29,7 +29,7 @@ struct PhotonPage {
   std::uint32_t first_list = 0;                ///< the page's first
   device::Buffer<std::uint32_t> list_offsets;  ///< relative to the page's first list and member
   device::Buffer<std::uint32_t> list_members;
-  device::Buffer<std::uint32_t> entered;  ///< kernels/grid/count_photons.cl, find_entered
+  device::Buffer<std::uint32_t> inserted;  ///< kernels/grid/count_photons.cl, find_insertions
 };
 
 /// The bounds of one page: photons [first, last), which enter maps of [first_map, last_map) at
@@ -52,7 +52,7 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
                                  PhotonRange range);
 
-/// Uploads the lists of candidate maps as well, which must stay, too, but for `entered`.
+/// Uploads the lists of candidate maps as well, which must stay, too, but for `inserted`.
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range);
 
@@ -104,7 +104,7 @@ class PhotonPages final : private Residents {
 
   /// Whether one page holds all photons.
   bool single() const { return ranges_.size() == 1; }
-  /// Let go of parts of the one page: of lists and `entered`, of all else but oriented_face. It
+  /// Let go of parts of the one page: of lists and `inserted`, of all else but oriented_face. It
   /// cannot be uploaded again afterwards.
   void release_lists();
   void release_records();

@@ -145,11 +145,11 @@ class OpenImageIODecoder : public image::Decoder {
   std::vector<T> values(OIIO::TypeDesc type) {
     const Silence silence;
     std::vector<T> values(shape_.values());
-    // Values that are stored as they are wanted need no conversion, for which OpenImageIO would
+    // Values that are stored as they are requested need no conversion, for which OpenImageIO would
     // take 64 MiB however small the picture is.
     const bool stored = input_->spec().format == type && input_->spec().channelformats.empty();
-    const OIIO::TypeDesc wanted = stored ? OIIO::TypeDesc() : type;
-    const bool read = input_->read_image(0, 0, 0, shape_.channels, wanted, values.data());
+    const OIIO::TypeDesc requested = stored ? OIIO::TypeDesc() : type;
+    const bool read = input_->read_image(0, 0, 0, shape_.channels, requested, values.data());
     if (!read || input_->has_error()) throw image::DecodeError(reason_of(*input_));
     if constexpr (std::is_same_v<T, std::uint8_t>) {
       if (associated_) divide_by_alpha(values);

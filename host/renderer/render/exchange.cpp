@@ -247,7 +247,7 @@ void add_processes(Communicator& all, RenderCosts& costs) {
   const Communicator::Traffic traffic = all.traffic();
   const std::array own{costs.references,
                        costs.maps,
-                       costs.mixed_maps,
+                       costs.normal_filtered_maps,
                        costs.largest_map,
                        costs.rays,
                        costs.hit_count,
@@ -272,7 +272,7 @@ void add_processes(Communicator& all, RenderCosts& costs) {
     for (const auto& rank : of_ranks) largest = std::max(largest, rank[i]);
     return largest;
   };
-  costs.references = sum(0), costs.maps = sum(1), costs.mixed_maps = sum(2),
+  costs.references = sum(0), costs.maps = sum(1), costs.normal_filtered_maps = sum(2),
   costs.largest_map = most(3);
   costs.rays = sum(4), costs.hit_count = sum(5);
   costs.light_map_errors = {0, sum(14)};

@@ -17,7 +17,7 @@
 
 namespace photile {
 
-/// Sends points to the owners of their maps, and brings their estimates back. What a point gets
+/// Sends points to the owners of their maps, and returns their estimates. What a point gets
 /// must not depend on the points beside it. Collective: all processes ask at the same time.
 class Exchange : public estimate::LightAtPoints {
  public:
@@ -52,7 +52,7 @@ class Exchange : public estimate::LightAtPoints {
   Estimates none_yet() const;
   /// Positions of points, by their owners.
   std::vector<std::vector<std::uint32_t>> by_owner(const PrimaryHits& points) const;
-  Estimates in_order(std::span<const std::vector<std::uint32_t>> places,
+  Estimates in_order(std::span<const std::vector<std::uint32_t>> indices,
                      std::span<const std::vector<std::byte>> bytes, std::size_t points) const;
 
   Communicator& processes_;

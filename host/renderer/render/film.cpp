@@ -61,7 +61,7 @@ void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
 
 /// What a hit counts in the illuminance of its pixel.
 float illuminance_weight(const PrimaryHits& hits, std::size_t hit, float sample_weight) {
-  return hits.share.empty() ? sample_weight : sample_weight * hits.share[hit];
+  return hits.fraction.empty() ? sample_weight : sample_weight * hits.fraction[hit];
 }
 
 void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimates,
@@ -83,7 +83,7 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
     highest = std::max(highest, pixel);
   };
   for (const std::uint32_t pixel : batch.hits.pixel) widen(pixel);
-  for (const SeenEmission& seen : batch.emission) widen(seen.pixel);
+  for (const VisibleEmission& seen : batch.emission) widen(seen.pixel);
   if (lowest > highest) return;
 
   const auto width = static_cast<std::size_t>(layers.width);
@@ -106,7 +106,7 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
         add_hit(batch.hits, hit, estimates, sample_weight, sums);
       }
       for (const std::uint32_t i : emission.of(pixel)) {
-        const SeenEmission& seen = batch.emission[i];
+        const VisibleEmission& seen = batch.emission[i];
         sums.add(seen.light, seen.radiance, seen.illuminance);
       }
       sums.move_to(row);
@@ -154,7 +154,7 @@ void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estima
     add_hits(layers, band * pixels / bands, (band + 1) * pixels / bands, batch.hits, estimates,
              sample_weight);
   });
-  for (const SeenEmission& seen : batch.emission) {
+  for (const VisibleEmission& seen : batch.emission) {
     layers.layers[seen.light].radiance[seen.pixel] += seen.radiance;
     layers.layers[seen.light].illuminance[seen.pixel] += seen.illuminance;
   }
@@ -295,7 +295,7 @@ void for_each_hit(std::size_t hits, std::size_t layers, const Work& work) {
 }
 
 /// Where each hit's layers lie among those that any light reaches.
-void place_layers(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits,
+void store_layers(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits,
                   Estimates& result) {
   result.first.assign(hits + 1, 0);
   for_each_hit(hits, mixdown.layers.size(), [&](std::size_t hit, Sums& sums) {
@@ -312,7 +312,7 @@ Estimates pooled(const LayerMixdown& mixdown, const Estimates& estimates, std::s
   const std::size_t layers = mixdown.layers.size();
   const bool sparse = layers > max_dense_lights, glossy = !estimates.radiance.empty();
   Estimates result;
-  if (sparse) place_layers(mixdown, estimates, hits, result);
+  if (sparse) store_layers(mixdown, estimates, hits, result);
   result.irradiance.resize(sparse ? result.light.size() : hits * layers);
   if (glossy) result.radiance.resize(result.irradiance.size());
   for_each_hit(hits, layers, [&](std::size_t hit, Sums& sums) {
@@ -329,7 +329,7 @@ Estimates pooled(const LayerMixdown& mixdown, const Estimates& estimates, std::s
 }
 
 void pool_emission(const LayerMixdown& mixdown, PrimaryHitBatch& batch) {
-  for (SeenEmission& seen : batch.emission) {
+  for (VisibleEmission& seen : batch.emission) {
     const float scale = mixdown.scale[seen.light];
     seen.radiance *= scale;
     seen.illuminance *= scale;

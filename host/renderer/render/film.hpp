@@ -1,5 +1,5 @@
 // The film: estimates of primary hits are added to the pixels that see them, those of many lights
-// mixed to those of few, and the noise of a pixel's samples is told from runs of them.
+// mixed to those of few, and the noise of a pixel's samples is estimated from runs of them.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -23,11 +23,11 @@ void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estima
 void raise_to_zero(LightLayers& layers);
 
 /// Adds, in squares, the standard error of the samples of each pixel, by light, to that of what
-/// they see. It is told from the scatter of runs of samples that follow each other in a pixel's
-/// sequence. The variance of well-spread samples falls as N^-1 where they are noise, as N^-3/2 at
-/// an edge and as N^-2 where light changes evenly (Mitchell, "Consequences of stratified sampling
-/// in graphics", 1996). Here it is that of an edge: of R runs, that of independent ones over
-/// sqrt(R).
+/// they see. It is estimated from the scatter of runs of samples that follow each other in a
+/// pixel's sequence. The variance of well-spread samples falls as N^-1 where they are noise, as
+/// N^-3/2 at an edge and as N^-2 where light changes evenly (Mitchell, "Consequences of stratified
+/// sampling in graphics", 1996). Here it is that of an edge: of R runs, that of independent ones
+/// over sqrt(R).
 ///   errors   of the picture
 ///   runs     as many times as wide as there are runs: column x * count + run has the sum of that
 ///            run of samples of pixel x

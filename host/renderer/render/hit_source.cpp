@@ -28,7 +28,7 @@ void add_sensors(std::span<const Sensor> sensors, ContentHash& hash) {
     for (const glm::dvec3& vector : {sensor.position, sensor.normal, sensor.facing}) {
       hash.add(vector);
     }
-    hash.add(sensor.sees_lamps);
+    hash.add(sensor.sees_lights);
     hash.add(sensor.response.has_value() ? static_cast<int>(*sensor.response) : -1);
   }
 }

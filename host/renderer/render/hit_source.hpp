@@ -74,7 +74,7 @@ class SensorHits : public HitSource {
 class GatherHits : public HitSource {
  public:
   GatherHits(const Scene& scene, std::span<const Sensor> sensors, SensorResponse response)
-      : sensors_(sensors), response_(response), lamps_(scene) {}
+      : sensors_(sensors), response_(response), light_sampler_(scene) {}
   void add_to(ContentHash& hash) const override;
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
@@ -82,7 +82,7 @@ class GatherHits : public HitSource {
  private:
   std::span<const Sensor> sensors_;
   SensorResponse response_;
-  trace::LightSampler lamps_;
+  trace::LightSampler light_sampler_;
 };
 
 /// `render` and `trace_paths` for any hits.

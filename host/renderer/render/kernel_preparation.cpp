@@ -45,12 +45,12 @@ glm::vec3 folded(const glm::vec3& point) {
           std::sqrt(2.0f) * across * std::sin(angle)};
 }
 
-///   mixed   some map holds photons of different normals that agree
-estimate::PlaneSample sample_of(const SceneNeeds& needs, bool mixed, int neighbours) {
+///   normal_filtered   some map holds photons of different normals that agree
+estimate::PlaneSample sample_of(const SceneNeeds& needs, bool normal_filtered, int neighbours) {
   constexpr estimate::PlaneSampleSize size{.photons = 1000, .hits_per_side = 16};
   estimate::PlaneSample sample = estimate::make_plane_sample(needs, neighbours, size);
   sample.radius = 2;  // the square is one patch
-  if (!mixed) return sample;
+  if (!normal_filtered) return sample;
   for (auto* points : {&sample.scene.vertices, &sample.photons.position, &sample.hits.position}) {
     std::transform(points->begin(), points->end(), points->begin(), folded);
   }
@@ -61,7 +61,7 @@ bool is_fresh(const Device& device) {
   return device.programs_built() + device.programs_from_cache() == 0;
 }
 
-///   specular   scenes have mirrors or glass: neighbours of caustics are looked at (SeenPhotons)
+///   specular   scenes have mirrors or glass: neighbours of caustics are looked at (VisiblePhotons)
 void prepare(Device& device, const estimate::PlaneSample& sample,
              const RenderParameters& parameters, bool specular) {
   try {

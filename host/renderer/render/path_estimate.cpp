@@ -14,7 +14,7 @@
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/receiver.hpp"
+#include "trace/shading_point.hpp"
 
 namespace photile {
 
@@ -134,7 +134,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
   return trace_paths_of_hits(scene, CameraHits(camera), film, progress);
 }
 
-bool has_unseen_caustics(const Scene& scene) {
+bool has_hidden_caustics(const Scene& scene) {
   return needs_of(scene).specular_paths &&
          std::any_of(scene.lights.begin(), scene.lights.end(),
                      [](const Light& light) { return !light.has_size(); });

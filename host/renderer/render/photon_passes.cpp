@@ -55,7 +55,8 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
   } else {
     by_photons_.emplace(of_nodes);
   }
-  cache_.emplace(rays, photons_.maps, of_points, nodes(), gather_ ? &gather_->ends() : nullptr);
+  cache_.emplace(rays, photons_.maps, of_points, nodes(),
+                 gather_ ? &gather_->secondary() : nullptr);
   if (photons_.contents) cache_->maps().restore(*photons_.contents);
 }
 
@@ -64,9 +65,9 @@ std::span<const std::uint32_t> PassLight::map_of() const {
   return cache_ || !estimate ? std::span<const std::uint32_t>() : estimate->map_of();
 }
 
-std::vector<double> PassLight::shares() const {
+std::vector<double> PassLight::fractions() const {
   const auto& estimate = photons_.all.estimate;
-  return estimate ? estimate->shares() : std::vector<double>();
+  return estimate ? estimate->fractions() : std::vector<double>();
 }
 
 PhotonPasses::PhotonPasses(const RayScene& rays, std::span<Device> devices, const RenderPlan& plan,
@@ -90,7 +91,7 @@ std::string PhotonPasses::light_map_settings() const {
   return words;
 }
 
-PassPhotons PhotonPasses::next(PreparedPhotons* prepared, const KeepPhotons* keep,
+PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
                                Progress& progress) {
   if (prepared && prepared->light_maps && plan_.reads_light_maps()) {
     if (prepared->light_maps->settings == light_map_settings()) return waiting(*prepared, keep);
@@ -101,7 +102,8 @@ PassPhotons PhotonPasses::next(PreparedPhotons* prepared, const KeepPhotons* kee
   PassPhotons photons = std::move(maps.facts);
   photons.all = shared(estimate_of(std::move(maps.photons), nullptr));
   if (!maps.caustics.empty()) {
-    photons.caustics = shared(estimate_of(std::move(maps.caustics), std::move(maps.seen_caustics)));
+    photons.caustics =
+        shared(estimate_of(std::move(maps.caustics), std::move(maps.visible_caustics)));
   }
   costs_.estimators.add(stopwatch.taken());
   ++pass_;
@@ -109,7 +111,7 @@ PassPhotons PhotonPasses::next(PreparedPhotons* prepared, const KeepPhotons* kee
 }
 
 /// The photons of `prepared` have no maps until an estimate is needed: light maps tell most light.
-PassPhotons PhotonPasses::waiting(PreparedPhotons& prepared, const KeepPhotons* keep) {
+PassPhotons PhotonPasses::waiting(TracedPhotons& prepared, const KeepPhotons* keep) {
   radius_ = prepared.radius;
   PassPhotons photons = facts(prepared.photons);
   photons.contents = std::move(prepared.light_maps);
@@ -117,7 +119,7 @@ PassPhotons PhotonPasses::waiting(PreparedPhotons& prepared, const KeepPhotons* 
   const bool has_caustics = plan_.keeps_caustics() && prepared.caustics->size() > 0;
   if (keep) (*keep)(prepared);
   struct Waiting {
-    PreparedPhotons photons;
+    TracedPhotons photons;
     std::optional<Maps> maps;
   };
   const auto waiting = std::make_shared<Waiting>(Waiting{std::move(prepared), std::nullopt});
@@ -136,7 +138,7 @@ PassPhotons PhotonPasses::waiting(PreparedPhotons& prepared, const KeepPhotons* 
   if (has_caustics) {
     photons.caustics = lazy([this, built] {
       Maps& maps = built();
-      return estimate_of(std::move(maps.caustics), std::move(maps.seen_caustics));
+      return estimate_of(std::move(maps.caustics), std::move(maps.visible_caustics));
     });
   }
   return photons;
@@ -153,7 +155,7 @@ PassPhotons PhotonPasses::facts(const Photons& photons) const {
 }
 
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
-    std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const {
+    std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::VisiblePhotons> seen) const {
   estimate::PhotonEstimate::Parts parts{std::move(maps), plan_.estimates(pass_, surface_),
                                         std::move(seen)};
   return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, std::move(parts),
@@ -181,7 +183,7 @@ void PhotonPasses::check_map_memory() const {
   PhotonTracerParameters paths = plan_.tracing(0, {});
   paths.shard = {};
   const double all = static_cast<double>(paths.emitted_photons);
-  const std::uint64_t bytes = maps::bytes_per_entry(rays_.needs());
+  const std::uint64_t bytes = maps::bytes_per_record(rays_.needs());
   if (memory / bytes / most_of_a_path >= paths.emitted_photons) return;
   paths.emitted_photons = std::min(few, paths.emitted_photons);
   const std::vector<std::uint32_t> landed = landed_on(scene_, trace_photons(rays_, paths).photons);
@@ -196,7 +198,7 @@ void PhotonPasses::check_map_memory() const {
       certain, held));
 }
 
-PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhotons* keep,
+PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhotons* keep,
                                        Progress& progress) {
   if (pass_ == 0 && !prepared) check_map_memory();
   if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
@@ -229,7 +231,7 @@ PhotonTracerResult PhotonPasses::trace(PreparedPhotons* prepared, const KeepPhot
   if (plan_.used().processes) move_to_owners(traced, progress);
   if (pass_ == 0) find_surface(traced.photons);
   if (keep) {
-    PreparedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
+    TracedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
     if (plan_.keeps_caustics()) own.caustics = std::move(traced.caustics);
     (*keep)(own);
     traced.photons = std::move(own.photons);
@@ -260,7 +262,7 @@ void PhotonPasses::move_to_owners(PhotonTracerResult& traced, Progress& progress
 }
 
 /// The photons are gone when this returns: the maps hold copies.
-PhotonPasses::Maps PhotonPasses::trace_and_build(PreparedPhotons* prepared, const KeepPhotons* keep,
+PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep,
                                                  Progress& progress) {
   PhotonTracerResult traced = trace(prepared, keep, progress);
   const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
@@ -268,11 +270,12 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(PreparedPhotons* prepared, cons
   Maps maps{build(std::move(traced.photons), parameters, progress), {}, nullptr, std::move(found)};
   const PhotonMapStatistics& built = maps.photons.front().statistics();
   costs_.maps = built.maps;
-  costs_.mixed_maps = built.mixed_maps;
+  costs_.normal_filtered_maps = built.normal_filtered_maps;
   costs_.map_sizes = built.map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.total() > 0) {
-    maps.seen_caustics = std::make_shared<const estimate::SeenPhotons>(rays_, traced.caustics);
+    maps.visible_caustics =
+        std::make_shared<const estimate::VisiblePhotons>(rays_, traced.caustics);
     maps.caustics = build(std::move(traced.caustics), parameters, progress);
   }
   const Stopwatch release_watch;
@@ -311,7 +314,7 @@ void PhotonPasses::count(const PhotonTracerResult& traced) {
   costs_.caustic_photons += traced.caustics.total();
 }
 
-void PhotonPasses::find_groups(const Photons& photons, PreparedPhotons* prepared,
+void PhotonPasses::find_groups(const Photons& photons, TracedPhotons* prepared,
                                Progress& progress) {
   const Stopwatch stopwatch;
   groups_ = prepared ? std::move(prepared->groups)
@@ -330,7 +333,7 @@ void PhotonPasses::find_surface(const Photons& photons) {
   surface_ = std::make_shared<const SurfaceIndex>(
       index_surface(scene_, photons, radius_, plan_.used().angle_degrees));
   costs_.surface.add(stopwatch.taken(), surface_->bytes());
-  costs_.sheets = surface_->sheets;
+  costs_.components = surface_->components;
   costs_.surface_leaves = surface_->leaves.size();
 }
 

@@ -40,9 +40,9 @@ struct PassPhotons {
   std::optional<LightMapContents> contents = std::nullopt;
 };
 
-/// The light of a scene, told by the photons of one pass: what answers whom is decided here, by the
-/// plan. By photons alone it is the photon estimate; where light maps are read, a cache whose nodes
-/// the estimate values, or rays, which read a coarser cache where they end.
+/// The light of a scene, as the photons of one pass give it: what answers whom is decided here, by
+/// the plan. By photons alone it is the photon estimate; where light maps are read, a cache whose
+/// nodes the estimate values, or rays, which read a coarser cache where they end.
 class PassLight {
  public:
   /// References are kept. Errors: those of SurfaceCache.
@@ -65,7 +65,7 @@ class PassLight {
   /// where the order does not matter.
   std::span<const std::uint32_t> map_of() const;
   /// Each device's part of all points so far; empty where that is not known.
-  std::vector<double> shares() const;
+  std::vector<double> fractions() const;
 
  private:
   const PassPhotons photons_;
@@ -90,7 +90,7 @@ class PhotonPasses {
   ///              is first needed.
   ///   keep       is given those of the first pass, or null
   /// Errors: those of the stages.
-  PassPhotons next(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  PassPhotons next(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
 
   /// The radius of the first pass, metres.
   double radius() const { return radius_; }
@@ -103,27 +103,27 @@ class PhotonPasses {
   struct Maps {
     std::vector<PhotonMaps> photons;
     std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
-    std::shared_ptr<const estimate::SeenPhotons> seen_caustics;
+    std::shared_ptr<const estimate::VisiblePhotons> visible_caustics;
     PassPhotons facts;  ///< without their light
   };
 
-  PassPhotons waiting(PreparedPhotons& prepared, const KeepPhotons* keep);
+  PassPhotons waiting(TracedPhotons& prepared, const KeepPhotons* keep);
   void check_map_memory() const;
   /// Photons of the pass, with all that is found before there are maps.
-  PhotonTracerResult trace(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
-  Maps trace_and_build(PreparedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  PhotonTracerResult trace(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  Maps trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   std::vector<PhotonMaps> build(Photons photons, const PhotonMapParameters& parameters,
                                 Progress& progress);
   std::shared_ptr<estimate::PhotonEstimate> estimate_of(
-      std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::SeenPhotons> seen) const;
+      std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::VisiblePhotons> seen) const;
   /// The estimate as it is asked for where several processes have the maps.
   PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.
   PassPhotons facts(const Photons& photons) const;
-  /// Where several processes share the rendering: brings photons to the owners of their maps.
+  /// Where several processes share the rendering: sends photons to the owners of their maps.
   void move_to_owners(PhotonTracerResult& traced, Progress& progress);
   void count(const PhotonTracerResult& traced);
-  void find_groups(const Photons& photons, PreparedPhotons* prepared, Progress& progress);
+  void find_groups(const Photons& photons, TracedPhotons* prepared, Progress& progress);
   void find_surface(const Photons& photons);
 
   const RayScene& rays_;

@@ -20,7 +20,7 @@ std::int64_t hits_per_batch(int neighbours) {
 void join_runs(PrimaryHitBatch& batch, int runs) {
   const auto count = static_cast<std::uint32_t>(runs);
   for (std::uint32_t& pixel : batch.hits.pixel) pixel /= count;
-  for (SeenEmission& seen : batch.emission) seen.pixel /= count;
+  for (VisibleEmission& seen : batch.emission) seen.pixel /= count;
 }
 
 /// Least number of batches of a pooled picture: estimates of many lights wait for their mixdown.
@@ -39,7 +39,7 @@ Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device>
       costs_(costs),
       layers_(mixdown ? LightLayers(film_.width, film_.height, mixdown->layers)
                       : LightLayers(film_.width, film_.height, scene_)),
-      shares_(devices.size(), 0.0) {
+      fractions_(devices.size(), 0.0) {
   costs_.start_picture();
 }
 
@@ -77,8 +77,8 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
     runs_ = {};
     if (auto* const processes = plan_.used().processes) bring_rows(*processes, *errors);
   }
-  const std::vector<double> shares = light.shares();
-  for (std::size_t i = 0; i < shares.size(); ++i) shares_[i] += shares[i] / film_.passes;
+  const std::vector<double> fractions = light.fractions();
+  for (std::size_t i = 0; i < fractions.size(); ++i) fractions_[i] += fractions[i] / film_.passes;
 }
 
 RenderResult Picture::finish(double radius) {
@@ -87,11 +87,11 @@ RenderResult Picture::finish(double radius) {
   if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
   RenderCosts costs = costs_;
   costs.film.host_bytes = layers_.bytes();
-  costs.shares.clear();
+  costs.fractions.clear();
   costs.compile_seconds = compile_seconds();
   for (std::size_t i = 0; i < devices_.size() && devices_.size() > 1; ++i) {
     const DeviceInfo& device = devices_[i].info();
-    costs.shares.emplace_back("share of " + device.id + " " + device.name, shares_[i]);
+    costs.fractions.emplace_back("share of " + device.id + " " + device.name, fractions_[i]);
   }
   RenderParameters used = plan_.used();
   used.film = {film_.width, film_.height, film_.samples_per_pixel};
@@ -101,7 +101,7 @@ RenderResult Picture::finish(double radius) {
           .statistics = costs.statistics(),
           .used = used,
           .stored_photons = costs.stored_photons,
-          .device_shares = shares_};
+          .device_fractions = fractions_};
 }
 
 /// Devices compile at the same time.

@@ -50,7 +50,7 @@ class Picture {
   RenderCosts& costs_;
   LightLayers layers_;
   LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
-  std::vector<double> shares_;
+  std::vector<double> fractions_;
 };
 
 }  // namespace photile

@@ -19,7 +19,7 @@ namespace photile {
 namespace {
 
 /// The first picture of those for a time has this part of the work.
-constexpr double first_share = 0.25;
+constexpr double first_fraction = 0.25;
 
 /// Twice the work leaves 0.7 of the error where it is noise, and more than this where it is not.
 constexpr double stalled = 0.95;
@@ -93,7 +93,7 @@ double standard_error_of(const RenderResult& picture) {
 
 RenderResult refine(const RefinementGoal& goal, const RenderParameters& parameters,
                     const RefinementSteps& steps, Progress& progress) {
-  RenderParameters next = goal.seconds > 0 ? with_work(parameters, first_share) : parameters;
+  RenderParameters next = goal.seconds > 0 ? with_work(parameters, first_fraction) : parameters;
   std::optional<RenderResult> best;
   double before = std::numeric_limits<double>::infinity();
   for (;;) {

@@ -75,10 +75,10 @@ RunStatistics RenderCosts::statistics() const {
              {"members per oriented face", ratio(group_members, groups)},
              {"patches", number(patches)}}),
       stage("surface index", surface,
-            {{"sheets", number(sheets)}, {"leaves", number(surface_leaves)}}),
+            {{"components", number(components)}, {"leaves", number(surface_leaves)}}),
       stage("build photon maps", build,
             {{"maps", number(maps)},
-             {"mixed maps", number(mixed_maps)},
+             {"normal-filtered maps", number(normal_filtered_maps)},
              {"references", number(references)},
              {"references per photon", ratio(references, stored_photons)},
              {"photons per map, mean", mean_of(map_sizes)},
@@ -101,7 +101,7 @@ RunStatistics RenderCosts::statistics() const {
        hit_count == 0
            ? 0.0
            : 1e6 * (estimate.time.seconds - estimate_compile_seconds) / number(hit_count)}};
-  estimate_figures.insert(estimate_figures.end(), shares.begin(), shares.end());
+  estimate_figures.insert(estimate_figures.end(), fractions.begin(), fractions.end());
   stages.push_back(stage("radiance estimate", estimate, std::move(estimate_figures)));
   if (!processes.empty()) stages.push_back(stage("exchange", exchange, processes));
   stages.push_back(stage("film", film));

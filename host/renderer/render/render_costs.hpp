@@ -38,16 +38,16 @@ struct RenderCosts {
       estimate, film, release;
   std::uint64_t emitted_photons = 0, stored_photons = 0, caustic_photons = 0;
   std::uint64_t group_members = 0, groups = 0, patches = 0;
-  std::uint64_t sheets = 0, surface_leaves = 0;
+  std::uint64_t components = 0, surface_leaves = 0;
   std::uint64_t light_map_nodes = 0;
-  cache::ErrorSum light_map_errors;        ///< of what was read from nodes that gather
-  std::uint64_t maps = 0, mixed_maps = 0;  ///< of the last pass
-  std::vector<std::uint32_t> map_sizes;    ///< of the last pass, as PhotonMapStatistics
+  cache::ErrorSum light_map_errors;                  ///< of what was read from nodes that gather
+  std::uint64_t maps = 0, normal_filtered_maps = 0;  ///< of the last pass
+  std::vector<std::uint32_t> map_sizes;              ///< of the last pass, as PhotonMapStatistics
   std::uint64_t references = 0, largest_map = 0;
   std::uint64_t rays = 0, hit_count = 0;
-  double compile_seconds = 0;                          ///< of all kernels
-  double estimate_compile_seconds = 0;                 ///< of them, within `estimate`
-  std::vector<std::pair<std::string, double>> shares;  ///< of several devices
+  double compile_seconds = 0;                             ///< of all kernels
+  double estimate_compile_seconds = 0;                    ///< of them, within `estimate`
+  std::vector<std::pair<std::string, double>> fractions;  ///< of several devices
 
   // Where several processes share the rendering: what this one sent to others, and holds.
   std::uint64_t photons_sent = 0, photon_bytes_sent = 0, photons_held = 0;

@@ -19,7 +19,7 @@
 namespace photile {
 namespace {
 
-/// The photons that are traced: those whose light rays bring are not stored.
+/// The photons that are traced: those whose light rays find are not stored.
 PhotonTracerParameters all_photons(const RenderParameters& used) {
   return {.emitted_photons = used.photons.emitted_photons,
           .quota = used.photons.quota,
@@ -130,7 +130,7 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
     return used_.radius;
   }
   if (photons.total() < 2) {
-    // Nothing but lights, mirrors and glass is seen, or rays bring all the light there is.
+    // Nothing but lights, mirrors and glass is seen, or rays find all the light there is.
     if (all_photons(used_).store_direct) {
       progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
     }
@@ -199,7 +199,7 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
 cache::IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
   const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
   return {.rays = used_.light_map_rays,
-          .looks = used_.light_map_rays,
+          .light_samples = used_.light_map_rays,
           .near = defaults::near_radii * estimate.radius,
           .caustic_neighbours = estimate.neighbours,
           .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
@@ -214,7 +214,7 @@ PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
   hits.passes = passes;
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
   hits.lobe_rays = used_.gloss == GlossMode::rays;
-  hits.part_at_glass = true;
+  hits.split_at_glass = true;
   return hits;
 }
 

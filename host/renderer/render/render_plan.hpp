@@ -31,8 +31,9 @@ class RenderPlan {
   /// `check` in render/setting.hpp and of automatic_passes.
   RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits, Progress& progress);
 
-  /// What is asked, with what follows from it in place: photon passes that fit in memory, looks at
-  /// lights where rays gather, discs for naive maps. The radius is 0 where photons tell it.
+  /// What is asked, with what follows from it in place: photon passes that fit in memory, light
+  /// samples where rays gather, discs for naive maps. The radius is 0 where photons tell
+  /// it.
   const RenderParameters& used() const { return used_; }
 
   int passes() const { return used_.passes; }

@@ -23,7 +23,7 @@ namespace photile {
 namespace {
 
 /// Errors: UsageError and SettingError where the passes cannot be kept, or not from these photons.
-void check_kept(const RenderPlan& plan, const PreparedPhotons* prepared, bool keeps) {
+void check_kept(const RenderPlan& plan, const TracedPhotons* prepared, bool keeps) {
   if (plan.used().processes && (prepared || keeps)) {
     throw UsageError(
         "saved maps are of one process; leave them out where several share a rendering");
@@ -56,7 +56,7 @@ void require_device(std::span<const Device> devices) {
 }
 
 RenderSession::RenderSession(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
-                             const RenderParameters& parameters, PreparedPhotons* prepared,
+                             const RenderParameters& parameters, TracedPhotons* prepared,
                              const KeepPhotons& keep, Progress& progress)
     : scene_(std::move(scene)),
       devices_(devices),
@@ -133,7 +133,7 @@ struct SceneRenderer::Impl : RenderSession {
 };
 
 SceneRenderer::SceneRenderer(const Scene& scene, std::span<Device> devices,
-                             const RenderParameters& parameters, PreparedPhotons* prepared,
+                             const RenderParameters& parameters, TracedPhotons* prepared,
                              const KeepPhotons& keep, Progress& progress)
     : impl_(std::make_unique<Impl>(std::make_shared<const PreparedScene>(scene), devices,
                                    parameters, prepared, keep, progress)) {}
@@ -202,7 +202,8 @@ LightLayers with_own_illuminance(LightLayers layers) {
 PrimaryHitBatch GatherHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
                                   int first_row, int last_row,
                                   std::span<const std::uint32_t> map_of) const {
-  return trace::gather_rays(rays, sensors_, response_, lamps_, film, first_row, last_row, map_of);
+  return trace::gather_rays(rays, sensors_, response_, light_sampler_, film, first_row, last_row,
+                            map_of);
 }
 
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,

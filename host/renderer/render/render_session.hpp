@@ -30,7 +30,7 @@ class RenderSession {
  public:
   /// Prepares all passes. References are kept, `scene` aside. Errors: those of SceneRenderer.
   RenderSession(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
-                const RenderParameters& parameters, PreparedPhotons* prepared,
+                const RenderParameters& parameters, TracedPhotons* prepared,
                 const KeepPhotons& keep, Progress& progress);
 
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress,

@@ -163,7 +163,7 @@ std::vector<Setting> photon_rows() {
           "roulette_start", paths, WholeNumbers{1, most_int},
           "first bounce at which a path may end by chance", kept_as_it_is),
       row<&P::passes>("passes", "all", WholeNumbers{1, limits::max_passes},
-                      "photon passes, each of its share of the paths", not_kept,
+                      "photon passes, each of its part of the paths", not_kept,
                       "as many as the host's memory needs"),
   };
 }
@@ -198,7 +198,7 @@ std::vector<Setting> estimate_rows() {
                                 "fineness of the grids", not_kept),
       row<&P::direct_rays>("direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
                            "light samples from a hit, which replace photons directly from lights",
-                           kept_for_direct_light, "photons bring it"),
+                           kept_for_direct_light, "photons carry it"),
       row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
                      "what finds the light that lobes reflect; auto: rays where light maps are "
                      "read, else photons",

@@ -32,9 +32,9 @@ std::vector<std::uint32_t> along_curve(std::span<const geometry::Box> boxes) {
   const glm::vec3 extent = glm::max(bounds.size(), glm::vec3(std::numeric_limits<float>::min()));
   std::vector<std::uint64_t> code;
   for (const geometry::Box& box : boxes) {
-    const glm::dvec3 place =
+    const glm::dvec3 within =
         glm::clamp(glm::dvec3((box.centre() - bounds.lower) / extent), 0.0, 1.0);
-    code.push_back(geometry::morton_code(glm::uvec3(place * double{(1 << bits_of_axis) - 1})));
+    code.push_back(geometry::morton_code(glm::uvec3(within * double{(1 << bits_of_axis) - 1})));
   }
   std::vector<std::uint32_t> order(boxes.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -84,9 +84,9 @@ std::vector<std::uint8_t> MapOwners::triangles_of(std::uint32_t rank) const {
 namespace {
 
 /// Where the photons of a process stand among all, sorted by oriented face.
-class Places {
+class GlobalIndices {
  public:
-  Places(Communicator& processes, const Photons& own) : own_(own) {
+  GlobalIndices(Communicator& processes, const Photons& own) : own_(own) {
     std::vector<std::uint64_t> counts;
     for (std::size_t s = 0; s + 1 < own.first_of.size(); ++s) {
       counts.push_back(own.first_of[s + 1] - own.first_of[s]);
@@ -103,14 +103,14 @@ class Places {
   }
 
   /// Calls visit(i, oriented_face, photon) for i from 0 up to `count`: `photon` is that of this
-  /// process which has the place place_of(i) among all, or none. Places ascend.
-  template <class PlaceOf, class Visit>
-  void for_each(std::uint64_t count, const PlaceOf& place_of, const Visit& visit) const {
+  /// process which has the photon of number index_of(i) among all, or none. Numbers ascend.
+  template <class IndexOf, class Visit>
+  void for_each(std::uint64_t count, const IndexOf& index_of, const Visit& visit) const {
     std::uint32_t s = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
-      const std::uint64_t place = place_of(i);
-      while (first_of_[s + 1] <= place) ++s;
-      const std::uint64_t offset = place - first_of_[s], first = before_[s];
+      const std::uint64_t index = index_of(i);
+      while (first_of_[s + 1] <= index) ++s;
+      const std::uint64_t offset = index - first_of_[s], first = before_[s];
       const std::uint32_t own = own_.first_of[s + 1] - own_.first_of[s];
       const bool here = offset >= first && offset - first < own;
       visit(i, s, here ? own_.first_of[s] + static_cast<std::uint32_t>(offset - first) : none);
@@ -124,16 +124,16 @@ class Places {
 };
 
 /// A position of a list that several processes fill.
-struct Placed {
-  std::uint32_t place;
+struct IndexedPosition {
+  std::uint32_t index;
   glm::vec3 position;
 };
 
 /// The list that all of them have then.
-std::vector<glm::vec3> filled(Communicator& processes, std::span<const Placed> own,
+std::vector<glm::vec3> filled(Communicator& processes, std::span<const IndexedPosition> own,
                               std::uint64_t count) {
   std::vector<glm::vec3> all(count);
-  for (const Placed& one : processes.gather_values(own)) all[one.place] = one.position;
+  for (const IndexedPosition& one : processes.gather_values(own)) all[one.index] = one.position;
   return all;
 }
 
@@ -161,11 +161,11 @@ class Destinations {
       of_rank[home].push_back(i);
       if (others.empty()) continue;
       ranks.clear();
-      geometry::Box place;
-      place.extend(photons.position[i]);
+      geometry::Box box;
+      box.extend(photons.position[i]);
       for (const std::uint32_t map : others) {
-        // kernels/grid/entry.clh tests the same distance more closely.
-        if (geometry::squared_distance(boxes_[map / 2], place) > squared_reach_) continue;
+        // kernels/grid/insertion.clh tests the same distance more closely.
+        if (geometry::squared_distance(boxes_[map / 2], box) > squared_reach_) continue;
         const std::uint32_t rank = owners_.of_map(map);
         if (std::find(ranks.begin(), ranks.end(), rank) == ranks.end()) ranks.push_back(rank);
       }
@@ -248,19 +248,19 @@ void set_first_of(Photons& photons, std::size_t sides) {
 }  // namespace
 
 std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, const Photons& own) {
-  const Places places(processes, own);
+  const GlobalIndices indices(processes, own);
   auto all = std::make_shared<PhotonsOfAll>();
   all->processes = &processes;
-  all->count = places.total();
+  all->count = indices.total();
   for (std::size_t s = 0; s + 1 < own.first_of.size(); ++s) {
-    all->landed.push_back(static_cast<std::uint32_t>(places.landed(s)));
+    all->landed.push_back(static_cast<std::uint32_t>(indices.landed(s)));
   }
-  std::vector<Placed> found;
+  std::vector<IndexedPosition> found;
   const auto find = [&](std::uint64_t i, std::uint32_t, std::uint32_t photon) {
     if (photon != none) found.push_back({static_cast<std::uint32_t>(i), own.position[photon]});
   };
   const std::uint64_t spread = std::min<std::uint64_t>(all->count, groups::max_subsample);
-  places.for_each(
+  indices.for_each(
       spread, [&](std::uint64_t i) { return groups::spread_index(i, spread, all->count); }, find);
   all->spread = filled(processes, found, spread);
 
@@ -268,7 +268,7 @@ std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, cons
   const std::uint64_t step = groups::sample_step(all->count);
   const std::uint64_t samples =
       all->count < step / 2 + 1 ? 0 : (all->count - step / 2 - 1) / step + 1;
-  places.for_each(
+  indices.for_each(
       samples, [&](std::uint64_t i) { return step / 2 + i * step; },
       [&](std::uint64_t i, std::uint32_t s, std::uint32_t photon) {
         all->sample_triangle.push_back(s);

@@ -5,9 +5,9 @@
 #include "render/path_estimate.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
+#include "trace/shading_point.hpp"
 
 namespace photile {
 namespace {
@@ -28,16 +28,16 @@ class SurfacePath {
       : rays_(rays), scene_(rays.scene()), lights_(lights), random_(random), found_(found) {}
 
   void trace(const SurfacePoint& start, const OpaqueBsdf& bsdf) {
-    const trace::Receiver receiver(start, bsdf);
+    const trace::ShadingPoint shading_point(start, bsdf);
     sample_light(
-        start, [&](const glm::vec3& to) { return receiver.weights(to); },
-        [&](const glm::vec3& to) { return receiver.density(to); });
+        start, [&](const glm::vec3& to) { return shading_point.weights(to); },
+        [&](const glm::vec3& to) { return shading_point.density(to); });
     const RandomBlock numbers = random_.block(Purpose::path_scattering, 1);
-    const auto first = receiver.sample(random_.block(Purpose::path_scattering, 0), numbers);
+    const auto first = shading_point.sample(random_.block(Purpose::path_scattering, 0), numbers);
     if (!first) return;
-    density_ = receiver.density(*first);
+    density_ = shading_point.density(*first);
     if (!(density_ > 0.0f)) return;
-    weights_ = receiver.weights(*first) * glm::vec3(1.0f / density_);
+    weights_ = shading_point.weights(*first) * glm::vec3(1.0f / density_);
     from_ = start.position;
     std::optional<SurfacePoint> point = start;
     glm::vec3 way = *first;
@@ -84,8 +84,8 @@ class SurfacePath {
       const trace::Scattered scattered =
           trace::scatter_specular(scene_, point, direction, numbers.uniform(trace::choice_word));
       // A pane of thin glass passes light straight on, and sampling lights sees through it.
-      const bool straight = scattered.direction == direction;
-      if (!straight || !trace::material_of(scene_, point).thin) density_ = 0.0f;
+      const bool unscattered = scattered.direction == direction;
+      if (!unscattered || !trace::material_of(scene_, point).thin) density_ = 0.0f;
       radiance_factor_ *= scattered.radiance_factor;
       direction = scattered.direction;
       return survives(scattered.weight, numbers);
@@ -106,15 +106,15 @@ class SurfacePath {
   /// Light of one light, chosen at random, at a point: `weigh` and `density` of directions there.
   template <class Weigh, class Density>
   void sample_light(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
-    const auto lamp =
+    const auto light =
         lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));
-    if (!lamp || !(glm::dot(lamp->direction, point.normal) > 0.0f)) return;
-    const glm::vec3 origin = point.origin_towards(lamp->direction);
-    const glm::vec3 arrives = lamp->received * trace::transmittance(rays_, origin, lamp->target);
+    if (!light || !(glm::dot(light->direction, point.normal) > 0.0f)) return;
+    const glm::vec3 origin = point.origin_towards(light->direction);
+    const glm::vec3 arrives = light->received * trace::transmittance(rays_, origin, light->target);
     if (arrives == glm::vec3(0.0f)) return;
-    const float weight = lamp->weight_beside(density(lamp->direction));
-    add(lamp->layer, weigh(lamp->direction) * (arrives * weight));
+    const float weight = light->weight_beside(density(light->direction));
+    add(light->layer, weigh(light->direction) * (arrives * weight));
   }
 
   /// Roulette on what is left of the light, as photons play it.

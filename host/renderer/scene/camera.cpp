@@ -211,7 +211,7 @@ Camera place_camera(const Scene& scene) {
   const Box box{bounds.lower, bounds.upper};
   const std::array<double, 6> coverage = coverage_of(scene, box);
   const auto closed = std::count_if(coverage.begin(), coverage.end(),
-                                    [](double share) { return share >= closed_coverage; });
+                                    [](double fraction) { return fraction >= closed_coverage; });
   Camera camera = outside(box);
   if (closed == 6) {
     camera = inside(scene, box);

@@ -102,8 +102,8 @@ double IntensityDistribution::cell_maximum(std::size_t column, std::size_t row) 
       {at(column, row), at(column, row + 1), at(column + 1, row), at(column + 1, row + 1)});
 }
 
-IntensityDistribution::Place IntensityDistribution::in_cell(std::size_t column, std::size_t row,
-                                                            double u, double v) const {
+IntensityDistribution::Sample IntensityDistribution::in_cell(std::size_t column, std::size_t row,
+                                                             double u, double v) const {
   const double azimuth = std::lerp(azimuth_[column], azimuth_[column + 1], u);
   const double cosine = std::lerp(std::cos(polar_[row]), std::cos(polar_[row + 1]), v);
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_cells = std::size_t{1} << 22;
 constexpr double most_cuts = 256;
-constexpr double least_share = 0.02;  // of the mean luminance
+constexpr double least_fraction = 0.02;  // of the mean luminance
 
 /// Cuts of an edge that make cells of about a texel.
 std::uint32_t cuts_of(const Scene& scene, const Light& light, std::uint32_t triangle) {
@@ -26,9 +26,9 @@ std::uint32_t cuts_of(const Scene& scene, const Light& light, std::uint32_t tria
   for (std::size_t i = 0; i < 3; ++i) {
     longest = std::max(longest, glm::length(size * (uv[(i + 1) % 3] - uv[i])));
   }
-  const double share =
+  const double fraction =
       static_cast<double>(most_cells) / static_cast<double>(light.triangles.size());
-  const double limit = std::max(1.0, std::min(most_cuts, std::floor(std::sqrt(share))));
+  const double limit = std::max(1.0, std::min(most_cuts, std::floor(std::sqrt(fraction))));
   // A NaN or infinity among the coordinates makes a single cell.
   return longest < 1e9f ? static_cast<std::uint32_t>(
                               std::clamp(std::ceil(static_cast<double>(longest)), 1.0, limit))
@@ -51,7 +51,7 @@ struct Cell {
   }
   /// Weights of the triangle's second and third corner, of a point in the cell given by those of
   /// the cell's.
-  glm::dvec2 place(double u, double v, std::uint32_t n) const {
+  glm::dvec2 point(double u, double v, std::uint32_t n) const {
     if (inverted) return glm::dvec2(column + 1 - u, row + 1 - v) / static_cast<double>(n);
     return glm::dvec2(column + u, row + v) / static_cast<double>(n);
   }
@@ -73,7 +73,7 @@ glm::dvec3 mean_radiance(const Scene& scene, const Light& light, std::uint32_t t
       {{1.0 / 6, 1.0 / 6}, {4.0 / 6, 1.0 / 6}, {1.0 / 6, 4.0 / 6}, {2.0 / 6, 2.0 / 6}}};
   glm::dvec3 sum(0.0);
   for (const glm::dvec2& middle : middles) {
-    const glm::dvec2 at = cell.place(middle.x, middle.y, n);
+    const glm::dvec2 at = cell.point(middle.x, middle.y, n);
     sum += textured_radiance(scene, light, {triangle, at.x, at.y});
   }
   return 0.25 * sum;
@@ -82,9 +82,9 @@ glm::dvec3 mean_radiance(const Scene& scene, const Light& light, std::uint32_t t
 }  // namespace
 
 glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
-                             const EmissionCells::Place& place) {
-  const auto& uv = scene.corner_emission_uv[place.triangle];
-  const auto u = static_cast<float>(place.u), v = static_cast<float>(place.v);
+                             const EmissionCells::Point& point) {
+  const auto& uv = scene.corner_emission_uv[point.triangle];
+  const auto u = static_cast<float>(point.u), v = static_cast<float>(point.v);
   return glm::dvec3(light.texel_radiance * scene.textures[light.emission_texture].sample(
                                                (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[2]));
 }
@@ -104,7 +104,7 @@ EmissionCells::EmissionCells(const Scene& scene, const Light& light) : light_(&l
       integral_ += cell_area * mean;
     }
   }
-  const double least = area > 0 ? least_share * luminance(integral_) / area : 0.0;
+  const double least = area > 0 ? least_fraction * luminance(integral_) / area : 0.0;
   double sum = 0;
   for (const Triangle& triangle : triangles_) {
     const std::size_t last = triangle.first_cell + std::size_t{triangle.cuts} * triangle.cuts;
@@ -112,12 +112,13 @@ EmissionCells::EmissionCells(const Scene& scene, const Light& light) : light_(&l
       weight_up_to_.push_back(sum += triangle.cell_area * std::max(bright[cell], least));
     }
   }
-  const std::size_t shares = std::bit_ceil(weight_up_to_.size());
-  for (std::size_t share = 0; share < shares; ++share) {
-    first_of_share_.push_back(first_beyond(
-        0, weight_up_to_.size(), static_cast<double>(share) / static_cast<double>(shares) * sum));
+  const std::size_t fractions = std::bit_ceil(weight_up_to_.size());
+  for (std::size_t fraction = 0; fraction < fractions; ++fraction) {
+    first_of_fraction_.push_back(
+        first_beyond(0, weight_up_to_.size(),
+                     static_cast<double>(fraction) / static_cast<double>(fractions) * sum));
   }
-  first_of_share_.push_back(static_cast<std::uint32_t>(weight_up_to_.size()));
+  first_of_fraction_.push_back(static_cast<std::uint32_t>(weight_up_to_.size()));
 }
 
 std::uint32_t EmissionCells::first_beyond(std::size_t first, std::size_t last,
@@ -126,12 +127,13 @@ std::uint32_t EmissionCells::first_beyond(std::size_t first, std::size_t last,
   return static_cast<std::uint32_t>(std::upper_bound(cells + first, cells + last, weight) - cells);
 }
 
-EmissionCells::Place EmissionCells::sample(double target, double u1, double u2) const {
+EmissionCells::Point EmissionCells::sample(double target, double u1, double u2) const {
   const double below_one = std::min(target, 1.0 - 0x1p-53);
-  const auto share = static_cast<std::size_t>(
-      below_one * static_cast<double>(first_of_share_.size() - 1));  // exact: a power of two
-  const std::size_t cell = first_beyond(first_of_share_[share], first_of_share_[share + 1],
-                                        below_one * weight_up_to_.back());
+  const auto fraction = static_cast<std::size_t>(
+      below_one * static_cast<double>(first_of_fraction_.size() - 1));  // exact: a power of two
+  const std::size_t cell =
+      first_beyond(first_of_fraction_[fraction], first_of_fraction_[fraction + 1],
+                   below_one * weight_up_to_.back());
   const auto next = std::upper_bound(
       triangles_.begin(), triangles_.end(), cell,
       [](std::size_t value, const Triangle& triangle) { return value < triangle.first_cell; });
@@ -139,16 +141,16 @@ EmissionCells::Place EmissionCells::sample(double target, double u1, double u2) 
   const Triangle& triangle = triangles_[number];
   const double root = std::sqrt(u1);
   const glm::dvec2 at = Cell::at(cell - triangle.first_cell, triangle.cuts)
-                            .place(root * (1 - u2), root * u2, triangle.cuts);
+                            .point(root * (1 - u2), root * u2, triangle.cuts);
   return {light_->triangles[number], at.x, at.y};
 }
 
-double EmissionCells::density(const Place& place) const {
+double EmissionCells::density(const Point& point) const {
   const auto found =
-      std::lower_bound(light_->triangles.begin(), light_->triangles.end(), place.triangle);
+      std::lower_bound(light_->triangles.begin(), light_->triangles.end(), point.triangle);
   const Triangle& triangle =
       triangles_[static_cast<std::size_t>(found - light_->triangles.begin())];
-  const Cell cell = cell_of(place.u, place.v, triangle.cuts);
+  const Cell cell = cell_of(point.u, point.v, triangle.cuts);
   return weight(triangle.first_cell + cell.index(triangle.cuts)) /
          (weight_up_to_.back() * triangle.cell_area);
 }
@@ -229,8 +231,8 @@ glm::dvec2 daylight(double t) {
 }  // namespace
 
 glm::dvec2 chromaticity_of_temperature(double kelvin) {
-  const double share = std::clamp((kelvin - 4000) / 1000, 0.0, 1.0);  // of daylight
-  return glm::mix(black_body(kelvin), daylight(std::max(kelvin, 4000.0)), share);
+  const double fraction = std::clamp((kelvin - 4000) / 1000, 0.0, 1.0);  // of daylight
+  return glm::mix(black_body(kelvin), daylight(std::max(kelvin, 4000.0)), fraction);
 }
 
 glm::dvec3 color_of_temperature(double kelvin) {

@@ -23,15 +23,15 @@ class EmissionCells {
   const glm::dvec3& integral() const { return integral_; }
 
   /// A point of the light's surface.
-  struct Place {
+  struct Point {
     std::uint32_t triangle;  ///< into Scene::triangles
     double u, v;             ///< barycentric weights of the second and third corner
   };
   /// Numbers in [0, 1) to a point: a cell by its luminance times its area, then evenly over the
   /// cell. No cell is left out: each counts at least a fiftieth of the mean luminance.
-  Place sample(double cell, double u1, double u2) const;
+  Point sample(double cell, double u1, double u2) const;
   /// The density of `sample` at a position, per square metre.
-  double density(const Place& place) const;
+  double density(const Point& point) const;
 
  private:
   struct Triangle {
@@ -52,13 +52,13 @@ class EmissionCells {
   /// For 2^n equal parts of all weight the cell in which each begins, and the number of cells:
   /// where to look for a weight (Chen and Asau's guide table, 1974). Without it half of the time
   /// of a sample of a light with a large picture goes into a search through all cells.
-  std::vector<std::uint32_t> first_of_share_;
+  std::vector<std::uint32_t> first_of_fraction_;
   glm::dvec3 integral_{0.0};
 };
 
 /// Radiance of a textured light at a point, in the unit of Light::texel_radiance.
 glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
-                             const EmissionCells::Place& place);
+                             const EmissionCells::Point& point);
 
 /// `light.color` and the luminance of `rgb`, which may be any radiometric colour; false if black.
 bool set_light_color(const glm::dvec3& rgb, Light& light, double& luminance_of_rgb);

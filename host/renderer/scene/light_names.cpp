@@ -75,9 +75,9 @@ void make_light_names_unique(std::vector<Light>& lights) {
 }
 
 std::string names_like(std::string_view name, std::vector<std::string> names) {
-  const std::string wanted = lower(name);
+  const std::string requested = lower(name);
   std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-    return edits_between(wanted, lower(a)) < edits_between(wanted, lower(b));
+    return edits_between(requested, lower(a)) < edits_between(requested, lower(b));
   });
   return listed_names(names);
 }
@@ -124,10 +124,10 @@ LightGroups light_groups_of(const Scene& scene) {
   LightGroups result = gathered(scene.lights);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     LightGroup& group = result.groups[result.group_of[i]];
-    const double share = group.power > 0 ? scene.lights[i].power / group.power
-                                         : 1.0 / static_cast<double>(group.lights.size());
-    group.color += glm::vec3(share * glm::dvec3(scene.lights[i].color));
-    result.share.push_back(share);
+    const double fraction = group.power > 0 ? scene.lights[i].power / group.power
+                                            : 1.0 / static_cast<double>(group.lights.size());
+    group.color += glm::vec3(fraction * glm::dvec3(scene.lights[i].color));
+    result.fraction.push_back(fraction);
   }
   return result;
 }

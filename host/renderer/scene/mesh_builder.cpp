@@ -161,8 +161,8 @@ void MeshBuilder::add_tangents(const std::array<const Corner*, 3>& sorted, doubl
 }
 
 void MeshBuilder::also_need(const CornerNeeds& needs) {
-  const auto want = [&](bool wanted, bool& needed, auto& array) {
-    if (!wanted || needed) return;
+  const auto want = [&](bool requested, bool& needed, auto& array) {
+    if (!requested || needed) return;
     needed = true;
     array.resize(scene_.triangles.size());
   };

@@ -47,7 +47,7 @@ void add_light(const Light& light, ContentHash& hash) {
   hash.add(group);
   hash.add(kind);
   hash.add(color);
-  hash.add(power);  // quotas and shares of groups follow it
+  hash.add(power);  // quotas and fractions of groups follow it
   hash.add(triangles);
   hash.add(two_sided);
   hash.add(emission_texture);

@@ -31,8 +31,8 @@ glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world) {
   return direction_in_scene(scene, world) - scene.origin;
 }
 
-glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& place) {
-  return direction_in_world(scene, place + scene.origin);
+glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& position) {
+  return direction_in_world(scene, position + scene.origin);
 }
 
 Camera in_world(const Scene& scene, Camera camera) {

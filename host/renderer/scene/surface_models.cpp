@@ -157,9 +157,9 @@ glm::dvec3 mean_texel(const Texture& texture) {
   const double count = static_cast<double>(texture.width()) * texture.height();
   for (int y = 0; y < texture.height(); ++y) {
     for (int x = 0; x < texture.width(); ++x) {
-      const glm::vec2 place((static_cast<float>(x) + 0.5f) / static_cast<float>(texture.width()),
-                            (static_cast<float>(y) + 0.5f) / static_cast<float>(texture.height()));
-      sum += glm::dvec3(texture.sample(place));
+      const glm::vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(texture.width()),
+                         (static_cast<float>(y) + 0.5f) / static_cast<float>(texture.height()));
+      sum += glm::dvec3(texture.sample(uv));
     }
   }
   return sum / std::max(1.0, count);
@@ -224,12 +224,12 @@ std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Mate
   return MaterialReflectance{whole_of(surface), luminance(glm::dvec3(surface.albedo))};
 }
 
-bool set_reflectance(Scene& scene, Material& material, double share) {
+bool set_reflectance(Scene& scene, Material& material, double fraction) {
   if (material.interaction == Interaction::glass) return false;
   if (material.interaction == Interaction::mirror) {
     const double now = luminance(glm::dvec3(material.specular));
-    if (!(now > 0)) return share == 0;
-    material.specular *= static_cast<float>(share / now);
+    if (!(now > 0)) return fraction == 0;
+    material.specular *= static_cast<float>(fraction / now);
     return std::max({material.specular.r, material.specular.g, material.specular.b}) <= 1.0f;
   }
   if (material.diffuse == glm::vec3(0.0f) && material.metallic_roughness == none) {
@@ -248,13 +248,13 @@ bool set_reflectance(Scene& scene, Material& material, double share) {
     return whole_of(mean_surface(scene, material));
   };
   constexpr double slack = 1e-6;
-  if (at(low) > share + slack || at(high) < share - slack) {
+  if (at(low) > fraction + slack || at(high) < fraction - slack) {
     scale_diffuse(scene, material, base, model_base, 1);
     return false;
   }
   for (int step = 0; step < 60; ++step) {
     const double middle = 0.5 * (low + high);
-    (at(middle) < share ? low : high) = middle;
+    (at(middle) < fraction ? low : high) = middle;
   }
   at(0.5 * (low + high));
   return true;

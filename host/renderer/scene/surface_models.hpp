@@ -58,7 +58,7 @@ SceneNeeds needs_of_materials(std::span<const Material> materials);
 /// what scatters no light, and no material that the needs tell of is specular or glossy.
 void drop_flat_normals(Scene& scene, const SceneNeeds& of_materials);
 
-/// The share of light from all directions that an opaque surface sends back, per channel: the
+/// The fraction of light from all directions that an opaque surface sends back, per channel: the
 /// reflectance of lighting tables. Within 2% of what the BSDF scatters, by the fits of its albedo.
 glm::dvec3 hemispherical_reflectance(const Reflectance& surface);
 
@@ -76,6 +76,6 @@ std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Mate
 ///   share   from 0 to 1
 /// Returns false where that cannot be: glass, a lobe or texels that reflect more alone, or a colour
 /// that would exceed 1 in a channel.
-bool set_reflectance(Scene& scene, Material& material, double share);
+bool set_reflectance(Scene& scene, Material& material, double fraction);
 
 }  // namespace photile::scene

@@ -79,9 +79,9 @@ class BoundaryEdges {
   /// Directions are told apart by the cells of a cube, two opposite sides of which are one, so many
   /// across.
   static constexpr int cells_across = 16;
-  static int cell_along(float place) {
+  static int cell_along(float position) {
     // Written so that what is no number has a cell, too.
-    return place > -1.0f ? static_cast<int>(std::min(0.5f * (place + 1.0f), 0.9999f) * cells_across)
+    return position > -1.0f ? static_cast<int>(std::min(0.5f * (position + 1.0f), 0.9999f) * cells_across)
                          : 0;
   }
   static std::size_t cell_at(int axis, int u, int v) {

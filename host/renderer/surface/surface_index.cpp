@@ -8,9 +8,9 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
-#include "surface/exposure.hpp"
-#include "surface/facets.hpp"
-#include "surface/sheets.hpp"
+#include "surface/coplanar_regions.hpp"
+#include "surface/open_fraction.hpp"
+#include "surface/smooth_components.hpp"
 #include "surface/surface_mesh.hpp"
 #include "surface/surface_tree.hpp"
 #include "surface/unlit_sides.hpp"
@@ -25,9 +25,9 @@ static_assert(sizeof(PhotileSurfaceLeaf) == 18 * 4 * PHOTILE_SURFACE_WIDTH);
 PhotileSurfaceLeaf empty_leaf() {
   PhotileSurfaceLeaf leaf{};
   for (int lane = 0; lane < PHOTILE_SURFACE_WIDTH; ++lane) {
-    leaf.facet[lane] = PHOTILE_NO_FACET;
+    leaf.region[lane] = PHOTILE_NO_REGION;
     leaf.triangle[lane] = PHOTILE_PIECE_BORDER;
-    leaf.front_sheet[lane] = leaf.back_sheet[lane] = PHOTILE_SHEET_UNLIT;
+    leaf.front_component[lane] = leaf.back_component[lane] = PHOTILE_COMPONENT_UNLIT;
   }
   return leaf;
 }
@@ -44,17 +44,17 @@ PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
     leaf.b_x[lane] = piece.b.x, leaf.b_y[lane] = piece.b.y, leaf.b_z[lane] = piece.b.z;
     leaf.c_x[lane] = piece.c.x, leaf.c_y[lane] = piece.c.y, leaf.c_z[lane] = piece.c.z;
     leaf.normal_x[lane] = normal.x, leaf.normal_y[lane] = normal.y, leaf.normal_z[lane] = normal.z;
-    leaf.facet[lane] = piece.facet;
+    leaf.region[lane] = piece.region;
     leaf.triangle[lane] = piece.triangle;
-    leaf.front_sheet[lane] = index.sheet[oriented(triangle, 0)];
-    leaf.back_sheet[lane] = index.sheet[oriented(triangle, 1)];
-    leaf.front_exposure[lane] = index.exposure[oriented(triangle, 0)];
-    leaf.back_exposure[lane] = index.exposure[oriented(triangle, 1)];
+    leaf.front_component[lane] = index.component[oriented(triangle, 0)];
+    leaf.back_component[lane] = index.component[oriented(triangle, 1)];
+    leaf.front_open_fraction[lane] = index.open_fraction[oriented(triangle, 0)];
+    leaf.back_open_fraction[lane] = index.open_fraction[oriented(triangle, 1)];
     if (piece.unlit_side == none) continue;
     const bool front = side_of(piece.unlit_side) == 0;
-    leaf.front_sheet[lane] = front ? index.sheets : PHOTILE_NO_SHEET;
-    leaf.back_sheet[lane] = front ? PHOTILE_NO_SHEET : index.sheets;
-    leaf.front_exposure[lane] = leaf.back_exposure[lane] = -1.0f;
+    leaf.front_component[lane] = front ? index.components : PHOTILE_NO_COMPONENT;
+    leaf.back_component[lane] = front ? PHOTILE_NO_COMPONENT : index.components;
+    leaf.front_open_fraction[lane] = leaf.back_open_fraction[lane] = -1.0f;
   }
   return leaf;
 }
@@ -71,26 +71,28 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
   index.angle_degrees = angle_degrees;
   surface::SurfaceMesh mesh(scene);
   const auto connections = surface::find_connections(mesh, radius, angle_degrees);
-  index.dark =
-      surface::find_unlit_sides(mesh, connections, surface::join_sheets(mesh, connections), landed);
-  const surface::Sheets sheets = surface::join_sheets(mesh, connections, index.dark);
-  const surface::Facets facets = surface::find_facets(mesh, radius, index.dark);
-  const surface::PlaneTree planes(mesh, facets);
-  index.sheet = sheets.of;
-  index.sheets = sheets.count;
+  index.dark = surface::find_unlit_sides(mesh, connections,
+                                         surface::join_components(mesh, connections), landed);
+  const surface::SmoothComponents components =
+      surface::join_components(mesh, connections, index.dark);
+  const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, radius, index.dark);
+  const surface::PlaneTree planes(mesh, regions);
+  index.component = components.of;
+  index.components = components.count;
   index.normal.resize(2 * scene.triangle_count());
   tbb::parallel_for(std::size_t{0}, index.normal.size(), [&](std::size_t s) {
     const glm::dvec3& normal = mesh.normal[s / 2];
     index.normal[s] = glm::vec3(s % 2 == 0 ? normal : -normal);
   });
-  index.exposure = surface::find_exposure(mesh, facets, sheets, lit_sheets(index, landed), radius,
-                                          angle_degrees);
-  index.facet = facets.of_triangle;
+  index.open_fraction = surface::find_open_fractions(
+      mesh, regions, components, lit_components(index, landed), radius, angle_degrees);
+  index.region = regions.of_triangle;
   if (photons != nullptr) {
     index.unlit_regions = surface::find_unlit_regions(mesh, *photons, index.dark, radius);
     // What counts in part for most hits has no holes for others.
-    std::erase_if(index.unlit_regions,
-                  [&](const DarkPart& part) { return index.exposure[part.oriented_face] < 1; });
+    std::erase_if(index.unlit_regions, [&](const DarkPart& part) {
+      return index.open_fraction[part.oriented_face] < 1;
+    });
     index.first_unlit_region.resize(2 * scene.triangle_count() + 1);
     std::size_t next = 0;
     for (std::size_t s = 0; s < index.first_unlit_region.size(); ++s) {
@@ -100,7 +102,7 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
     }
   }
   const auto pieces =
-      surface::find_pieces(mesh, facets, planes, index.unlit_regions, radius, angle_degrees);
+      surface::find_pieces(mesh, regions, planes, index.unlit_regions, radius, angle_degrees);
   index.original = std::move(mesh.original);
   surface::SurfaceTree tree = surface::build_surface_tree(pieces);
   index.nodes = std::move(tree.nodes);
@@ -124,16 +126,16 @@ SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double ra
 }
 
 std::uint64_t SurfaceIndex::bytes() const {
-  return (original.size() + facet.size() + sheet.size()) * sizeof(std::uint32_t) + dark.size() +
-         unlit_regions.size() * sizeof(DarkPart) +
+  return (original.size() + region.size() + component.size()) * sizeof(std::uint32_t) +
+         dark.size() + unlit_regions.size() * sizeof(DarkPart) +
          first_unlit_region.size() * sizeof(std::uint32_t) +
          normal.size() * (sizeof(glm::vec3) + sizeof(float)) + nodes.size() * sizeof(nodes[0]) +
          leaves.size() * sizeof(leaves[0]);
 }
 
-std::uint32_t SurfaceIndex::sheet_at(std::uint32_t s, const glm::vec3& position) const {
+std::uint32_t SurfaceIndex::component_at(std::uint32_t s, const glm::vec3& position) const {
   const std::uint32_t own = original[s];
-  if (first_unlit_region.empty()) return sheet[own];
+  if (first_unlit_region.empty()) return component[own];
   for (std::uint32_t i = first_unlit_region[own]; i < first_unlit_region[own + 1]; ++i) {
     const auto& corner = unlit_regions[i].corner;
     const glm::dvec3 n(normal[own]), p(position);
@@ -143,9 +145,9 @@ std::uint32_t SurfaceIndex::sheet_at(std::uint32_t s, const glm::vec3& position)
       const double turn = glm::dot(n, glm::cross(to - from, p - from));
       left += turn >= 0, right += turn <= 0;
     }
-    if (left == 3 || right == 3) return sheets;
+    if (left == 3 || right == 3) return components;
   }
-  return sheet[own];
+  return component[own];
 }
 
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons) {
@@ -161,12 +163,12 @@ std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons)
   return landed;
 }
 
-std::vector<std::uint8_t> lit_sheets(const SurfaceIndex& surface,
-                                     const std::vector<std::uint32_t>& landed) {
-  std::vector<std::uint8_t> lit(surface.sheets + 1, 0);
+std::vector<std::uint8_t> lit_components(const SurfaceIndex& surface,
+                                         const std::vector<std::uint32_t>& landed) {
+  std::vector<std::uint8_t> lit(surface.components + 1, 0);
   lit.back() = 1;
   for (std::size_t s = 0; s < landed.size(); ++s) {
-    if (landed[s] != 0 && surface.dark[s] == 0) lit[surface.sheet[s]] = 1;
+    if (landed[s] != 0 && surface.dark[s] == 0) lit[surface.component[s]] = 1;
   }
   return lit;
 }

@@ -32,15 +32,15 @@ struct SurfaceMesh {
 
   /// Visits the pairs that begin in a part of all edges: parts may be visited in parallel.
   template <class Visit>
-  void for_each_edge_of(std::size_t share, const Visit& visit) const {
+  void for_each_edge_of(std::size_t chunk, const Visit& visit) const {
     const auto begin_of = [&](std::size_t i) {
-      i = std::min(i * edges_per_share, edges.size());
+      i = std::min(i * edges_per_chunk, edges.size());
       while (i > 0 && i < edges.size() && alike(edges[i - 1], edges[i])) ++i;
       return i;
     };
-    for_each_edge_from(begin_of(share), begin_of(share + 1), visit);
+    for_each_edge_from(begin_of(chunk), begin_of(chunk + 1), visit);
   }
-  std::size_t edge_shares() const { return (edges.size() + edges_per_share - 1) / edges_per_share; }
+  std::size_t edge_chunks() const { return (edges.size() + edges_per_chunk - 1) / edges_per_chunk; }
 
   const Scene& scene;
   std::vector<std::array<std::uint32_t, 3>> corner;  ///< welded, per triangle
@@ -57,7 +57,7 @@ struct SurfaceMesh {
   }
 
  private:
-  static constexpr std::size_t edges_per_share = 8192;
+  static constexpr std::size_t edges_per_chunk = 8192;
 
   static bool alike(const MeshEdge& a, const MeshEdge& b) {
     return a.low == b.low && a.high == b.high;

@@ -176,9 +176,9 @@ class TreeBuilder {
   }
 
   int bin_of(std::uint32_t piece, int axis, const Box& centres) const {
-    const float place =
+    const float position =
         (centre(piece)[axis] - centres.lower[axis]) / (centres.upper[axis] - centres.lower[axis]);
-    return std::clamp(static_cast<int>(place * bin_count), 0, bin_count - 1);
+    return std::clamp(static_cast<int>(position * bin_count), 0, bin_count - 1);
   }
 
   const std::vector<SurfacePiece>& pieces_;

@@ -10,7 +10,7 @@
 
 #include "geometry/disjoint_sets.hpp"
 #include "photile/device/surface.h"
-#include "surface/sheets.hpp"
+#include "surface/smooth_components.hpp"
 
 namespace photile::surface {
 
@@ -23,24 +23,25 @@ constexpr double least_of_a_triangle = 5;  ///< of them: e^-5 of such are empty 
 
 std::vector<std::uint8_t> find_unlit_sides(const SurfaceMesh& mesh,
                                            std::span<const Connection> connections,
-                                           const Sheets& sheets,
+                                           const SmoothComponents& components,
                                            std::span<const std::uint32_t> landed) {
   const std::size_t sides = mesh.original.size();
   std::vector<std::uint64_t> found(sides, 0);  // of originals, with what coincides with them
   for (std::size_t s = 0; s < sides; ++s) found[mesh.original[s]] += landed[s];
-  std::vector<double> area(sides / 2), area_of_sheet(sheets.count, 0.0);
-  std::vector<std::uint64_t> found_on_sheet(sheets.count, 0);
+  std::vector<double> area(sides / 2), area_of_component(components.count, 0.0);
+  std::vector<std::uint64_t> found_on_component(components.count, 0);
   for (std::uint32_t t = 0; t < area.size(); ++t) {
     if (!mesh.counts(t)) continue;
     area[t] = triangle_area(mesh.scene, t);
     for (const std::uint32_t s : {oriented(t, 0), oriented(t, 1)}) {
-      area_of_sheet[sheets.of[s]] += area[t];
-      found_on_sheet[sheets.of[s]] += found[s];
+      area_of_component[components.of[s]] += area[t];
+      found_on_component[components.of[s]] += found[s];
     }
   }
   const auto expected = [&](std::uint32_t s) {
-    const std::uint32_t sheet = sheets.of[s];
-    return static_cast<double>(found_on_sheet[sheet]) * area[triangle_of(s)] / area_of_sheet[sheet];
+    const std::uint32_t component = components.of[s];
+    return static_cast<double>(found_on_component[component]) * area[triangle_of(s)] /
+           area_of_component[component];
   };
   const auto nearly_empty = [](std::uint64_t count, double of) {
     return static_cast<double>(count) <= most_found_in_the_dark * of;
@@ -218,11 +219,11 @@ class NearbyPlanes {
   double radius_, least_cosine_;
 };
 
-SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
+SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t region) {
   SurfacePiece piece{.a = edge.from,
                      .b = edge.to,
                      .c = edge.inward,
-                     .facet = facet,
+                     .region = region,
                      .triangle = edge.triangle | PHOTILE_PIECE_BORDER};
   piece.box.extend(edge.from);
   piece.box.extend(edge.to);
@@ -231,7 +232,7 @@ SurfacePiece border_piece(const BorderEdge& edge, std::uint32_t facet) {
 
 }  // namespace
 
-std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const CoplanarRegions& regions,
                                       const PlaneTree& planes,
                                       std::span<const DarkPart> unlit_regions, double radius,
                                       double angle_degrees) {
@@ -240,18 +241,18 @@ std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& fac
   tbb::parallel_for(std::size_t{0}, is_piece.size(), [&](std::size_t i) {
     const auto triangle = static_cast<std::uint32_t>(i);
     if (!mesh.counts(triangle)) return;
-    is_piece[i] = facets.of_triangle[i] == PHOTILE_NO_FACET || nearby.near(triangle);
+    is_piece[i] = regions.of_triangle[i] == PHOTILE_NO_REGION || nearby.near(triangle);
   });
   std::vector<SurfacePiece> pieces;
-  for (const BorderEdge& edge : facets.borders) {
-    pieces.push_back(border_piece(edge, facets.of_triangle[edge.triangle]));
+  for (const BorderEdge& edge : regions.borders) {
+    pieces.push_back(border_piece(edge, regions.of_triangle[edge.triangle]));
   }
   for (const DarkPart& part : unlit_regions) {
     const auto& [a, b, c] = part.corner;
     SurfacePiece piece{.a = a,
                        .b = b,
                        .c = c,
-                       .facet = PHOTILE_NO_FACET,
+                       .region = PHOTILE_NO_REGION,
                        .triangle = triangle_of(part.oriented_face),
                        .unlit_side = part.oriented_face};
     for (const glm::vec3& corner : part.corner) piece.box.extend(corner);
@@ -264,7 +265,7 @@ std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& fac
                       .a = a,
                       .b = b,
                       .c = c,
-                      .facet = facets.of_triangle[t],
+                      .region = regions.of_triangle[t],
                       .triangle = t});
   }
   return pieces;

@@ -10,8 +10,8 @@
 #include "geometry/box_tree.hpp"
 #include "photile/photons.hpp"
 #include "photile/surface_index.hpp"
-#include "surface/facets.hpp"
-#include "surface/sheets.hpp"
+#include "surface/coplanar_regions.hpp"
+#include "surface/smooth_components.hpp"
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
@@ -19,15 +19,15 @@ namespace photile::surface {
 /// Photons on dark surface, at most, over those that are expected there.
 inline constexpr double most_found_in_the_dark = 0.005;
 
-/// Per oriented face: 1 where its sheet's mean density leads to expect photons, and next to none
-/// landed. Triangles of which so many are expected that chance alone leaves one in a hundred empty
-/// are judged together with those that they connect to, and are dark where all of them together
-/// are.
-///   sheets   those of `connections`
+/// Per oriented face: 1 where its component's mean density leads to expect photons, and next to
+/// none landed. Triangles of which so many are expected that chance alone leaves one in a hundred
+/// empty are judged together with those that they connect to, and are dark where all of them
+/// together are.
+///   components   those of `connections`
 ///   landed   per oriented face: how many photons did
 std::vector<std::uint8_t> find_unlit_sides(const SurfaceMesh& mesh,
                                            std::span<const Connection> connections,
-                                           const Sheets& sheets,
+                                           const SmoothComponents& components,
                                            std::span<const std::uint32_t> landed);
 
 /// Halves triangles, across the middles of their longest edges, as long as a half would hold 12
@@ -43,15 +43,15 @@ std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons&
 struct SurfacePiece {
   geometry::Box box = {};
   glm::vec3 a{0.0f}, b{0.0f}, c{0.0f};
-  std::uint32_t facet = 0;
+  std::uint32_t region = 0;
   std::uint32_t triangle = 0;       ///< with PHOTILE_PIECE_BORDER where it is a border edge
   std::uint32_t unlit_side = none;  ///< oriented face of which it is an unlit region
 };
 
 /// All border edges, unlit regions, and those triangles that hits must look at: triangles of small
-/// facets, and those within the radius of a triangle in another plane whose normal agrees with
+/// regions, and those within the radius of a triangle in another plane whose normal agrees with
 /// theirs on one side or the other. The middle of a floor is neither.
-std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const Facets& facets,
+std::vector<SurfacePiece> find_pieces(const SurfaceMesh& mesh, const CoplanarRegions& regions,
                                       const PlaneTree& planes,
                                       std::span<const DarkPart> unlit_regions, double radius,
                                       double angle_degrees);

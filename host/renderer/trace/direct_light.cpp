@@ -5,9 +5,9 @@
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
+#include "trace/shading_point.hpp"
 
 namespace photile::trace {
 namespace {
@@ -17,34 +17,36 @@ constexpr int most_passed = 4096;
 
 class DirectLight {
  public:
-  DirectLight(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-              const Receiver& receiver, float share, std::vector<ReceivedLight>& found)
+  DirectLight(const RayScene& rays, const LightSampler& light_sampler, const SurfacePoint& point,
+              const ShadingPoint& shading_point, float fraction, std::vector<ReceivedLight>& found)
       : rays_(rays),
         scene_(rays.scene()),
-        lamps_(lamps),
+        light_sampler_(light_sampler),
         point_(point),
-        receiver_(receiver),
-        share_(share),
+        shading_point_(shading_point),
+        fraction_(fraction),
         found_(found) {}
 
-  void sample_light(const LightSampleNumbers::Look& look) {
-    const auto lamp = lamps_.sample(point_.position, look.lamp, look.place);
-    if (!lamp || !(glm::dot(lamp->direction, point_.normal) > 0.0f)) return;
+  void sample_light(const LightSampleNumbers::Sample& light_sample) {
+    const auto light =
+        light_sampler_.sample(point_.position, light_sample.choice, light_sample.position);
+    if (!light || !(glm::dot(light->direction, point_.normal) > 0.0f)) return;
     const glm::vec3 arrives =
-        lamp->received * transmittance(rays_, point_.origin_towards(lamp->direction), lamp->target);
+        light->received *
+        transmittance(rays_, point_.origin_towards(light->direction), light->target);
     if (arrives == glm::vec3(0.0f)) return;
-    const float weight = lamp->weight_beside(receiver_.density(lamp->direction));
-    add(lamp->layer, receiver_.weights(lamp->direction) * (arrives * weight));
+    const float weight = light->weight_beside(shading_point_.density(light->direction));
+    add(light->layer, shading_point_.weights(light->direction) * (arrives * weight));
   }
 
   /// Follows a direction through panes and cutouts until it meets a light, or what bends or stops
   /// it.
-  void follow_direction(const LightSampleNumbers::Look& look) {
-    const auto direction = receiver_.sample(look.lobe, look.direction);
+  void follow_direction(const LightSampleNumbers::Sample& light_sample) {
+    const auto direction = shading_point_.sample(light_sample.lobe, light_sample.direction);
     if (!direction) return;
-    const float density = receiver_.density(*direction);
+    const float density = shading_point_.density(*direction);
     if (!(density > 0.0f)) return;
-    LightWeights weights = receiver_.weights(*direction) * glm::vec3(1.0f / density);
+    LightWeights weights = shading_point_.weights(*direction) * glm::vec3(1.0f / density);
     glm::vec3 origin = point_.origin_towards(*direction);
     for (int surfaces = 0; surfaces <= most_passed; ++surfaces) {
       const auto hit = intersect(rays_, origin, *direction);
@@ -55,8 +57,9 @@ class DirectLight {
       const SurfacePoint met = surface_hit(scene_, *hit, *direction);
       if (emits(scene_, met)) {
         const std::uint32_t light = scene_.triangle_light[met.where.triangle];
-        const float weight = power_heuristic(density, lamps_.density(point_.position, met));
-        add(lamps_.layer(light), weights * (weight * lamps_.radiance(met, -*direction)));
+        const float weight = power_heuristic(density, light_sampler_.density(point_.position, met));
+        add(light_sampler_.layer(light),
+            weights * (weight * light_sampler_.radiance(met, -*direction)));
       }
       const glm::vec3 passes = transmittance(scene_, met, *direction);
       if (passes == glm::vec3(0.0f)) return;
@@ -68,24 +71,24 @@ class DirectLight {
  private:
   void add_what_lies_beyond(const glm::vec3& direction, float density,
                             const LightWeights& weights) {
-    lamps_.distant().for_each_shining(
+    light_sampler_.distant().for_each_shining(
         direction, [&](const DistantLight& light, const glm::vec3& radiance) {
           const float weight =
-              power_heuristic(density, lamps_.density(light, point_.position, direction));
-          add(lamps_.layer(light.light()), weights * (weight * radiance));
+              power_heuristic(density, light_sampler_.density(light, point_.position, direction));
+          add(light_sampler_.layer(light.light()), weights * (weight * radiance));
         });
   }
 
   void add(std::uint32_t layer, const LightWeights& light) {
-    found_.push_back({layer, share_ * light.irradiance, share_ * light.radiance});
+    found_.push_back({layer, fraction_ * light.irradiance, fraction_ * light.radiance});
   }
 
   const RayScene& rays_;
   const Scene& scene_;
-  const LightSampler& lamps_;
+  const LightSampler& light_sampler_;
   const SurfacePoint& point_;
-  const Receiver& receiver_;
-  float share_;
+  const ShadingPoint& shading_point_;
+  float fraction_;
   std::vector<ReceivedLight>& found_;
 };
 
@@ -99,34 +102,36 @@ LightSampleNumbers::LightSampleNumbers(const RandomStream& sequences, std::uint3
                  sequences.block(Purpose::direct_light, 4 * surface + 3)},
       first_(first) {}
 
-LightNumbers LightSampleNumbers::lamp(std::uint32_t number) const {
+LightNumbers LightSampleNumbers::light(std::uint32_t number) const {
   const glm::uvec2 choices = sobol_words(first_ + number, scrambles_[0]);
-  const glm::uvec2 place = sobol_words(first_ + number, scrambles_[1]);
-  // A choice among many takes more than 32 bits: all looks share what follows.
+  const glm::uvec2 on_light = sobol_words(first_ + number, scrambles_[1]);
+  // A choice among many takes more than 32 bits: all light samples share what follows.
   return {RandomBlock({choices.x, scrambles_[0].word(3), 0, 0}),
-          RandomBlock({choices.y, scrambles_[1].word(3), place.x, place.y})};
+          RandomBlock({choices.y, scrambles_[1].word(3), on_light.x, on_light.y})};
 }
 
-LightSampleNumbers::Look LightSampleNumbers::look(std::uint32_t number) const {
+LightSampleNumbers::Sample LightSampleNumbers::sample(std::uint32_t number) const {
   const glm::uvec2 direction = sobol_words(first_ + number, scrambles_[2]);
   const glm::uvec2 lobe = sobol_words(first_ + number, scrambles_[3]);
-  return {lamp(number), RandomBlock({lobe.x, 0, 0, 0}),
+  return {light(number), RandomBlock({lobe.x, 0, 0, 0}),
           RandomBlock({lobe.y, direction.x, direction.y, 0})};
 }
 
-void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-                       const glm::vec3& direction, ReflectedPart part, int count,
-                       const LightSampleNumbers& samples, std::vector<ReceivedLight>& found) {
+void find_direct_light(const RayScene& rays, const LightSampler& light_sampler,
+                       const SurfacePoint& point, const glm::vec3& direction, ReflectedPart part,
+                       int count, const LightSampleNumbers& samples,
+                       std::vector<ReceivedLight>& found) {
   OpaqueBsdf bsdf(rays.scene(), point, direction);
   bsdf.shade_smoothly(rays.scene(), point);
   if (part == ReflectedPart::but_the_base) bsdf.drop_diffuse();
   if (part == ReflectedPart::but_the_lobe) bsdf.drop_lobe();
-  const Receiver receiver(point, bsdf);
-  DirectLight light(rays, lamps, point, receiver, 1.0f / static_cast<float>(count), found);
+  const ShadingPoint shading_point(point, bsdf);
+  DirectLight light(rays, light_sampler, point, shading_point, 1.0f / static_cast<float>(count),
+                    found);
   for (std::uint32_t number = 0; number < static_cast<std::uint32_t>(count); ++number) {
-    const LightSampleNumbers::Look look = samples.look(number);
-    light.sample_light(look);
-    light.follow_direction(look);
+    const LightSampleNumbers::Sample light_sample = samples.sample(number);
+    light.sample_light(light_sample);
+    light.follow_direction(light_sample);
   }
 }
 
@@ -135,18 +140,19 @@ void ShadowRays::clear() {
   found_.clear();
 }
 
-void ShadowRays::add(const LightSampler& lamps, const SurfacePoint& point,
+void ShadowRays::add(const LightSampler& light_sampler, const SurfacePoint& point,
                      const LightNumbers& numbers, const glm::vec3& weight, float directions,
                      const SelectionProbabilities& probabilities, std::uint32_t tag) {
-  const auto lamp = lamps.sample(point.position, numbers.lamp, numbers.place, probabilities);
-  if (!lamp) return;
-  const float cosine = glm::dot(lamp->direction, point.normal);
+  const auto light =
+      light_sampler.sample(point.position, numbers.choice, numbers.position, probabilities);
+  if (!light) return;
+  const float cosine = glm::dot(light->direction, point.normal);
   if (!(cosine > 0.0f)) return;
-  const glm::vec3 arrives = cosine * weight * lamp->received *
-                            lamp->weight_beside(directions * cosine * glm::one_over_pi<float>());
+  const glm::vec3 arrives = cosine * weight * light->received *
+                            light->weight_beside(directions * cosine * glm::one_over_pi<float>());
   if (arrives == glm::vec3(0.0f)) return;
-  lines_.push_back({point.origin_towards(lamp->direction), lamp->target});
-  found_.push_back({tag, lamp->layer, arrives, lamp->direction});
+  lines_.push_back({point.origin_towards(light->direction), light->target});
+  found_.push_back({tag, light->layer, arrives, light->direction});
 }
 
 std::span<const ShadowRays::Found> ShadowRays::found(const RayScene& rays) {

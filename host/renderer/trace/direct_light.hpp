@@ -15,73 +15,74 @@
 
 namespace photile::trace {
 
-/// Light of one layer, whose power is 1, at a receiver.
+/// Light of one layer, whose power is 1, at a shading point.
 struct ReceivedLight {
   std::uint32_t layer;   ///< into LightGroups::groups
   glm::vec3 irradiance;  ///< lm/m2
-  glm::vec3 radiance;    ///< reflected against the ray that arrived at the receiver
+  glm::vec3 radiance;    ///< reflected against the ray that arrived at the shading point
 };
 
 /// Random numbers for a light sample.
 struct LightNumbers {
-  RandomBlock lamp, place;  ///< which light, and where on it
+  RandomBlock choice, position;  ///< which light, and where on it
 };
 
-/// The positions of scrambled sequences (random_stream.hpp) that a receiver's looks take: point
-/// `first` and those after it.
+/// The positions of scrambled sequences (random_stream.hpp) that the light samples of a shading
+/// point take: point `first` and those after it.
 class LightSampleNumbers {
  public:
-  /// `sequences`: receivers that share them, as the samples of a pixel do, take others of their
-  /// points each.
+  /// `sequences`: shading points that share them, as the samples of a pixel do, take others of
+  /// their points each.
   ///   surface   of a path, counted from 0: each has sequences of its own
   LightSampleNumbers(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
-  /// Random numbers of one look, at a light and in a direction of the receiver's own.
-  struct Look : LightNumbers {
-    RandomBlock lobe, direction;  ///< of the receiver
+  /// Random numbers of one light sample, and of a direction of the shading point's own.
+  struct Sample : LightNumbers {
+    RandomBlock lobe, direction;  ///< of the shading point
   };
-  Look look(std::uint32_t number) const;
+  Sample sample(std::uint32_t number) const;
   /// Its numbers for the light alone.
-  LightNumbers lamp(std::uint32_t number) const;
+  LightNumbers light(std::uint32_t number) const;
 
  private:
   std::array<RandomBlock, 4> scrambles_;  ///< of pairs of dimensions
   std::uint32_t first_;
 };
 
-/// What of a surface's reflection is wanted.
+/// What of a surface's reflection is requested.
 enum class ReflectedPart : std::uint8_t {
   all,
   but_the_base,  ///< OpaqueBsdf::drop_diffuse
   but_the_lobe   ///< OpaqueBsdf::drop_lobe
 };
 
-/// Estimates what lights send straight to a point of an opaque surface, or through panes of thin
-/// glass and cutouts: just what photons bring that are not scattered before.
+/// Estimates the direct light at a point of an opaque surface, or through panes of thin
+/// glass and cutouts: just what photons carry that are not scattered before.
 /// `count` times a light is sampled, and a direction of the surface's own is followed; what both
 /// would find is weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to
 /// `found` is unbiased.
 ///   direction   of the ray that arrived at the point, unit
 ///   part        of the reflection that the radiance has
-void find_direct_light(const RayScene& rays, const LightSampler& lamps, const SurfacePoint& point,
-                       const glm::vec3& direction, ReflectedPart part, int count,
-                       const LightSampleNumbers& samples, std::vector<ReceivedLight>& found);
+void find_direct_light(const RayScene& rays, const LightSampler& light_sampler,
+                       const SurfacePoint& point, const glm::vec3& direction, ReflectedPart part,
+                       int count, const LightSampleNumbers& samples,
+                       std::vector<ReceivedLight>& found);
 
-/// Light samples from surfaces that lie close together, for irradiance: the part that looks find
-/// where directions with the density of the cosine are followed as well. Shadow rays are traced
-/// sixteen at a time.
+/// Light samples from surfaces that lie close together, for irradiance: the part that light samples
+/// find where directions with the density of the cosine are followed as well. Shadow rays are
+/// traced sixteen at a time.
 class ShadowRays {
  public:
   void clear();
 
-  /// Looks once.
-  ///   weight       of what the look finds
-  ///   directions   followed for each look; what both would find is weighed
+  /// Takes one light sample.
+  ///   weight       of what the light sample finds
+  ///   directions   followed for each light sample; what both would find is weighed
   ///   probabilities      of lights at the point
   ///   tag          that is found again with the light
-  void add(const LightSampler& lamps, const SurfacePoint& point, const LightNumbers& numbers,
-           const glm::vec3& weight, float directions, const SelectionProbabilities& probabilities,
-           std::uint32_t tag);
+  void add(const LightSampler& light_sampler, const SurfacePoint& point,
+           const LightNumbers& numbers, const glm::vec3& weight, float directions,
+           const SelectionProbabilities& probabilities, std::uint32_t tag);
 
   struct Found {
     std::uint32_t tag, layer;

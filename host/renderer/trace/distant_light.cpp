@@ -65,7 +65,7 @@ namespace {
 
 // Cells of the sphere, by elevation and azimuth: some for each patch of the finest skies.
 constexpr int sphere_rows = 90, sphere_columns = 180;
-constexpr std::size_t few_lights = 4;  ///< that are not worth a look-up
+constexpr std::size_t few_lights = 4;  ///< that are not worth a table
 
 /// Clockwise from -z as seen from above, in [0, 2 pi).
 double azimuth_of(const glm::dvec3& direction) {
@@ -107,20 +107,21 @@ double disc_solid_angle(const Light& sun) {
   return 4 * glm::pi<double>() * half_sine * half_sine;  // 2 pi (1 - cos)
 }
 
-DistantLight::DistantLight(const Scene& scene, std::uint32_t light, double share, double radius)
-    : lamp_(&scene.lights[light]), light_(light) {
+DistantLight::DistantLight(const Scene& scene, std::uint32_t light, double fraction, double radius)
+    : source_(&scene.lights[light]), light_(light) {
   const double disc = glm::pi<double>() * radius * radius;  // that each direction's light crosses
-  if (lamp_->kind == LightKind::environment) {
-    map_ = &scene.environments[lamp_->environment];
-    factor_ = glm::vec3(static_cast<float>(share / (disc * luminance(map_->integral()))));
+  if (source_->kind == LightKind::environment) {
+    map_ = &scene.environments[source_->environment];
+    factor_ = glm::vec3(static_cast<float>(fraction / (disc * luminance(map_->integral()))));
   } else {
-    factor_ = glm::vec3(glm::dvec3(lamp_->color) * share / (disc * disc_solid_angle(*lamp_)));
+    factor_ =
+        glm::vec3(glm::dvec3(source_->color) * fraction / (disc * disc_solid_angle(*source_)));
   }
 }
 
 glm::vec3 DistantLight::radiance(const glm::vec3& direction) const {
   if (map_ != nullptr) return factor_ * map_->radiance(direction);
-  return sees_disc(*lamp_, direction) ? factor_ : glm::vec3(0.0f);
+  return sees_disc(*source_, direction) ? factor_ : glm::vec3(0.0f);
 }
 
 DistantLights::DistantLights(const Scene& scene) {
@@ -129,12 +130,12 @@ DistantLights::DistantLights(const Scene& scene) {
   for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     if (light.has_size() && light.kind != LightKind::area)
-      lights_.emplace_back(scene, i, groups.share[i], radius);
+      lights_.emplace_back(scene, i, groups.fraction[i], radius);
   }
   const auto count = static_cast<std::uint32_t>(lights_.size());
   cells_.resize(count <= few_lights ? 1 : sphere_rows * sphere_columns);
   for (std::uint32_t index = 0; index < count; ++index) {
-    const Light& light = lights_[index].lamp();
+    const Light& light = lights_[index].source();
     if (cells_.size() == 1 || light.kind == LightKind::environment) {
       for (auto& cell : cells_) cell.push_back(index);
       continue;

@@ -48,17 +48,17 @@ class EnvironmentSampler {
 class DistantLight {
  public:
   /// References are kept.
-  ///   share   of the light in its layer
+  ///   fraction   of the light in its layer
   ///   radius  of the scene's bounding sphere, metres
-  DistantLight(const Scene& scene, std::uint32_t light, double share, double radius);
+  DistantLight(const Scene& scene, std::uint32_t light, double fraction, double radius);
 
   std::uint32_t light() const { return light_; }
-  const Light& lamp() const { return *lamp_; }
+  const Light& source() const { return *source_; }
   /// Radiance that arrives from a unit direction where the layer's power is 1.
   glm::vec3 radiance(const glm::vec3& direction) const;
 
  private:
-  const Light* lamp_;
+  const Light* source_;
   const EnvironmentMap* map_ = nullptr;
   std::uint32_t light_;
   glm::vec3 factor_;  ///< radiance of the disc, or what the map's radiance is multiplied by

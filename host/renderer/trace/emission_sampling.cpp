@@ -27,7 +27,7 @@ AreaSampler::AreaSampler(const Scene& scene, const Light& light) : scene_(&scene
     const SurfacePoint front =
         surface_point(scene, {triangle, 0.0f, 0.0f}, scene.front_side[triangle]);
     fronts_.push_back({glm::dvec3(a), glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a),
-                       front.normal, front.clearance, front.side});
+                       front.normal, front.ray_offset, front.side});
   }
 }
 
@@ -38,9 +38,9 @@ double AreaSampler::density(const TriangleHit& where) const {
 
 TriangleHit AreaSampler::sample(const RandomBlock& random) const {
   if (cells_) {
-    const auto place =
+    const auto point =
         cells_->sample(random.uniform_double(0), random.uniform(2), random.uniform(3));
-    return {place.triangle, static_cast<float>(place.u), static_cast<float>(place.v)};
+    return {point.triangle, static_cast<float>(point.u), static_cast<float>(point.v)};
   }
   const glm::vec2 uv = sample_triangle(random.uniform(2), random.uniform(3));
   return {light_->triangles[chosen(random)], uv.x, uv.y};
@@ -63,7 +63,7 @@ SurfacePoint AreaSampler::sample_front_of(std::size_t number, const RandomBlock&
   point.position =
       glm::vec3(front.corner + double{uv.x} * front.along_u + double{uv.y} * front.along_v);
   point.normal = front.normal;
-  point.clearance = front.clearance;
+  point.ray_offset = front.ray_offset;
   return point;
 }
 
@@ -93,10 +93,10 @@ glm::vec3 IntensitySampler::sample(const RandomStream& random) const {
   const double largest = distribution_->cell_maximum(column, row);
   for (std::uint32_t tries = 1;; ++tries) {
     const RandomBlock numbers = random.block(Purpose::emission, tries);
-    const auto place =
+    const auto point =
         distribution_->in_cell(column, row, numbers.uniform_double(0), numbers.uniform(2));
-    if (numbers.uniform(3) * largest < place.intensity)
-      return glm::vec3(axes_.to_world(place.direction));
+    if (numbers.uniform(3) * largest < point.intensity)
+      return glm::vec3(axes_.to_world(point.direction));
   }
 }
 

@@ -36,7 +36,7 @@ class AreaSampler {
   struct Front {
     glm::dvec3 corner, along_u, along_v;
     glm::vec3 normal;
-    float clearance;
+    float ray_offset;
     std::uint32_t side;
   };
   std::size_t chosen(const RandomBlock& random) const;
@@ -74,7 +74,7 @@ struct LightAxes {
       : x(light.x_axis), z(-glm::dvec3(light.direction)), y(glm::cross(z, x)) {}
 
   glm::dvec3 to_world(const glm::dvec3& v) const { return x * v.x + y * v.y + z * v.z; }
-  glm::dvec3 to_lamp(const glm::dvec3& v) const {
+  glm::dvec3 to_light(const glm::dvec3& v) const {
     return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)};
   }
 
@@ -83,15 +83,15 @@ struct LightAxes {
 
 /// Candela of a point or spot light in a unit direction, away from it, for each lumen that it
 /// emits.
-inline double candela_per_lumen(const Scene& scene, const Light& lamp,
+inline double candela_per_lumen(const Scene& scene, const Light& light,
                                 const glm::dvec3& direction) {
-  if (lamp.distribution != none) {
-    const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
-    return distribution.intensity(LightAxes(lamp).to_lamp(direction)) / distribution.flux();
+  if (light.distribution != none) {
+    const IntensityDistribution& distribution = scene.distributions[light.distribution];
+    return distribution.intensity(LightAxes(light).to_light(direction)) / distribution.flux();
   }
-  if (lamp.kind == LightKind::spot) {
-    const SpotFalloff spot(lamp);
-    return spot.at(glm::dot(direction, glm::dvec3(lamp.direction))) /
+  if (light.kind == LightKind::spot) {
+    const SpotFalloff spot(light);
+    return spot.at(glm::dot(direction, glm::dvec3(light.direction))) /
            (glm::two_pi<double>() * spot.integral());
   }
   return 0.25 * glm::one_over_pi<double>();

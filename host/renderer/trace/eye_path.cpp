@@ -21,9 +21,9 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
                       ReflectedPart part, const LightSampleNumbers& samples, EyeRecord& record) {
   thread_local std::vector<ReceivedLight> found;
   found.clear();
-  find_direct_light(setup.direct->rays, setup.direct->lamps, point, ray.direction, part,
+  find_direct_light(setup.direct->rays, setup.direct->light_sampler, point, ray.direction, part,
                     setup.direct->count, samples, found);
-  const float weight = ray.share / static_cast<float>(setup.parameters->samples_per_pixel);
+  const float weight = ray.fraction / static_cast<float>(setup.parameters->samples_per_pixel);
   for (const ReceivedLight& light : found) {
     record.direct.push_back({ray.pixel, light.layer, ray.radiance_weight() * light.radiance,
                              weight * static_cast<float>(luminance(light.irradiance))});
@@ -50,14 +50,14 @@ void drop_lobe(const glm::vec3& base, EyeRecord& record) {
   lobe.roughness = 1.0f;
 }
 
-/// Makes `ray` the one that leaves a mirror or glass with this share of its light.
-void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scattered, float share,
-           EyeRay& ray) {
-  ray.throughput *= share * scattered.weight;
-  ray.share *= share;
+/// Makes `ray` the one that leaves a mirror or glass with this fraction of its light.
+void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scattered,
+           float fraction, EyeRay& ray) {
+  ray.throughput *= fraction * scattered.weight;
+  ray.fraction *= fraction;
   ray.radiance_factor *= scattered.radiance_factor;
-  ray.straight =
-      ray.straight && scattered.direction == ray.direction && material_of(scene, point).thin;
+  ray.unscattered =
+      ray.unscattered && scattered.direction == ray.direction && material_of(scene, point).thin;
   ray.direction = scattered.direction;
   ray.origin = point.origin_towards(ray.direction);
   ++ray.depth;
@@ -69,7 +69,7 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
                 EyeRecord& record) {
   const scene::Reflectance surface = reflectance(*rays.scene, point);
   record.hits.push_back({point.position, point.oriented_face(), ray.pixel, ray.radiance_weight(),
-                         surface.albedo, ray.share});
+                         surface.albedo, ray.fraction});
   if (!rays.needs.glossy) return;
   const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
   record.glossy.push_back(
@@ -78,26 +78,27 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
 
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                                      EyeRecord& record, const LightTechnique* other,
-                                     const LightSampleNumbers* looks, std::vector<EyeRay>* parted) {
+                                     const LightSampleNumbers* light_samples,
+                                     std::vector<EyeRay>* split) {
   const Scene& scene = *setup.rays->scene;
   const glm::vec3 start = ray.origin;
   // Lights seen in mirrors or through refracting glass are found by following alone.
-  const bool sees_near_lamps = other == nullptr || !other->distant_only;
+  const bool sees_near_lights = other == nullptr || !other->distant_only;
   const auto weight_against = [&](float found) {
-    return ray.straight ? power_heuristic(other->density, found) : 1.0f;
+    return ray.unscattered ? power_heuristic(other->density, found) : 1.0f;
   };
   for (;;) {
-    const bool seen_directly = setup.reflections_only && ray.straight;
-    const bool sees_lamps = setup.emitted_radiance != nullptr && !seen_directly &&
-                            (ray.straight || other == nullptr || !other->only);
+    const bool seen_directly = setup.reflections_only && ray.unscattered;
+    const bool sees_lights = setup.emitted_radiance != nullptr && !seen_directly &&
+                             (ray.unscattered || other == nullptr || !other->only);
     ++record.rays;
     const auto met = next_surface(*setup.rays, ray.origin, ray.direction, random,
                                   Purpose::eye_cutouts, ray.cutouts);
     if (!met) {
-      if (!sees_lamps) return std::nullopt;
+      if (!sees_lights) return std::nullopt;
       setup.distant->for_each_shining(
           ray.direction, [&](const DistantLight& light, const glm::vec3& radiance) {
-            const float weight = other ? weight_against(other->lamps.density(
+            const float weight = other ? weight_against(other->light_sampler.density(
                                              light, start, ray.direction, other->probabilities))
                                        : 1.0f;
             record.emission.push_back(
@@ -106,10 +107,11 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
       return std::nullopt;
     }
     const SurfacePoint& point = *met;
-    if (emits(scene, point) && sees_lamps && (sees_near_lamps || !ray.straight)) {
+    if (emits(scene, point) && sees_lights && (sees_near_lights || !ray.unscattered)) {
       const std::uint32_t light = scene.triangle_light[point.where.triangle];
       const float weight =
-          other ? weight_against(other->lamps.density(start, point, other->probabilities)) : 1.0f;
+          other ? weight_against(other->light_sampler.density(start, point, other->probabilities))
+                : 1.0f;
       record.emission.push_back({ray.pixel, light,
                                  weight * ray.radiance_weight() * (*setup.emitted_radiance)[light] *
                                      emission_towards(scene, point, -ray.direction)});
@@ -125,21 +127,21 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
         const ReflectedPart part = seen_directly ? ReflectedPart::but_the_base
                                    : lobe_left   ? ReflectedPart::but_the_lobe
                                                  : ReflectedPart::all;
-        add_direct_light(setup, point, ray, part, *looks, record);
+        add_direct_light(setup, point, ray, part, *light_samples, record);
       }
       if (!lobe_left) return std::nullopt;
       return EyeEnd{point, ray};
     }
     if (ray.depth >= setup.parameters->max_specular_depth) return std::nullopt;
-    if (parted) {
+    if (split) {
       if (const auto parts = both_parts(scene, point, ray.direction)) {
         const float lesser = std::min(parts->reflectance, 1.0f - parts->reflectance);
-        if (ray.share * lesser >= defaults::least_glass_share) {
+        if (ray.fraction * lesser >= defaults::least_glass_fraction) {
           EyeRay reflected = ray;
           go_on(scene, point, parts->reflected, parts->reflectance, reflected);
           go_on(scene, point, parts->transmitted, 1.0f - parts->reflectance, ray);
           if (parts->reflectance > 0.5f) std::swap(ray, reflected);
-          parted->push_back(reflected);
+          split->push_back(reflected);
           continue;
         }
       }
@@ -160,21 +162,22 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   const RandomStream of_pixel(film.seed, pixel, 0);
   const auto index = static_cast<std::uint32_t>(sample);
   const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
-  const auto place = static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
-                     pixel * static_cast<std::uint32_t>(film.runs);
+  const auto sequence_position =
+      static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
+      pixel * static_cast<std::uint32_t>(film.runs);
   const glm::vec3 direction((*setup.film)(x + offset.x, y + offset.y));
   if (direction == glm::vec3(0.0f)) return;  // beyond the circle of a fisheye
   EyeRay ray{setup.eye + glm::vec3(setup.film->offset(x + offset.x, y + offset.y)), direction,
-             glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), place};
-  std::optional<LightSampleNumbers> looks;
+             glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), sequence_position};
+  std::optional<LightSampleNumbers> light_samples;
   if (setup.direct) {
-    looks.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
+    light_samples.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
   }
   thread_local std::vector<EyeRay> waiting;  // empty but within this function
-  std::vector<EyeRay>* const parted = film.part_at_glass ? &waiting : nullptr;
+  std::vector<EyeRay>* const split = film.split_at_glass ? &waiting : nullptr;
   for (;;) {
-    auto end =
-        follow_eye_ray(setup, ray, random, record, nullptr, looks ? &*looks : nullptr, parted);
+    auto end = follow_eye_ray(setup, ray, random, record, nullptr,
+                              light_samples ? &*light_samples : nullptr, split);
     if (end) {
       const OpaqueBsdf bsdf(*setup.rays->scene, end->point, end->ray.direction);
       const auto rays = static_cast<std::uint32_t>(bsdf.lobe_rays());
@@ -183,9 +186,9 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
         follow_lobes(setup, *end, {of_pixel, index * rays + i, path, i}, reflected);
       }
     }
-    if (!parted || parted->empty()) return;
-    ray = parted->back();
-    parted->pop_back();
+    if (!split || split->empty()) return;
+    ray = split->back();
+    split->pop_back();
   }
 }
 
@@ -194,19 +197,21 @@ namespace {
 /// A light as the lobe reflects it; also by how much the base reflects more or less of it than of
 /// light from all sides, for hits say no more of the base.
 void sample_light(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& whole,
-                  const OpaqueBsdf& lobe, const LightSampleNumbers::Look& look, EyeRecord& record) {
-  const auto lamp = setup.lobes->lamps.sample(end.point.position, look.lamp, look.place);
-  if (!lamp) return;
+                  const OpaqueBsdf& lobe, const LightSampleNumbers::Sample& light_sample,
+                  EyeRecord& record) {
+  const auto light = setup.lobes->light_sampler.sample(end.point.position, light_sample.choice,
+                                                       light_sample.position);
+  if (!light) return;
   glm::vec3 reflected =
-      lobe.reflected(lamp->direction) * lamp->weight_beside(lobe.density(lamp->direction));
-  // Looks that bring the base all of its direct light know where it comes from.
-  if (!setup.direct) reflected += whole.base_deviation(lamp->direction);
-  glm::vec3 radiance = reflected * lamp->received;
+      lobe.reflected(light->direction) * light->weight_beside(lobe.density(light->direction));
+  // Light samples that give the base all of its direct light know where it comes from.
+  if (!setup.direct) reflected += whole.base_deviation(light->direction);
+  glm::vec3 radiance = reflected * light->received;
   if (radiance == glm::vec3(0.0f)) return;
   radiance *=
-      transmittance(setup.lobes->rays, end.point.origin_towards(lamp->direction), lamp->target);
+      transmittance(setup.lobes->rays, end.point.origin_towards(light->direction), light->target);
   if (radiance == glm::vec3(0.0f)) return;
-  record.direct.push_back({end.ray.pixel, lamp->layer, end.ray.radiance_weight() * radiance});
+  record.direct.push_back({end.ray.pixel, light->layer, end.ray.radiance_weight() * radiance});
 }
 
 }  // namespace
@@ -215,7 +220,8 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
   const Scene& scene = *setup.rays->scene;
   const std::uint32_t first_stream =
       sample.ray * (static_cast<std::uint32_t>(setup.parameters->max_specular_depth) + 1);
-  const auto looks_at_hits = static_cast<std::uint32_t>(setup.direct ? setup.direct->count : 1);
+  const auto light_samples_per_hit =
+      static_cast<std::uint32_t>(setup.direct ? setup.direct->count : 1);
   glm::vec3 left(1.0f);  // of the light, since the first lobe
   for (int depth = 1; depth <= setup.parameters->max_specular_depth; ++depth) {
     const auto surface = static_cast<std::uint32_t>(2 * depth);
@@ -223,25 +229,27 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     whole.shade_smoothly(scene, end.point);
     OpaqueBsdf lobe = whole;
     lobe.keep_lobe();
-    const LightSampleNumbers::Look look =
-        LightSampleNumbers(sample.of_pixel, sample.index, surface - 1).look(0);
-    sample_light(setup, end, whole, lobe, look, record);
-    const auto direction = lobe.sample(look.direction);
+    const LightSampleNumbers::Sample light_sample =
+        LightSampleNumbers(sample.of_pixel, sample.index, surface - 1).sample(0);
+    sample_light(setup, end, whole, lobe, light_sample, record);
+    const auto direction = lobe.sample(light_sample.direction);
     if (!direction) return;
     const float density = lobe.density(*direction);
     if (!(density > 0.0f)) return;
     glm::vec3 weight = lobe.reflected(*direction) / density;
     const float survival = std::min(1.0f, largest(left * weight) / defaults::least_lobe_weight);
-    if (!(look.direction.uniform(choice_word) < survival)) return;  // no other use for the word
+    if (!(light_sample.direction.uniform(choice_word) < survival))
+      return;  // no other use for the word
     weight /= survival;
     left *= weight;
     const EyeRay ray{end.point.origin_towards(*direction), *direction, end.ray.throughput * weight,
                      end.ray.pixel, end.ray.radiance_factor};
-    const LightTechnique other{setup.lobes->lamps, density};
-    const LightSampleNumbers looks(sample.of_pixel, sample.index * looks_at_hits, surface);
+    const LightTechnique other{setup.lobes->light_sampler, density};
+    const LightSampleNumbers light_samples(sample.of_pixel, sample.index * light_samples_per_hit,
+                                           surface);
     const RandomStream random(setup.parameters->seed, sample.path,
                               first_stream + static_cast<std::uint32_t>(depth));
-    const auto next = follow_eye_ray(setup, ray, random, record, &other, &looks);
+    const auto next = follow_eye_ray(setup, ray, random, record, &other, &light_samples);
     if (!next) return;
     end = *next;
   }

@@ -25,7 +25,7 @@ struct EyeHit {
   std::uint32_t pixel;
   glm::vec3 throughput;
   glm::vec3 diffuse_albedo;
-  float share;
+  float fraction;
 };
 
 /// What a hit has more in scenes with a glossy surface.
@@ -37,23 +37,23 @@ struct GlossyEyeHit {
 /// What a run of samples saw, in the order pixel, sample.
 struct EyeRecord {
   std::vector<EyeHit> hits;
-  std::vector<GlossyEyeHit> glossy;    ///< one for each hit; empty unless the scene is glossy
-  std::vector<SeenEmission> emission;  ///< by light
-  std::vector<SeenEmission> direct;    ///< directly from lights at the hits, by layer
+  std::vector<GlossyEyeHit> glossy;       ///< one for each hit; empty unless the scene is glossy
+  std::vector<VisibleEmission> emission;  ///< by light
+  std::vector<VisibleEmission> direct;    ///< directly from lights at the hits, by layer
   std::uint64_t rays = 0;
 };
 
 /// How hits get the light that comes directly from lights, where it is not left to the photons.
 struct DirectRays {
   const RayScene& rays;
-  const LightSampler& lamps;
-  int count;  ///< looks per hit
+  const LightSampler& light_sampler;
+  int count;  ///< light samples per hit
 };
 
 /// How light is found that lobes reflect, where it is not left to the photons.
 struct LobeRays {
   const RayScene& rays;
-  const LightSampler& lamps;
+  const LightSampler& light_sampler;
 };
 
 /// What all samples of a picture share.
@@ -62,11 +62,11 @@ struct EyeSetup {
   const FilmDirections* film = nullptr;  ///< of the camera; null where rays do not start at one
   glm::vec3 eye{0.0f};                   ///< where they start
   const PrimaryHitParameters* parameters;
-  /// Per light, of white texels, and what rays that leave the scene see. Both null where rays look
+  /// Per light, of white texels, and what rays that leave the scene see. Both null where rays ask
   /// for surfaces alone.
   const std::vector<glm::vec3>* emitted_radiance = nullptr;
   const DistantLights* distant = nullptr;
-  const DirectRays* direct = nullptr;  ///< null where photons bring all light
+  const DirectRays* direct = nullptr;  ///< null where photons carry all light
   const LobeRays* lobes = nullptr;     ///< null where hits reflect with their lobes
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
@@ -80,9 +80,9 @@ struct EyeRay {
   std::uint32_t pixel;
   double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
   int depth = 0;               ///< mirrors and glass so far
-  bool straight = true;        ///< but for panes of thin glass, which sampling lights sees through
+  bool unscattered = true;     ///< but for panes of thin glass, which sampling lights sees through
   std::uint32_t cutouts = 0;   ///< that were looked at so far
-  float share = 1.0f;          ///< of its sample, where glass parted it
+  float fraction = 1.0f;       ///< of its sample, where glass split it
 
   /// What radiance that the ray meets counts at its start.
   glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
@@ -101,7 +101,7 @@ struct EyeEnd {
 /// Sampling lights, as another technique that finds those which a ray meets at once, or through
 /// panes.
 struct LightTechnique {
-  const LightSampler& lamps;
+  const LightSampler& light_sampler;
   float density;      ///< of the ray's direction, per steradian
   bool only = false;  ///< lights that it does not find count nothing
   const SelectionProbabilities& probabilities = by_power_alone;  ///< at the ray's start
@@ -112,15 +112,16 @@ struct LightTechnique {
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to
 /// `record`. Lights that `other` would find as well are weighed by the power heuristic. Returns the
 /// surface if it has a lobe that rays are to follow, which is not in the hit then.
-///   looks   of the hit, where EyeSetup::direct is set
-///   parted  where given, glass whose lesser part counts enough (defaults::least_glass_share) does
+///   light_samples   of the hit, where EyeSetup::direct is set
+///   split  where given, glass whose lesser part counts enough (defaults::least_glass_fraction)
+///   does
 ///           not choose between reflection and refraction: that part is appended here, to be
 ///           followed as well ("splitting": Arvo and Kirk, "Particle transport and image
 ///           synthesis", 1990)
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                                      EyeRecord& record, const LightTechnique* other = nullptr,
-                                     const LightSampleNumbers* looks = nullptr,
-                                     std::vector<EyeRay>* parted = nullptr);
+                                     const LightSampleNumbers* light_samples = nullptr,
+                                     std::vector<EyeRay>* split = nullptr);
 
 /// Traces sample `sample` of pixel (x, y) and appends what it sees.
 ///   record      of the surface that the pixel sees

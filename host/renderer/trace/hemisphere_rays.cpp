@@ -11,8 +11,8 @@
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/receiver.hpp"
 #include "trace/sampling.hpp"
+#include "trace/shading_point.hpp"
 
 namespace photile::trace {
 namespace {
@@ -20,8 +20,8 @@ namespace {
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t points_per_task = 16;
 
-struct TaskEnds {
-  EyeRecord ends;
+struct TaskHits {
+  EyeRecord ray_hits;
   std::vector<std::size_t> count, emission_count, direct_count;  ///< of each point
   std::vector<float> inverse_distances;                          ///< of each point
   std::vector<glm::vec3> direction;                              ///< of each ray
@@ -47,17 +47,17 @@ struct Onward {
 ///   hit   where the lobe is, with the throughput of the ray
 std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsdf,
                                       const SurfacePoint& point, const RandomStream& random,
-                                      const EyeHit& hit, EyeRecord& ends) {
-  const auto lamp =
-      run.parameters.lamps->sample(point.position, random.block(Purpose::direct_light, 0),
-                                   random.block(Purpose::direct_light, 1));
-  if (lamp) {
-    const glm::vec3 radiance = hit.throughput * bsdf.reflected(lamp->direction) * lamp->received *
-                               lamp->weight_beside(bsdf.density(lamp->direction));
+                                      const EyeHit& hit, EyeRecord& ray_hits) {
+  const auto light =
+      run.parameters.light_sampler->sample(point.position, random.block(Purpose::direct_light, 0),
+                                           random.block(Purpose::direct_light, 1));
+  if (light) {
+    const glm::vec3 radiance = hit.throughput * bsdf.reflected(light->direction) * light->received *
+                               light->weight_beside(bsdf.density(light->direction));
     if (radiance != glm::vec3(0.0f)) {
-      const glm::vec3 origin = point.origin_towards(lamp->direction);
-      ends.direct.push_back(
-          {hit.pixel, lamp->layer, radiance * transmittance(run.rays, origin, lamp->target)});
+      const glm::vec3 origin = point.origin_towards(light->direction);
+      ray_hits.direct.push_back(
+          {hit.pixel, light->layer, radiance * transmittance(run.rays, origin, light->target)});
     }
   }
   const auto direction = bsdf.sample(random.block(Purpose::hemisphere_direction, 1));
@@ -73,21 +73,21 @@ std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsd
 ///   from     the point
 ///   before   ends of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
-///   looks    light samples, to which those from near surface are added; their tag is the pixel
+///   light_samples   to which those from near surface are added; their tag is the pixel
 void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
                      std::size_t before, std::uint32_t stream, std::uint32_t streams,
-                     ShadowRays& looks, EyeRecord& ends) {
+                     ShadowRays& light_samples, EyeRecord& ray_hits) {
   const Scene& scene = run.rays.scene();
-  const LightSampler& lamps = *run.parameters.lamps;
+  const LightSampler& light_sampler = *run.parameters.light_sampler;
   const auto remove_last = [&] {
-    ends.hits.pop_back();
-    if (!ends.glossy.empty()) ends.glossy.pop_back();
+    ray_hits.hits.pop_back();
+    if (!ray_hits.glossy.empty()) ray_hits.glossy.pop_back();
   };
-  for (int bounce = 1; ends.hits.size() > before; ++bounce) {
-    EyeHit hit = ends.hits.back();
+  for (int bounce = 1; ray_hits.hits.size() > before; ++bounce) {
+    EyeHit hit = ray_hits.hits.back();
     if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
     const std::uint32_t triangle = triangle_of(hit.oriented_face);
-    const EndReflection reflection = reflection_of(ends, ends.hits.size() - 1);
+    const HitReflection reflection = reflection_of(ray_hits, ray_hits.hits.size() - 1);
     if (bounce > defaults::most_near_surfaces) {
       // Within a solid of metal, as at the rim of a board that its frame holds, hardly any light is
       // left, but the few photons that found a seam would count for all of it.
@@ -98,7 +98,7 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
         surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
                       side_of(hit.oriented_face));
     std::optional<OpaqueBsdf> bsdf;
-    if (reflection.strong_lobe) bsdf.emplace(scene, point, -ends.glossy.back().outgoing);
+    if (reflection.strong_lobe) bsdf.emplace(scene, point, -ray_hits.glossy.back().outgoing);
     remove_last();
     const RandomStream random(run.parameters.seed, number,
                               stream + static_cast<std::uint32_t>(bounce) * streams);
@@ -109,38 +109,39 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     hit.throughput /= survival;
     std::optional<Onward> on;
     if (bsdf) {
-      on = reflect_by_lobe(run, *bsdf, point, random, hit, ends);
+      on = reflect_by_lobe(run, *bsdf, point, random, hit, ray_hits);
       if (!on) return;
     } else {
-      looks.add(lamps, point,
-                {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
-                glm::one_over_pi<float>() * hit.throughput * reflection.reflectance, 1.0f,
-                by_power_alone, hit.pixel);
+      light_samples.add(
+          light_sampler, point,
+          {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
+          glm::one_over_pi<float>() * hit.throughput * reflection.reflectance, 1.0f, by_power_alone,
+          hit.pixel);
       const glm::vec3 direction =
           Frame(point.normal)
               .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
       on = {direction, reflection.reflectance,
             std::max(0.0f, glm::dot(direction, point.normal)) * glm::one_over_pi<float>()};
     }
-    const LightTechnique look{lamps, on->density, true};
-    const std::size_t seen_before = ends.emission.size();
+    const LightTechnique light_sampling{light_sampler, on->density, true};
+    const std::size_t seen_before = ray_hits.emission.size();
     follow_eye_ray(run.later,
                    {point.origin_towards(on->direction), on->direction, hit.throughput * on->weight,
                     hit.pixel},
-                   random, ends, &look);
-    for (std::size_t i = seen_before; i < ends.emission.size(); ++i) {
-      const SeenEmission& seen = ends.emission[i];
-      ends.direct.push_back({seen.pixel, lamps.layer(seen.light), seen.radiance});
+                   random, ray_hits, &light_sampling);
+    for (std::size_t i = seen_before; i < ray_hits.emission.size(); ++i) {
+      const VisibleEmission& seen = ray_hits.emission[i];
+      ray_hits.direct.push_back({seen.pixel, light_sampler.layer(seen.light), seen.radiance});
     }
-    ends.emission.resize(seen_before);
+    ray_hits.emission.resize(seen_before);
   }
 }
 
 /// All rays of a point. Returns the sum of their inverse distances to what they meet first.
 ///   run_point   its position in the run
 float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
-                  std::uint32_t run_point, TaskEnds& found) {
-  EyeRecord& ends = found.ends;
+                  std::uint32_t run_point, TaskHits& found) {
+  EyeRecord& ray_hits = found.ray_hits;
   const HemisphereParameters& parameters = run.parameters;
   const auto batches = static_cast<std::uint32_t>(parameters.batches);
   const auto rays = static_cast<std::uint32_t>(parameters.rays);
@@ -148,45 +149,47 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
   const Frame frame(point.normal);
   const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
   thread_local SelectionProbabilities probabilities;
-  thread_local ShadowRays near_looks;
-  near_looks.clear();
-  if (parameters.rays_per_look > 0)
-    parameters.lamps->weigh(point.position, point.normal, probabilities);
+  thread_local ShadowRays near_light_samples;
+  near_light_samples.clear();
+  if (parameters.rays_per_light_sample > 0)
+    parameters.light_sampler->weigh(point.position, point.normal, probabilities);
   float inverse_distances = 0;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
     for (std::uint32_t i = 0; i < rays; ++i) {
-      const glm::vec2 place(sobol_point(i, scramble));
-      const glm::vec3 direction =
-          frame.to_world(sample_cosine_hemisphere(std::min(place.x, 0x1.fffffep-1f), place.y));
+      const glm::vec2 on_square(sobol_point(i, scramble));
+      const glm::vec3 direction = frame.to_world(
+          sample_cosine_hemisphere(std::min(on_square.x, 0x1.fffffep-1f), on_square.y));
       if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
       // A stream for each, apart from the point's own.
       const std::uint32_t stream = batch * rays + i + 1;
       const RandomStream random(parameters.seed, number, stream);
       const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
-      const LightTechnique looks{*parameters.lamps,
-                                 parameters.rays_per_look * cosine * glm::one_over_pi<float>(),
-                                 true, probabilities};
-      const std::size_t before = ends.hits.size();
+      const LightTechnique light_sampling{
+          *parameters.light_sampler,
+          parameters.rays_per_light_sample * cosine * glm::one_over_pi<float>(), true,
+          probabilities};
+      const std::size_t before = ray_hits.hits.size();
       follow_eye_ray(run.first,
                      {point.origin_towards(direction), direction, throughput,
                       (run_point * batches + batch) * rays + i},
-                     random, ends, &looks);
-      if (ends.hits.size() == before) continue;
+                     random, ray_hits, &light_sampling);
+      if (ray_hits.hits.size() == before) continue;
       inverse_distances +=
-          1 / std::max(1e-6f, glm::distance(point.position, ends.hits.back().position));
+          1 / std::max(1e-6f, glm::distance(point.position, ray_hits.hits.back().position));
       if (parameters.near > 0) {
-        go_on_from_near(run, point, number, before, stream, batches * rays, near_looks, ends);
+        go_on_from_near(run, point, number, before, stream, batches * rays, near_light_samples,
+                        ray_hits);
       }
     }
   }
-  for (const ShadowRays::Found& light : near_looks.found(run.rays)) {
-    ends.direct.push_back({light.tag, light.layer, light.irradiance});
+  for (const ShadowRays::Found& light : near_light_samples.found(run.rays)) {
+    ray_hits.direct.push_back({light.tag, light.layer, light.irradiance});
   }
   return inverse_distances;
 }
 
-HemisphereRays join(std::vector<TaskEnds> tasks) {
+HemisphereRays join(std::vector<TaskHits> tasks) {
   HemisphereRays all;
   all.first.push_back(0);
   all.first_emission.push_back(0);
@@ -195,7 +198,7 @@ HemisphereRays join(std::vector<TaskEnds> tasks) {
   const auto extend = [](std::vector<std::size_t>& first, const std::vector<std::size_t>& counts) {
     for (const std::size_t count : counts) first.push_back(first.back() + count);
   };
-  for (const TaskEnds& task : tasks) {
+  for (const TaskHits& task : tasks) {
     first_of.push_back(all.first.back());
     extend(all.first, task.count);
     extend(all.first_emission, task.emission_count);
@@ -203,31 +206,33 @@ HemisphereRays join(std::vector<TaskEnds> tasks) {
     const auto append = [](auto& to, const auto& from) {
       to.insert(to.end(), from.begin(), from.end());
     };
-    append(all.ends.emission, task.ends.emission);
-    append(all.ends.direct, task.ends.direct);
+    append(all.ray_hits.emission, task.ray_hits.emission);
+    append(all.ray_hits.direct, task.ray_hits.direct);
     append(all.inverse_distances, task.inverse_distances);
     append(all.direction, task.direction);
-    all.ends.rays += task.ends.rays;
+    all.ray_hits.rays += task.ray_hits.rays;
   }
-  all.ends.hits.resize(all.first.back());
-  const bool glossy = std::any_of(tasks.begin(), tasks.end(),
-                                  [](const TaskEnds& task) { return !task.ends.glossy.empty(); });
-  if (glossy) all.ends.glossy.resize(all.first.back());
+  all.ray_hits.hits.resize(all.first.back());
+  const bool glossy = std::any_of(tasks.begin(), tasks.end(), [](const TaskHits& task) {
+    return !task.ray_hits.glossy.empty();
+  });
+  if (glossy) all.ray_hits.glossy.resize(all.first.back());
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
-    const EyeRecord& ends = tasks[task].ends;
+    const EyeRecord& ray_hits = tasks[task].ray_hits;
     const auto at = static_cast<std::ptrdiff_t>(first_of[task]);
-    std::copy(ends.hits.begin(), ends.hits.end(), all.ends.hits.begin() + at);
-    if (glossy) std::copy(ends.glossy.begin(), ends.glossy.end(), all.ends.glossy.begin() + at);
+    std::copy(ray_hits.hits.begin(), ray_hits.hits.end(), all.ray_hits.hits.begin() + at);
+    if (glossy)
+      std::copy(ray_hits.glossy.begin(), ray_hits.glossy.end(), all.ray_hits.glossy.begin() + at);
   });
   return all;
 }
 
 }  // namespace
 
-EndReflection reflection_of(const EyeRecord& ends, std::size_t end) {
-  const glm::vec3& albedo = ends.hits[end].diffuse_albedo;
-  if (ends.glossy.empty() || ends.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
-  const GlossyEyeHit& glossy = ends.glossy[end];
+HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t end) {
+  const glm::vec3& albedo = ray_hits.hits[end].diffuse_albedo;
+  if (ray_hits.glossy.empty() || ray_hits.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
+  const GlossyEyeHit& glossy = ray_hits.glossy[end];
   const scene::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
                                    glossy.lobe.roughness};
   const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);
@@ -248,25 +253,25 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
   const EyeSetup later{.rays = &impl_of(rays),
                        .parameters = &specular,
                        .emitted_radiance = parameters.emitted_radiance,
-                       .distant = &parameters.lamps->distant()};
+                       .distant = &parameters.light_sampler->distant()};
   EyeSetup leaving = later;
-  if (!(parameters.rays_per_look > 0)) leaving.emitted_radiance = nullptr;
+  if (!(parameters.rays_per_light_sample > 0)) leaving.emitted_radiance = nullptr;
   const RunSetup run{rays, parameters, leaving, later};
-  std::vector<TaskEnds> tasks((count + points_per_task - 1) / points_per_task);
+  std::vector<TaskHits> tasks((count + points_per_task - 1) / points_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
     const FlushDenormals flush_denormals;
-    TaskEnds& found = tasks[task];
+    TaskHits& found = tasks[task];
     const std::size_t last = std::min(count, (task + 1) * points_per_task);
     for (std::size_t i = task * points_per_task; i < last; ++i) {
-      const std::size_t before = found.ends.hits.size();
-      const std::size_t emission_before = found.ends.emission.size();
-      const std::size_t direct_before = found.ends.direct.size();
+      const std::size_t before = found.ray_hits.hits.size();
+      const std::size_t emission_before = found.ray_hits.emission.size();
+      const std::size_t direct_before = found.ray_hits.direct.size();
       found.inverse_distances.push_back(trace_point(run, point_of(rays.scene(), points, first + i),
                                                     number[first + i],
                                                     static_cast<std::uint32_t>(i), found));
-      found.direct_count.push_back(found.ends.direct.size() - direct_before);
-      found.count.push_back(found.ends.hits.size() - before);
-      found.emission_count.push_back(found.ends.emission.size() - emission_before);
+      found.direct_count.push_back(found.ray_hits.direct.size() - direct_before);
+      found.count.push_back(found.ray_hits.hits.size() - before);
+      found.emission_count.push_back(found.ray_hits.emission.size() - emission_before);
     }
   });
   return join(std::move(tasks));

@@ -18,11 +18,11 @@ struct HemisphereParameters {
   int rays;     ///< of a batch: spread evenly (random_stream.hpp)
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
-  const LightSampler* lamps;
+  const LightSampler* light_sampler;
   const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at power 1
   /// > 0: rays also see the lights that they meet at once or through panes, and light samples find
   /// the same: by the power heuristic. 0 = they see none.
-  float rays_per_look = 0;
+  float rays_per_light_sample = 0;
   /// Surface nearer than this, metres, does not end a ray: one more light sample and one more ray
   /// find what light falls there, a few times over. 0 = all opaque surface ends rays.
   float near = 0;
@@ -32,10 +32,10 @@ struct HemisphereParameters {
 struct HemisphereRays {
   /// Where they end. `pixel` is the ray: (point of the run x batches + batch) x rays + ray.
   /// `throughput` is such that throughput x radiance, summed over a point's batch, is an unbiased
-  /// estimate of the irradiance that other surfaces send there straight or over mirrors and glass.
+  /// estimate of the irradiance that other surfaces send there directly or over mirrors and glass.
   /// `emission` is the same of lights, weighed.
   /// `direct` is light that lights send to near surface, by layer.
-  EyeRecord ends;
+  EyeRecord ray_hits;
   /// Point i of the run has [first[i], first[i + 1]): ray hits, lights that its rays met and light
   /// that reached near surface.
   std::vector<std::size_t> first, first_emission, first_direct;
@@ -52,11 +52,11 @@ struct HemisphereRays {
 };
 
 /// What the surface of an end reflects towards its ray of light that is the same from everywhere.
-struct EndReflection {
+struct HitReflection {
   glm::vec3 reflectance;
   bool strong_lobe;  ///< its lobe reflects so much that it asks where light comes from
 };
-EndReflection reflection_of(const EyeRecord& ends, std::size_t end);
+HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t end);
 
 /// Traces rays with the density of the cosine to the geometric normal, through cutouts, mirrors and
 /// glass to the next opaque surface. Lights in mirrors or behind glass that bends are not seen:

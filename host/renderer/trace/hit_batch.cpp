@@ -35,8 +35,8 @@ std::uint64_t HitCells::morton_code(const glm::vec3& position) const {
   return geometry::morton_code(glm::uvec3(glm::clamp(cell, 0.0f, float{cells_per_axis - 1})));
 }
 
-std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
-                                    std::span<const std::uint32_t> map_of) {
+std::vector<HitIndex> sorted_indices(std::span<const EyeRecord> records, const geometry::Box& box,
+                                     std::span<const std::uint32_t> map_of) {
   std::vector<std::uint32_t> first{0};
   for (const EyeRecord& record : records) {
     first.push_back(first.back() + static_cast<std::uint32_t>(record.hits.size()));
@@ -59,44 +59,44 @@ std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const ge
   for (const std::uint32_t map : last_map) last = std::max(last, map);
   geometry::radix_sort(keys, code_bits + std::bit_width(last),
                        [](const Key& key) { return key.order; });
-  std::vector<HitPlace> places(keys.size());
+  std::vector<HitIndex> indices(keys.size());
   tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
     const std::uint32_t record = record_of[keys[i].number];
-    places[i] = {record, keys[i].number - first[record]};
+    indices[i] = {record, keys[i].number - first[record]};
   });
-  return places;
+  return indices;
 }
 
-PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places) {
+PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitIndex> indices) {
   const bool glossy = std::any_of(records.begin(), records.end(),
                                   [](const EyeRecord& record) { return !record.glossy.empty(); });
-  const bool parted = std::any_of(records.begin(), records.end(), [](const EyeRecord& record) {
+  const bool split = std::any_of(records.begin(), records.end(), [](const EyeRecord& record) {
     return std::any_of(record.hits.begin(), record.hits.end(),
-                       [](const EyeHit& hit) { return hit.share != 1.0f; });
+                       [](const EyeHit& hit) { return hit.fraction != 1.0f; });
   });
   PrimaryHits hits;
-  hits.position.resize(places.size());
-  hits.oriented_face.resize(places.size());
-  hits.pixel.resize(places.size());
-  hits.throughput.resize(places.size());
-  hits.diffuse_albedo.resize(places.size());
+  hits.position.resize(indices.size());
+  hits.oriented_face.resize(indices.size());
+  hits.pixel.resize(indices.size());
+  hits.throughput.resize(indices.size());
+  hits.diffuse_albedo.resize(indices.size());
   if (glossy) {
-    hits.outgoing.resize(places.size());
-    hits.lobe.resize(places.size());
+    hits.outgoing.resize(indices.size());
+    hits.lobe.resize(indices.size());
   }
-  if (parted) hits.share.resize(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    const EyeRecord& record = records[places[i].record];
-    const EyeHit& hit = record.hits[places[i].index];
+  if (split) hits.fraction.resize(indices.size());
+  tbb::parallel_for(std::size_t{0}, indices.size(), [&](std::size_t i) {
+    const EyeRecord& record = records[indices[i].record];
+    const EyeHit& hit = record.hits[indices[i].index];
     hits.position[i] = hit.position;
     hits.oriented_face[i] = hit.oriented_face;
     hits.pixel[i] = hit.pixel;
     hits.throughput[i] = hit.throughput;
     hits.diffuse_albedo[i] = hit.diffuse_albedo;
-    if (parted) hits.share[i] = hit.share;
+    if (split) hits.fraction[i] = hit.fraction;
     if (!glossy) return;
-    hits.outgoing[i] = record.glossy[places[i].index].outgoing;
-    hits.lobe[i] = record.glossy[places[i].index].lobe;
+    hits.outgoing[i] = record.glossy[indices[i].index].outgoing;
+    hits.lobe[i] = record.glossy[indices[i].index].lobe;
   });
   return hits;
 }
@@ -107,7 +107,7 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
   const std::vector<std::uint32_t> layer_of = light_groups_of(rays.scene()).group_of;
   for (const EyeRecord& row : rows) {
     batch.rays += row.rays;
-    for (const SeenEmission& seen : row.emission) {
+    for (const VisibleEmission& seen : row.emission) {
       batch.emission.push_back(seen);
       batch.emission.back().light = layer_of[seen.light];
     }
@@ -117,7 +117,7 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
   }
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
-  batch.hits = hits_at(rows, sorted_places(rows, impl_of(rays).bounds, map_of));
+  batch.hits = hits_at(rows, sorted_indices(rows, impl_of(rays).bounds, map_of));
   return batch;
 }
 

@@ -40,7 +40,7 @@ class HitCells {
 };
 
 /// One of the hits of several records.
-struct HitPlace {
+struct HitIndex {
   std::uint32_t record;
   std::uint32_t index;  ///< into EyeRecord::hits
 };
@@ -48,11 +48,11 @@ struct HitPlace {
 /// All hits in the order map, Morton code of their cell of `box`, position.
 ///   map_of   per oriented face, `none`, which is the last, where it has no map; empty where a
 ///            oriented face is the map itself
-std::vector<HitPlace> sorted_places(std::span<const EyeRecord> records, const geometry::Box& box,
-                                    std::span<const std::uint32_t> map_of);
+std::vector<HitIndex> sorted_indices(std::span<const EyeRecord> records, const geometry::Box& box,
+                                     std::span<const std::uint32_t> map_of);
 
 /// The hits at these positions of the records, in the order of the positions.
-PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitPlace> places);
+PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitIndex> indices);
 
 /// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place
 /// of light. Does not depend on how samples are split into rows.

@@ -18,7 +18,7 @@ namespace {
 /// Clusters that a point weighs; so many cost less than two rays.
 constexpr std::size_t most_clusters = 64;
 /// Beyond so many lights to weigh each would cost more than it saves.
-constexpr std::size_t most_lamps = 1024;
+constexpr std::size_t most_lights = 1024;
 /// The fraction of light samples that are chosen by power alone.
 constexpr double everywhere = 0.5;
 
@@ -38,26 +38,26 @@ using Box = geometry::BoxOf<double>;
 
 }  // namespace
 
-LightClusters::LightClusters(const Scene& scene, std::span<const double> shares,
+LightClusters::LightClusters(const Scene& scene, std::span<const double> fractions,
                              const BoundingSphere& bounds)
     : whole_(scene.lights.size(), none),
       far_(static_cast<float>(1 / (bounds.radius * bounds.radius))) {
-  if (scene.lights.size() > most_lamps) return;
+  if (scene.lights.size() > most_lights) return;
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
-    const Light& lamp = scene.lights[light];
-    Cluster cluster{.light = light, .share = static_cast<float>(shares[light])};
-    if (lamp.kind == LightKind::area) {
+    const Light& source = scene.lights[light];
+    Cluster cluster{.light = light, .fraction = static_cast<float>(fractions[light])};
+    if (source.kind == LightKind::area) {
       add_area_light(scene, cluster);
       continue;
     }
-    cluster.is_far = lamp.is_distant();
-    cluster.center = lamp.position;
+    cluster.is_far = source.is_distant();
+    cluster.center = source.position;
     whole_[light] = static_cast<std::uint32_t>(clusters_.size());
     clusters_.push_back(cluster);
   }
   std::vector<float> extent;  // weighed by the share; 0 of what cannot be cut
   const auto extent_of = [&](const Cluster& cluster) {
-    return cluster.last - cluster.first > 1 ? cluster.share * cluster.radius : 0.0f;
+    return cluster.last - cluster.first > 1 ? cluster.fraction * cluster.radius : 0.0f;
   };
   for (const Cluster& cluster : clusters_) extent.push_back(extent_of(cluster));
   while (clusters_.size() < most_clusters) {
@@ -164,18 +164,18 @@ bool LightClusters::cut(const Scene& scene, std::size_t index) {
   Box box;
   std::for_each(begin, end, [&](const Triangle& triangle) { box.extend(middle(triangle)); });
   const int axis = box.longest_axis();
-  const double place = 0.5 * (box.lower[axis] + box.upper[axis]);
+  const double cut = 0.5 * (box.lower[axis] + box.upper[axis]);
   const double whole_area = area(static_cast<std::uint32_t>(index));  // while its order stands
   const auto second = std::stable_partition(
-      begin, end, [&](const Triangle& triangle) { return middle(triangle)[axis] < place; });
+      begin, end, [&](const Triangle& triangle) { return middle(triangle)[axis] < cut; });
   sum_areas(scene, cluster);
   Cluster rest = cluster;
   cluster.last = rest.first = static_cast<std::uint32_t>(second - triangles_.begin());
   if (cluster.first == cluster.last) return false;  // what lies farthest is in the rest
   const double part = triangles_[cluster.last - 1].area_up_to - area_before(cluster);
   if (!(part > 0) || !(part < whole_area)) return false;
-  cluster.share *= static_cast<float>(part / whole_area);
-  rest.share *= static_cast<float>(1 - part / whole_area);
+  cluster.fraction *= static_cast<float>(part / whole_area);
+  rest.fraction *= static_cast<float>(1 - part / whole_area);
   enclose(scene, cluster);
   enclose(scene, rest);
   clusters_[index] = cluster;
@@ -186,11 +186,11 @@ bool LightClusters::cut(const Scene& scene, std::size_t index) {
 /// At most, but for its colour and a factor that all clusters share, the illuminance by a cluster.
 float LightClusters::weight(const Cluster& cluster, const glm::vec3& position,
                             const glm::vec3& normal) const {
-  if (cluster.is_far) return cluster.share * far_;
+  if (cluster.is_far) return cluster.fraction * far_;
   const glm::vec3 offset = cluster.center - position;
   const float squared_distance = glm::dot(offset, offset);
   const float squared_radius = cluster.radius * cluster.radius;
-  if (squared_distance <= squared_radius) return cluster.share / squared_radius;
+  if (squared_distance <= squared_radius) return cluster.fraction / squared_radius;
   const float distance = std::sqrt(squared_distance);
   const float sphere_sine = cluster.radius / distance;
   const float sphere_cosine = sine_of(sphere_sine);
@@ -207,7 +207,7 @@ float LightClusters::weight(const Cluster& cluster, const glm::vec3& position,
     }
     if (!(leaving > 0.0f)) return 0.0f;
   }
-  return cluster.share * cosine * leaving / squared_distance;
+  return cluster.fraction * cosine * leaving / squared_distance;
 }
 
 void LightClusters::weigh(const glm::vec3& position, const glm::vec3& normal,
@@ -220,16 +220,17 @@ void LightClusters::weigh(const glm::vec3& position, const glm::vec3& normal,
   const bool near = weights > 0 && std::isfinite(weights);
   double sum = 0;
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
-    const double share = double{clusters_[i].share};
+    const double fraction = double{clusters_[i].fraction};
     const double probability =
-        near ? everywhere * share + (1 - everywhere) * probabilities.up_to[i] / weights : share;
+        near ? everywhere * fraction + (1 - everywhere) * probabilities.up_to[i] / weights
+             : fraction;
     probabilities.up_to[i] = sum += probability;
   }
 }
 
 LightClusters::Choice LightClusters::choose(const SelectionProbabilities& probabilities,
                                             const RandomBlock& choice,
-                                            const RandomBlock& place) const {
+                                            const RandomBlock& on_light) const {
   // The last entry is larger than the target, so there always is one.
   const double target = choice.uniform_double(0) * probabilities.up_to.back();
   const auto found =
@@ -239,10 +240,10 @@ LightClusters::Choice LightClusters::choose(const SelectionProbabilities& probab
   const Cluster& cluster = clusters_[index];
   if (cluster.first == cluster.last) return {cluster.light, index, none};
   const double before = area_before(cluster);
-  const double area_target = before + place.uniform_double(0) * area(index);
+  const double area_target = before + on_light.uniform_double(0) * area(index);
   const auto triangle = std::upper_bound(
       triangles_.begin() + cluster.first, triangles_.begin() + cluster.last - 1, area_target,
-      [](double wanted, const Triangle& other) { return wanted < other.area_up_to; });
+      [](double requested, const Triangle& other) { return requested < other.area_up_to; });
   return {cluster.light, index, triangle->number};
 }
 
@@ -252,7 +253,7 @@ namespace photile {
 
 namespace trace {
 
-std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota quota) {
+std::vector<double> light_fractions(const std::vector<Light>& lights, PhotonQuota quota) {
   const double count = static_cast<double>(lights.size());
   double power = 0;
   for (const Light& light : lights) power += light.power;
@@ -261,11 +262,11 @@ std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota q
   const double by_power = quota == PhotonQuota::power      ? 1.0
                           : quota == PhotonQuota::balanced ? 0.5
                                                            : 0.0;
-  std::vector<double> share;
+  std::vector<double> fraction;
   for (const Light& light : lights)
-    share.push_back((by_power > 0 ? by_power * (light.power / power) : 0.0) +
-                    (1.0 - by_power) / count);
-  return share;
+    fraction.push_back((by_power > 0 ? by_power * (light.power / power) : 0.0) +
+                       (1.0 - by_power) / count);
+  return fraction;
 }
 
 }  // namespace trace
@@ -277,12 +278,12 @@ std::string_view name_of(PhotonQuota quota) {
 namespace {
 
 /// Adds what rounding down left over, one path each, by the largest remainder first.
-void give_remainder(std::vector<std::uint64_t>& paths, const std::vector<double>& wanted,
+void give_remainder(std::vector<std::uint64_t>& paths, const std::vector<double>& requested,
                     std::uint64_t remainder) {
   std::vector<std::size_t> order(paths.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return wanted[a] - std::floor(wanted[a]) > wanted[b] - std::floor(wanted[b]);
+    return requested[a] - std::floor(requested[a]) > requested[b] - std::floor(requested[b]);
   });
   for (std::uint64_t i = 0; i < remainder; ++i) ++paths[order[i % order.size()]];
 }
@@ -297,20 +298,20 @@ std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t t
                      ": the scene has no lights; add a light or an emissive material");
   // Each light is given its first path, and shares decide about the paths beyond it.
   total = std::max<std::uint64_t>(total, count);
-  const std::vector<double> share = trace::light_shares(scene.lights, quota);
-  std::vector<double> wanted(count);
+  const std::vector<double> fraction = trace::light_fractions(scene.lights, quota);
+  std::vector<double> requested(count);
   std::vector<std::uint64_t> paths(count);
   for (std::size_t l = 0; l < count; ++l)
-    wanted[l] = std::max(0.0, share[l] * static_cast<double>(total) - 1.0);
+    requested[l] = std::max(0.0, fraction[l] * static_cast<double>(total) - 1.0);
   // What the smallest lights are given beyond their share is taken from the others in proportion.
-  const double beyond = std::accumulate(wanted.begin(), wanted.end(), 0.0);
+  const double beyond = std::accumulate(requested.begin(), requested.end(), 0.0);
   const double available = static_cast<double>(total - count);
   for (std::size_t l = 0; l < count; ++l) {
-    if (beyond > 0) wanted[l] *= available / beyond;
-    paths[l] = 1 + static_cast<std::uint64_t>(wanted[l]);
+    if (beyond > 0) requested[l] *= available / beyond;
+    paths[l] = 1 + static_cast<std::uint64_t>(requested[l]);
   }
   const std::uint64_t given = std::accumulate(paths.begin(), paths.end(), std::uint64_t{0});
-  give_remainder(paths, wanted, total - given);
+  give_remainder(paths, requested, total - given);
   return paths;
 }
 

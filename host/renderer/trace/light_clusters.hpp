@@ -34,8 +34,9 @@ inline const SelectionProbabilities by_power_alone;
 class LightClusters {
  public:
   /// Errors: none; there are no clusters where there are too many lights to weigh each.
-  ///   shares   of the lights, summing to 1: what looks from everywhere go by
-  LightClusters(const Scene& scene, std::span<const double> shares, const BoundingSphere& bounds);
+  ///   fractions   of the lights, summing to 1: how light samples are chosen wherever the point is
+  LightClusters(const Scene& scene, std::span<const double> fractions,
+                const BoundingSphere& bounds);
 
   /// The selection probabilities of light samples from a point of a surface; empty where there are
   /// no clusters.
@@ -50,9 +51,9 @@ class LightClusters {
     std::uint32_t triangle;  ///< into Light::triangles, where the light can be cut; else `none`
   };
   /// Chooses a cluster by probabilities that are not empty.
-  ///   choice, place   blocks as LightSampler::sample takes them
+  ///   choice, on_light   blocks as LightSampler::sample takes them
   Choice choose(const SelectionProbabilities& probabilities, const RandomBlock& choice,
-                const RandomBlock& place) const;
+                const RandomBlock& on_light) const;
 
   /// The cluster that a light is as a whole, if it cannot be cut; else `none`.
   std::uint32_t whole(std::uint32_t light) const { return whole_[light]; }
@@ -68,7 +69,7 @@ class LightClusters {
     std::uint32_t light;
     std::uint32_t first = 0, last = 0;  ///< of `triangles_`; none of lights that cannot be cut
     bool is_far = false;                ///< beyond the scene
-    float share;
+    float fraction;
     glm::vec3 center{0.0f};  ///< of a sphere that holds it, metres
     float radius = 0;
     glm::vec3 axis{0.0f};  ///< of a cone that holds the normals of what shines
@@ -93,7 +94,7 @@ class LightClusters {
   float far_;                               ///< 1 / squared radius of the scene, 1/m2
 };
 
-/// Share of each light, summing to 1 up to rounding; above 0 unless `quota` is `power`.
-std::vector<double> light_shares(const std::vector<Light>& lights, PhotonQuota quota);
+/// Fraction of each light, summing to 1 up to rounding; above 0 unless `quota` is `power`.
+std::vector<double> light_fractions(const std::vector<Light>& lights, PhotonQuota quota);
 
 }  // namespace photile::trace

@@ -15,7 +15,7 @@ namespace photile::trace {
 namespace {
 
 enum Block : std::uint32_t {
-  place_block = 0,
+  point_block = 0,
   direction_block = 1,
   portal_block = 2,
   luminaire_block = 1u << 20
@@ -51,12 +51,12 @@ LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const Boundi
     reached = (distant_ ? area_facing(*portals_, *distant_)
                         : portals_->area_facing(glm::dvec3(light_->direction))) > 0;
   }
-  if (reached) portal_share_ = defaults::portal_photons;
+  if (reached) portal_fraction_ = defaults::portal_photons;
 }
 
 EmittedRay LightEmitter::emit(const RandomStream& random) const {
   if (area_) return emit_from_area(random);
-  if (portal_share_ > 0) return emit_through_portals(random);
+  if (portal_fraction_ > 0) return emit_through_portals(random);
   if (distant_) return emit_from_beyond(random);
 
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
@@ -81,15 +81,15 @@ EmittedRay LightEmitter::emit(const RandomStream& random) const {
 EmittedRay LightEmitter::emit_from_beyond(const RandomStream& random) const {
   const DistantSampler::Sample from =
       distant_->sample(random.block(Purpose::emission, direction_block));
-  const RandomBlock numbers = random.block(Purpose::emission, place_block);
+  const RandomBlock numbers = random.block(Purpose::emission, point_block);
   return {entrance(bounds_, -from.direction, numbers.uniform(0), numbers.uniform(1)),
           -from.direction, from.color};
 }
 
 EmittedRay LightEmitter::emit_through_portals(const RandomStream& random) const {
-  const RandomBlock numbers = random.block(Purpose::emission, place_block);
-  const RandomBlock place = random.block(Purpose::emission, portal_block);
-  const bool through = place.uniform_double(0) < portal_share_;
+  const RandomBlock numbers = random.block(Purpose::emission, point_block);
+  const RandomBlock on_portal = random.block(Purpose::emission, portal_block);
+  const bool through = on_portal.uniform_double(0) < portal_fraction_;
   const RandomBlock direction = random.block(Purpose::emission, direction_block);
   DistantSampler::Sample from{-light_->direction, light_->color, 0.0f};
   if (through && towards_portals_) {
@@ -102,8 +102,9 @@ EmittedRay LightEmitter::emit_through_portals(const RandomStream& random) const 
   if (through) {
     // A part of a disc or a patch may lie behind all portals.
     if (!(portals_->area_facing(travel) > 0)) return {origin, -glm::vec3(travel), glm::vec3(0.0f)};
-    const glm::dvec3 point = portals_->entrance(
-        travel, double{place.uniform(2)}, double{numbers.uniform(0)}, double{numbers.uniform(1)});
+    const glm::dvec3 point =
+        portals_->entrance(travel, double{on_portal.uniform(2)}, double{numbers.uniform(0)},
+                           double{numbers.uniform(1)});
     const double back = glm::dot(point - bounds_.center, travel) + bounds_.radius;
     origin = glm::vec3(point - back * travel);
   }
@@ -125,12 +126,12 @@ double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
       through *= even > 0 ? static_cast<double>(towards_portals_->density(towards)) / even : 0.0;
     }
   }
-  return 1 / ((1 - portal_share_) + portal_share_ * through);
+  return 1 / ((1 - portal_fraction_) + portal_fraction_ * through);
 }
 
 EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {
   if (intensity_) return emit_from_luminaire(random);
-  const TriangleHit where = area_->sample(random.block(Purpose::emission, place_block));
+  const TriangleHit where = area_->sample(random.block(Purpose::emission, point_block));
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
   const std::uint32_t front = scene_->front_side[where.triangle];
   const std::uint32_t side = light_->two_sided && numbers.bit(2) ? 1 - front : front;
@@ -164,10 +165,10 @@ float LightEmitter::spot_cosine(double u) const {
   // The integral of the falloff over t = cosine - outer, inverted.
   const SpotFalloff spot(*light_);
   const double outer = spot.outer, edge = spot.edge;
-  const double edge_share = edge / 3.0;
+  const double edge_fraction = edge / 3.0;
   const double target = u * spot.integral();
-  const double t =
-      target < edge_share ? std::cbrt(3.0 * edge * edge * target) : edge + (target - edge_share);
+  const double t = target < edge_fraction ? std::cbrt(3.0 * edge * edge * target)
+                                          : edge + (target - edge_fraction);
   return static_cast<float>(outer + t);
 }
 

@@ -57,7 +57,7 @@ class LightEmitter {
   BoundingSphere bounds_;
   std::shared_ptr<const Portals> portals_;
   /// The fraction of photons that start through portals; 0 where the light reaches none.
-  double portal_share_ = 0;
+  double portal_fraction_ = 0;
   std::optional<EnvironmentSampler> towards_portals_;  ///< of environments
 };
 

@@ -18,14 +18,14 @@ LightSampler::LightSampler(const Scene& scene)
     : scene_(&scene),
       groups_(light_groups_of(scene)),
       bounds_(bounding_sphere(scene)),
-      share_(light_shares(scene.lights, PhotonQuota::balanced)),
-      clusters_(scene, share_, bounds_),
+      fraction_(light_fractions(scene.lights, PhotonQuota::balanced)),
+      clusters_(scene, fraction_, bounds_),
       radiance_(emitted_radiance_at_unit_power(scene)),
       distant_(scene),
       portals_(scene),
       distant_of_(scene.lights.size(), none) {
   double sum = 0;
-  for (const double share : share_) share_up_to_.push_back(sum += share);
+  for (const double fraction : fraction_) cumulative_fraction_.push_back(sum += fraction);
   for (const Light& light : scene.lights) {
     const bool area = light.kind == LightKind::area;
     area_of_.push_back(area ? static_cast<std::uint32_t>(areas_.size()) : none);
@@ -35,48 +35,53 @@ LightSampler::LightSampler(const Scene& scene)
   for (const DistantLight& light : distant_) {
     distant_of_[light.light()] = static_cast<std::uint32_t>(distant_samplers_.size());
     distant_samplers_.emplace_back(scene, scene.lights[light.light()]);
-    beyond += share_[light.light()];
+    beyond += fraction_[light.light()];
   }
-  if (!portals_.empty()) portal_share_ = defaults::portal_looks * std::min(1.0, beyond);
+  if (!portals_.empty())
+    portal_fraction_ = defaults::portal_sample_fraction * std::min(1.0, beyond);
 }
 
 /// The selection probability of a light that is chosen as a whole.
 float LightSampler::probability(std::uint32_t light,
                                 const SelectionProbabilities& probabilities) const {
-  const double others = 1 - portal_share_;
+  const double others = 1 - portal_fraction_;
   if (!probabilities.up_to.empty())
     return static_cast<float>(others * probabilities.of(clusters_.whole(light)));
-  const double before = light == 0 ? 0.0 : share_up_to_[light - 1];
-  return static_cast<float>(others * (share_up_to_[light] - before) / share_up_to_.back());
+  const double before = light == 0 ? 0.0 : cumulative_fraction_[light - 1];
+  return static_cast<float>(others * (cumulative_fraction_[light] - before) /
+                            cumulative_fraction_.back());
 }
 
 std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
                                                 const RandomBlock& chosen_by,
-                                                const RandomBlock& place,
+                                                const RandomBlock& on_light,
                                                 const SelectionProbabilities& probabilities) const {
   RandomBlock choice = chosen_by;
-  if (portal_share_ > 0) {
+  if (portal_fraction_ > 0) {
     const double number = chosen_by.uniform_double(0);
-    if (number < portal_share_)
-      return through_portal(number / portal_share_, position, place, probabilities);
-    choice = RandomBlock::of(std::min((number - portal_share_) / (1 - portal_share_), 1 - 0x1p-53));
+    if (number < portal_fraction_)
+      return through_portal(number / portal_fraction_, position, on_light, probabilities);
+    choice = RandomBlock::of(
+        std::min((number - portal_fraction_) / (1 - portal_fraction_), 1 - 0x1p-53));
   }
   std::uint32_t light, triangle = none;
   if (probabilities.up_to.empty()) {
     // The last entry is larger than the target, so there always is one.
-    const double target = choice.uniform_double(0) * share_up_to_.back();
+    const double target = choice.uniform_double(0) * cumulative_fraction_.back();
     light = static_cast<std::uint32_t>(
-        std::upper_bound(share_up_to_.begin(), share_up_to_.end(), target) - share_up_to_.begin());
+        std::upper_bound(cumulative_fraction_.begin(), cumulative_fraction_.end(), target) -
+        cumulative_fraction_.begin());
   } else {
-    const LightClusters::Choice chosen = clusters_.choose(probabilities, choice, place);
+    const LightClusters::Choice chosen = clusters_.choose(probabilities, choice, on_light);
     light = chosen.light;
     triangle = chosen.triangle;
   }
-  if (distant_of_[light] != none) return towards_distant(light, position, place, probabilities);
+  if (distant_of_[light] != none) return towards_distant(light, position, on_light, probabilities);
   if (scene_->lights[light].kind == LightKind::area) {
     const AreaSampler& area = areas_[area_of_[light]];
     return towards_area(
-        light, triangle == none ? area.sample_front(place) : area.sample_front_of(triangle, place),
+        light,
+        triangle == none ? area.sample_front(on_light) : area.sample_front_of(triangle, on_light),
         position, probabilities);
   }
   return scene_->lights[light].kind == LightKind::directional
@@ -103,15 +108,15 @@ std::optional<LightSample> LightSampler::towards_area(
 std::optional<LightSample> LightSampler::towards_point(
     std::uint32_t light, const glm::vec3& position,
     const SelectionProbabilities& probabilities) const {
-  const Light& lamp = scene_->lights[light];
-  const glm::dvec3 offset = glm::dvec3(lamp.position) - glm::dvec3(position);
+  const Light& source = scene_->lights[light];
+  const glm::dvec3 offset = glm::dvec3(source.position) - glm::dvec3(position);
   const double squared_distance = glm::dot(offset, offset);
   if (!(squared_distance > 0)) return std::nullopt;
   const glm::dvec3 direction = offset / std::sqrt(squared_distance);
-  const double intensity = candela_per_lumen(*scene_, lamp, -direction);
+  const double intensity = candela_per_lumen(*scene_, source, -direction);
   if (!(intensity > 0)) return std::nullopt;
-  return LightSample{groups_.group_of[light], glm::vec3(direction), lamp.position,
-                     glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] * intensity /
+  return LightSample{groups_.group_of[light], glm::vec3(direction), source.position,
+                     glm::vec3(glm::dvec3(source.color) * groups_.fraction[light] * intensity /
                                (squared_distance * double{probability(light, probabilities)})),
                      0.0f};
 }
@@ -123,47 +128,47 @@ glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direc
 
 LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position,
                                       const SelectionProbabilities& probabilities) const {
-  const Light& lamp = scene_->lights[light];
+  const Light& source = scene_->lights[light];
   // Its flux falls on the disc of the bounding sphere, which the shadow ray leaves.
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
   return {groups_.group_of[light],
-          -lamp.direction,
-          beyond(position, -lamp.direction),
-          glm::vec3(glm::dvec3(lamp.color) * groups_.share[light] /
+          -source.direction,
+          beyond(position, -source.direction),
+          glm::vec3(glm::dvec3(source.color) * groups_.fraction[light] /
                     (disc * double{probability(light, probabilities)})),
           0.0f,
           true};
 }
 
 LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& position,
-                                          const RandomBlock& place,
+                                          const RandomBlock& on_light,
                                           const SelectionProbabilities& probabilities) const {
   const std::uint32_t index = distant_of_[light];
-  const DistantSampler::Sample chosen = distant_samplers_[index].sample(place);
+  const DistantSampler::Sample chosen = distant_samplers_[index].sample(on_light);
   const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
   const float alone = probability(light, probabilities) * chosen.density;
-  const float all = portal_share_ > 0
+  const float all = portal_fraction_ > 0
                         ? density(distant_[index], position, chosen.direction, probabilities)
                         : alone;
   // Density is in proportion to luminance, and both integrate to 1 over the sphere.
   return {groups_.group_of[light],
           chosen.direction,
           beyond(position, chosen.direction),
-          glm::vec3(glm::dvec3(chosen.color) * groups_.share[light] * double{chosen.density} /
+          glm::vec3(glm::dvec3(chosen.color) * groups_.fraction[light] * double{chosen.density} /
                     (disc * double{std::max(alone, all)})),
           std::max(alone, all),
           true};
 }
 
 std::optional<LightSample> LightSampler::through_portal(
-    double number, const glm::vec3& position, const RandomBlock& place,
+    double number, const glm::vec3& position, const RandomBlock& on_light,
     const SelectionProbabilities& probabilities) const {
   thread_local std::vector<double> weights;
   const double sum = portals_.weigh(glm::dvec3(position), weights);
   if (!(sum > 0)) return std::nullopt;
-  const glm::vec3 direction(portals_.look(glm::dvec3(position), weights, sum,
-                                          double{place.uniform(0)}, double{place.uniform(2)},
-                                          double{place.uniform(3)}));
+  const glm::vec3 direction(
+      portals_.sample_direction(glm::dvec3(position), weights, sum, double{on_light.uniform(0)},
+                                double{on_light.uniform(2)}, double{on_light.uniform(3)}));
   // One of the lights there, each as likely.
   thread_local std::vector<std::pair<const DistantLight*, glm::vec3>> there;
   there.clear();
@@ -188,7 +193,7 @@ float LightSampler::density(const DistantLight& light, const glm::vec3& position
                             const SelectionProbabilities& probabilities) const {
   const float alone = probability(light.light(), probabilities) *
                       distant_samplers_[distant_of_[light.light()]].density(direction);
-  if (!(portal_share_ > 0)) return alone;
+  if (!(portal_fraction_ > 0)) return alone;
   thread_local std::vector<double> weights;
   const double sum = portals_.weigh(glm::dvec3(position), weights);
   if (!(sum > 0) || light.radiance(direction) == glm::vec3(0.0f)) return alone;
@@ -197,7 +202,7 @@ float LightSampler::density(const DistantLight& light, const glm::vec3& position
   if (!(through > 0)) return alone;
   double count = 0;
   distant_.for_each_shining(direction, [&](const DistantLight&, const glm::vec3&) { ++count; });
-  return alone + static_cast<float>(portal_share_ * through / std::max(1.0, count));
+  return alone + static_cast<float>(portal_fraction_ * through / std::max(1.0, count));
 }
 
 float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitting,
@@ -214,7 +219,7 @@ float LightSampler::density(const glm::vec3& position, const SurfacePoint& emitt
              static_cast<float>(areas_[area_of_[light]].density(emitting.where));
   } else {
     const std::uint32_t cluster = clusters_.cluster_of(triangle);
-    chosen = static_cast<float>((1 - portal_share_) * probabilities.of(cluster) /
+    chosen = static_cast<float>((1 - portal_fraction_) * probabilities.of(cluster) /
                                 clusters_.area(cluster));
   }
   return chosen * squared_distance / cosine;

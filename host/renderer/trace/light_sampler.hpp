@@ -41,7 +41,7 @@ struct LightSample {
 /// Chooses one light of all, half by power and half equally as PhotonQuota::balanced does, and on
 /// an area light a point by what it emits, of light from beyond the scene a direction by its
 /// luminance, or one through a portal, towards whatever shines there: densities are those of both
-/// together. Looks from one point may prefer what is near it and faces it.
+/// together. Light samples of one point may prefer what is near it and faces it.
 class LightSampler {
  public:
   /// References are kept. Errors: InputError for an area light without area.
@@ -56,9 +56,9 @@ class LightSampler {
   }
 
   /// A light as seen from `position`. Nothing where it shines elsewhere.
-  ///   choice, place   blocks of their own
+  ///   choice, on_light   blocks of their own
   std::optional<LightSample> sample(
-      const glm::vec3& position, const RandomBlock& choice, const RandomBlock& place,
+      const glm::vec3& position, const RandomBlock& choice, const RandomBlock& on_light,
       const SelectionProbabilities& probabilities = by_power_alone) const;
 
   /// Density per steradian with which `sample` would have chosen a point that emits, seen from
@@ -89,12 +89,12 @@ class LightSampler {
   /// Through a portal, towards what shines from there.
   ///   number   in [0, 1)
   std::optional<LightSample> through_portal(double number, const glm::vec3& position,
-                                            const RandomBlock& place,
+                                            const RandomBlock& on_light,
                                             const SelectionProbabilities& probabilities) const;
   LightSample towards_sun(std::uint32_t light, const glm::vec3& position,
                           const SelectionProbabilities& probabilities) const;
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
-                              const RandomBlock& place,
+                              const RandomBlock& on_light,
                               const SelectionProbabilities& probabilities) const;
   /// A point in that direction behind all of the scene, wherever the position is.
   glm::vec3 beyond(const glm::vec3& position, const glm::vec3& direction) const;
@@ -102,15 +102,15 @@ class LightSampler {
   const Scene* scene_;
   LightGroups groups_;
   BoundingSphere bounds_;
-  std::vector<double> share_;  ///< of looks from everywhere, per light
+  std::vector<double> fraction_;  ///< of the light samples of any point, per light
   LightClusters clusters_;
-  std::vector<double> share_up_to_;     ///< of the lights up to and with this one
-  std::vector<glm::vec3> radiance_;     ///< per light, of white texels; black without area
-  std::vector<std::uint32_t> area_of_;  ///< per light: its sampler, or `none`
+  std::vector<double> cumulative_fraction_;  ///< of the lights up to and with this one
+  std::vector<glm::vec3> radiance_;          ///< per light, of white texels; black without area
+  std::vector<std::uint32_t> area_of_;       ///< per light: its sampler, or `none`
   std::vector<AreaSampler> areas_;
   DistantLights distant_;
   Portals portals_;
-  double portal_share_ = 0;  ///< of looks that go through portals
+  double portal_fraction_ = 0;  ///< of light samples that go through portals
   std::vector<DistantSampler> distant_samplers_;
   std::vector<std::uint32_t> distant_of_;  ///< per light: into both, or `none`
 };

@@ -48,7 +48,7 @@ OpaqueBsdf::Lobe OpaqueBsdf::lobe_of(const Scene& scene, const SurfacePoint& poi
   const float sum = specular_albedo + diffuse_albedo;
   const bool in_front = lobe.view.z > 0.0f;
   lobe.albedo = in_front ? specular_albedo : 0.0f;
-  lobe.share = sum > 0.0f && in_front ? specular_albedo / sum : 0.0f;
+  lobe.fraction = sum > 0.0f && in_front ? specular_albedo / sum : 0.0f;
   return lobe;
 }
 
@@ -66,13 +66,13 @@ void OpaqueBsdf::keep_lobe() {
   surface_.albedo = glm::vec3(0.0f);
   if (!lobe_) return;
   lobe_->diffuse = {};
-  lobe_->share = 1.0f;
+  lobe_->fraction = 1.0f;
 }
 
 void OpaqueBsdf::drop_lobe() {
   surface_.f0 = glm::vec3(0.0f);
   surface_.f90 = 0.0f;
-  if (lobe_) lobe_->share = 0.0f;
+  if (lobe_) lobe_->fraction = 0.0f;
 }
 
 bool OpaqueBsdf::lobe_suits_rays() const {
@@ -93,7 +93,7 @@ glm::vec3 OpaqueBsdf::base_reflectance() const {
 std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
   const float u1 = random.uniform(direction_word), u2 = random.uniform(direction_word + 1);
   glm::vec3 direction;
-  if (lobe_ && random.uniform(choice_word) < lobe_->share) {
+  if (lobe_ && random.uniform(choice_word) < lobe_->fraction) {
     const glm::vec3& view = lobe_->view;
     const glm::vec3 half = sample_ggx_visible_normal(view, surface_.alpha, u1, u2);
     direction = glm::normalize(lobe_->frame.to_world(2.0f * glm::dot(view, half) * half - view));
@@ -111,8 +111,8 @@ float OpaqueBsdf::density(const glm::vec3& direction) const {
   const float of_base = std::max(0.0f, glm::dot(direction, base_normal_)) / PHOTILE_PI;
   if (!lobe_) return of_base;
   const glm::vec3 half = glm::normalize(lobe_->view + lobe_->frame.to_local(direction));
-  return lobe_->share * ggx_reflection_density(lobe_->n_dot_view, half.z, surface_.alpha) +
-         (1.0f - lobe_->share) * of_base;
+  return lobe_->fraction * ggx_reflection_density(lobe_->n_dot_view, half.z, surface_.alpha) +
+         (1.0f - lobe_->fraction) * of_base;
 }
 
 float OpaqueBsdf::bump_at(const glm::vec3& out) const {

@@ -36,7 +36,7 @@ inline DiffusePart diffuse_part(const scene::Reflectance& surface, float n_dot_o
   return result;
 }
 
-/// The share of light that the parts reflect in all directions, or of light from all directions,
+/// The fraction of light that the parts reflect in all directions, or of light from all directions,
 /// per channel.
 inline glm::vec3 diffuse_reflectance(const DiffusePart& part, float alpha) {
   float f0_weight = 0, f90_weight = 0;
@@ -85,11 +85,11 @@ class OpaqueBsdf {
   /// scatters, more where all light of the surface is its, and comes from many directions.
   int lobe_rays() const;
 
-  /// Share of the directions drawn that are the lobe's, in [0, 1]: about its part of what the
+  /// Fraction of the directions drawn that are the lobe's, in [0, 1]: about its part of what the
   /// surface reflects.
-  float lobe_share() const { return lobe_ ? lobe_->share : 0.0f; }
+  float lobe_fraction() const { return lobe_ ? lobe_->fraction : 0.0f; }
 
-  /// Share of light from all sides that is reflected, but for one facet's reflection.
+  /// Fraction of light from all sides that is reflected, but for one facet's reflection.
   glm::vec3 base_reflectance() const;
 
   /// What reflection but for one facet's is at a direction, f x cosine per steradian, less what it
@@ -122,7 +122,7 @@ class OpaqueBsdf {
     PhotileAlbedoFit fit{};
     DiffusePart diffuse{};
     float albedo = 0;     ///< of one facet's reflection, of the channel that reflects most
-    float share = 0;      ///< of the directions drawn, in [0, 1]
+    float fraction = 0;   ///< of the directions drawn, in [0, 1]
     bool mapped = false;  ///< there is a normal map
     glm::vec3 smooth_normal{0.0f};
   };

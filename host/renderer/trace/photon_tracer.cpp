@@ -37,9 +37,9 @@ void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& d
 }
 
 /// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
-/// with the share of its largest channel that is left, and keeps that channel's flux: photons of a
-/// light all weigh the same, which is what keeps the noise of the estimate low. Photons of
-/// long paths weigh more.
+/// with the fraction of its largest channel that is left, and keeps that channel's flux: photons of
+/// a light all weigh the same, which is what keeps the noise of the estimate low. Photons of long
+/// paths weigh more.
 glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& before,
                         const glm::vec3& after, float u) {
   if (bounce < setup.parameters->roulette_start) return after;
@@ -58,8 +58,8 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
   if (!(largest(flux) > 0.0f)) return;
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
   std::uint32_t cutouts = 0;
-  bool straight = true;  // but for panes and cutouts, which sampling lights sees through
-  bool specular = true;  // scattered by mirrors and glass alone, if at all
+  bool unscattered = true;  // but for panes and cutouts, which sampling lights sees through
+  bool specular = true;     // scattered by mirrors and glass alone, if at all
 
   for (int bounce = 1;;) {
     const auto hit = setup.rays->intersect(origin, direction);
@@ -71,10 +71,10 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
-    if (opaque && (setup.parameters->store_direct || !straight)) {
+    if (opaque && (setup.parameters->store_direct || !unscattered)) {
       store(setup, point, direction, flux, record.photons);
     }
-    if (opaque && setup.parameters->keep_caustics && specular && !straight) {
+    if (opaque && setup.parameters->keep_caustics && specular && !unscattered) {
       store(setup, point, direction, flux, record.caustics);
     }
     if (passes_cutout(scene, point, random, Purpose::photon_cutouts, cutouts)) {
@@ -92,8 +92,8 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
                                          numbers.uniform(roulette_word));
     if (!(largest(left) > 0.0f)) break;
     record.absorbed += luminance_of(flux) - luminance_of(left);
-    straight =
-        straight && !opaque && scattered->direction == direction && material_of(scene, point).thin;
+    unscattered = unscattered && !opaque && scattered->direction == direction &&
+                  material_of(scene, point).thin;
     specular = specular && !opaque;
     flux = left;
     direction = scattered->direction;
@@ -166,7 +166,7 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const PhotonTracerParameters& parameters,
                                      const std::vector<Chunk>& chunks,
                                      const std::vector<std::uint64_t>& paths_per_light,
-                                     const std::vector<double>& shares, bool keep_incoming,
+                                     const std::vector<double>& fractions, bool keep_incoming,
                                      Progress& progress) {
   const std::vector<trace::LightEmitter> emitters = emitters_of(scene.scene());
   std::vector<PathRecord> records(chunks.size());
@@ -186,9 +186,9 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
       trace::trace_photon_path(setup, before + path, records[c]);
     // Only what is stored: a path is the same whether its light is in a group or not.
-    if (const auto share = static_cast<float>(shares[chunk.light]); share != 1.0f)
+    if (const auto fraction = static_cast<float>(fractions[chunk.light]); fraction != 1.0f)
       for (PhotonRun* run : {&records[c].photons, &records[c].caustics})
-        for (glm::vec3& flux : run->flux) flux *= share;
+        for (glm::vec3& flux : run->flux) flux *= fraction;
 
     const std::uint64_t so_far = stored += records[c].photons.size();
     if (so_far > limits::max_stored_photons)
@@ -233,7 +233,7 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   progress.begin("trace photons", paths, "paths");
   const LightGroups groups = light_groups_of(scene);
   std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks, paths_per_light,
-                                                 groups.share, needs.glossy, progress);
+                                                 groups.fraction, needs.glossy, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);

@@ -101,47 +101,47 @@ namespace photile::trace {
 namespace {
 
 /// Runs in a row that are counted by one task.
-struct Share {
+struct Chunk {
   std::span<const LayerRun> runs;
   std::vector<std::uint32_t> next;  ///< per oriented face: its photons, then its next position
 };
 
 /// Parts of the runs, as many as there are threads, unless their counts would take more memory than
 /// the photons.
-std::vector<Share> shares_of(std::span<const LayerRun> runs, std::size_t oriented_face_count) {
+std::vector<Chunk> chunks_of(std::span<const LayerRun> runs, std::size_t oriented_face_count) {
   std::size_t photons = 0;
   for (const LayerRun& run : runs) photons += run.photons->size();
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t count =
       std::clamp<std::size_t>(photons / (oriented_face_count + 1), 1, threads);
-  std::vector<Share> shares(count);
+  std::vector<Chunk> chunks(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = i * runs.size() / count, last = (i + 1) * runs.size() / count;
-    shares[i].runs = runs.subspan(first, last - first);
+    chunks[i].runs = runs.subspan(first, last - first);
   }
-  return shares;
+  return chunks;
 }
 
 /// Turns the runs' oriented faces into the positions of their photons; returns Photons::first_of.
-std::vector<std::uint32_t> find_places(std::span<const LayerRun> runs,
-                                       std::size_t oriented_face_count) {
-  std::vector<Share> shares = shares_of(runs, oriented_face_count);
-  tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
-    shares[i].next.assign(oriented_face_count, 0);
-    for (const LayerRun& run : shares[i].runs) {
-      for (const std::uint32_t s : run.photons->oriented_face) ++shares[i].next[s];
+std::vector<std::uint32_t> find_slots(std::span<const LayerRun> runs,
+                                      std::size_t oriented_face_count) {
+  std::vector<Chunk> chunks = chunks_of(runs, oriented_face_count);
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+    chunks[i].next.assign(oriented_face_count, 0);
+    for (const LayerRun& run : chunks[i].runs) {
+      for (const std::uint32_t s : run.photons->oriented_face) ++chunks[i].next[s];
     }
   });
   std::vector<std::uint32_t> first_of(oriented_face_count + 1);
   std::uint32_t index = 0;
   for (std::size_t s = 0; s < oriented_face_count; ++s) {
     first_of[s] = index;
-    for (Share& share : shares) index += std::exchange(share.next[s], index);
+    for (Chunk& chunk : chunks) index += std::exchange(chunk.next[s], index);
   }
   first_of.back() = index;
-  tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
-    for (const LayerRun& run : shares[i].runs) {
-      for (std::uint32_t& s : run.photons->oriented_face) s = shares[i].next[s]++;
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+    for (const LayerRun& run : chunks[i].runs) {
+      for (std::uint32_t& s : run.photons->oriented_face) s = chunks[i].next[s]++;
     }
   });
   return first_of;
@@ -149,8 +149,8 @@ std::vector<std::uint32_t> find_places(std::span<const LayerRun> runs,
 
 /// One array of all runs, whose oriented faces tell the positions now.
 template <class T>
-std::vector<T> in_places(std::span<const LayerRun> runs, std::vector<T> PhotonRun::*array,
-                         std::size_t count) {
+std::vector<T> in_slots(std::span<const LayerRun> runs, std::vector<T> PhotonRun::*array,
+                        std::size_t count) {
   std::vector<T> all = touched_vector<T>(count);
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
     const std::vector<std::uint32_t>& index = runs[r].photons->oriented_face;
@@ -167,11 +167,11 @@ Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
   Photons photons;
   const bool keeps_incoming = std::any_of(
       runs.begin(), runs.end(), [](const LayerRun& run) { return !run.photons->incoming.empty(); });
-  photons.first_of = find_places(runs, oriented_face_count);
+  photons.first_of = find_slots(runs, oriented_face_count);
   const std::size_t count = photons.first_of.back();
-  photons.position = in_places(runs, &PhotonRun::position, count);
-  photons.flux = in_places(runs, &PhotonRun::flux, count);
-  if (keeps_incoming) photons.incoming = in_places(runs, &PhotonRun::incoming, count);
+  photons.position = in_slots(runs, &PhotonRun::position, count);
+  photons.flux = in_slots(runs, &PhotonRun::flux, count);
+  if (keeps_incoming) photons.incoming = in_slots(runs, &PhotonRun::incoming, count);
   if (tell_layers) {
     photons.light = touched_vector<std::uint16_t>(count);
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {

@@ -32,10 +32,10 @@ constexpr std::uint64_t paths_of_search = 16'384, most_paths = 131'072;
 constexpr int path_bounces = 3;
 constexpr std::size_t enough_escapes = 400;
 /// The fraction of the rays from a camera that leave at once above which it stands outside.
-constexpr double outside_share = 0.4;
-constexpr std::size_t most_planes = 256;  ///< of the largest area
-constexpr double least_share = 0.02;      ///< of what escapes that a portal takes
-constexpr double wanted_share = 0.97;     ///< of what escapes that all take
+constexpr double outside_fraction = 0.4;
+constexpr std::size_t most_planes = 256;     ///< of the largest area
+constexpr double least_fraction = 0.02;      ///< of what escapes that a portal takes
+constexpr double requested_fraction = 0.97;  ///< of what escapes that all take
 /// So much larger may a portal be that takes more than the narrowest.
 constexpr double roomier = 1.5;
 /// The part of the disc of the bounding sphere above which portals would gain little.
@@ -71,7 +71,7 @@ std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start, s
   std::uint64_t at_once = 0;
   for (std::uint64_t path = 0; path < most_paths; ++path) {
     if (path == first_paths &&
-        static_cast<double>(at_once) > outside_share * static_cast<double>(first_paths))
+        static_cast<double>(at_once) > outside_fraction * static_cast<double>(first_paths))
       return {};
     if (path >= first_paths && escapes.size() * points >= enough_escapes) break;
     const RandomStream random(0, path, 0);
@@ -245,7 +245,7 @@ std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t 
   double area = 0;
   std::size_t left = escapes;
   while (portals.size() < limits::max_portals &&
-         static_cast<double>(left) > (1 - wanted_share) * static_cast<double>(escapes)) {
+         static_cast<double>(left) > (1 - requested_fraction) * static_cast<double>(escapes)) {
     const auto fresh_of = [&](const Opening& opening) {
       return static_cast<std::size_t>(std::count_if(opening.rays.begin(), opening.rays.end(),
                                                     [&](std::size_t ray) { return !taken[ray]; }));
@@ -279,8 +279,8 @@ std::vector<Portal> narrowest(const std::vector<Opening>& openings, std::size_t 
   return area <= most_area ? portals : std::vector<Portal>{};
 }
 
-/// Share of rays from a rectangle to one of its sides that leave the scene.
-double open_share(const RayScene& rays, const Portal& portal, const glm::vec3& normal) {
+/// Fraction of rays from a rectangle to one of its sides that leave the scene.
+double open_fraction(const RayScene& rays, const Portal& portal, const glm::vec3& normal) {
   constexpr int count = 256;
   int escaped = 0;
   const float above = 1e-3f * std::sqrt(glm::length(glm::cross(portal.u, portal.v)));
@@ -299,7 +299,7 @@ double open_share(const RayScene& rays, const Portal& portal, const glm::vec3& n
 /// Turns a rectangle so that light comes in from the side that sees more of the sky.
 Portal facing_in(const RayScene& rays, Portal portal) {
   const glm::vec3 normal = glm::normalize(glm::cross(portal.u, portal.v));
-  if (open_share(rays, portal, normal) > open_share(rays, portal, -normal))
+  if (open_fraction(rays, portal, normal) > open_fraction(rays, portal, -normal))
     std::swap(portal.u, portal.v);
   return portal;
 }
@@ -363,7 +363,7 @@ std::vector<Portal> find_portals(const Scene& scene, std::span<const glm::dvec3>
   }
   if (escapes.empty()) return {};
   const std::size_t least = std::max<std::size_t>(
-      8, static_cast<std::size_t>(least_share * static_cast<double>(escapes.size())));
+      8, static_cast<std::size_t>(least_fraction * static_cast<double>(escapes.size())));
   const double radius = bounding_sphere(scene).radius;
   return narrowest(openings_of(scene, escapes, least), escapes.size(), least,
                    most_portal_area * glm::pi<double>() * radius * radius);

@@ -71,8 +71,8 @@ double Portals::weigh(const glm::dvec3& from, std::vector<double>& weights) cons
   return sum;
 }
 
-glm::dvec3 Portals::look(const glm::dvec3& from, const std::vector<double>& weights, double sum,
-                         double choice, double u, double v) const {
+glm::dvec3 Portals::sample_direction(const glm::dvec3& from, const std::vector<double>& weights,
+                                     double sum, double choice, double u, double v) const {
   double left = choice * sum;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < portals_.size(); ++i) {

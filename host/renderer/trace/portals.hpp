@@ -1,4 +1,4 @@
-// Windows as seen by what comes from beyond the scene, or looks there.
+// Windows as seen by what comes from beyond the scene, or goes there.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -27,15 +27,15 @@ class Portals {
   ///   u, v       in [0, 1): where on it
   glm::dvec3 entrance(const glm::dvec3& travel, double choice, double u, double v) const;
 
-  /// Looks from a point through portals at what lies beyond: which are in front of it and about how
+  /// Samples directions from a point through portals: which are in front of it and about how
   /// large they look. Returns the sum of weights; 0 where none can be seen.
   double weigh(const glm::dvec3& from, std::vector<double>& weights) const;
 
   /// A unit direction through one of them, chosen by its weight, evenly over its area.
-  glm::dvec3 look(const glm::dvec3& from, const std::vector<double>& weights, double sum,
-                  double choice, double u, double v) const;
+  glm::dvec3 sample_direction(const glm::dvec3& from, const std::vector<double>& weights,
+                              double sum, double choice, double u, double v) const;
 
-  /// Density of `look` per steradian.
+  /// Density of `sample_direction` per steradian.
   double density(const glm::dvec3& from, const glm::dvec3& direction,
                  const std::vector<double>& weights, double sum) const;
 

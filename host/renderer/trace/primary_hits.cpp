@@ -48,15 +48,15 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
   check(parameters, first_row, last_row);
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(ray_scene.scene());
   const trace::DistantLights distant(ray_scene.scene());
-  std::optional<trace::LightSampler> lamps;
+  std::optional<trace::LightSampler> light_sampler;
   std::optional<trace::DirectRays> direct;
   std::optional<trace::LobeRays> lobes;
   const bool lobe_rays = parameters.lobe_rays && !reflections_only;
-  if (parameters.direct_rays > 0 || lobe_rays) lamps.emplace(ray_scene.scene());
+  if (parameters.direct_rays > 0 || lobe_rays) light_sampler.emplace(ray_scene.scene());
   if (parameters.direct_rays > 0) {
-    direct.emplace(trace::DirectRays{ray_scene, *lamps, parameters.direct_rays});
+    direct.emplace(trace::DirectRays{ray_scene, *light_sampler, parameters.direct_rays});
   }
-  if (lobe_rays) lobes.emplace(trace::LobeRays{ray_scene, *lamps});
+  if (lobe_rays) lobes.emplace(trace::LobeRays{ray_scene, *light_sampler});
   const FilmDirections directions = camera.directions(parameters.width, parameters.height);
   const trace::EyeSetup setup{.rays = &impl_of(ray_scene),
                               .film = &directions,
@@ -83,7 +83,7 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
   if (!lobe_rays) return batch;
   PrimaryHitBatch reflected = trace::batch_of(ray_scene, std::move(reflected_rows), map_of);
   batch.rays += reflected.rays;
-  for (SeenEmission& seen : reflected.emission) {
+  for (VisibleEmission& seen : reflected.emission) {
     seen.illuminance = 0;  // of another surface
     batch.emission.push_back(seen);
   }
@@ -111,15 +111,15 @@ std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     if (light.emission_texture != none) {
-      radiance.push_back(static_cast<float>(groups.share[i]) * light.texel_radiance);
+      radiance.push_back(static_cast<float>(groups.fraction[i]) * light.texel_radiance);
       continue;
     }
     double area = 0;
     for (const std::uint32_t triangle : light.triangles) area += triangle_area(scene, triangle);
     if (light.two_sided) area *= 2;
-    radiance.push_back(
-        area > 0 ? glm::vec3(glm::dvec3(light.color) * groups.share[i] / (glm::pi<double>() * area))
-                 : glm::vec3(0.0f));
+    radiance.push_back(area > 0 ? glm::vec3(glm::dvec3(light.color) * groups.fraction[i] /
+                                            (glm::pi<double>() * area))
+                                : glm::vec3(0.0f));
   }
   return radiance;
 }

@@ -152,10 +152,10 @@ constexpr std::uint32_t second_sobol_digits(std::uint32_t index) {
 /// scrambled in the same way, so that pairs of dimensions know nothing of each other. Sequences of
 /// different scrambles are independent: their scatter is an honest error.
 inline glm::uvec2 sobol_words(std::uint32_t index, const RandomBlock& scramble) {
-  const std::uint32_t place =
+  const std::uint32_t position =
       reversed_bits(scrambled_digits(reversed_bits(index), scramble.word(0)));
-  return {reversed_bits(scrambled_digits(place, scramble.word(1))),
-          reversed_bits(scrambled_digits(second_sobol_digits(place), scramble.word(2)))};
+  return {reversed_bits(scrambled_digits(position, scramble.word(1))),
+          reversed_bits(scrambled_digits(second_sobol_digits(position), scramble.word(2)))};
 }
 
 /// The Sobol point in [0, 1)^2.

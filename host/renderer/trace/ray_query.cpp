@@ -90,12 +90,12 @@ std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin
   return next_surface(impl_of(rays), origin, direction, random, purpose, cutouts);
 }
 
-bool see_each_other(const RayScene& rays, const SurfacePlace& from, const SurfacePlace& to,
-                    const SightLine& line) {
+bool see_each_other(const RayScene& rays, const SurfaceLocation& from, const SurfaceLocation& to,
+                    const ShadowRayInset& line) {
   const glm::vec3 way = to.position - from.position;
   const float turn =
       std::max(std::abs(glm::dot(way, from.normal)), std::abs(glm::dot(way, to.normal)));
-  const float height = line.lift + 0.5f * turn;
+  const float height = line.offset + 0.5f * turn;
   const glm::vec3 start = from.position + height * from.normal;
   const glm::vec3 end = to.position + height * to.normal;
   return !occluded(rays, start, end + line.left_out * (start - end));

@@ -79,25 +79,25 @@ std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& cutouts);
 
-struct SurfacePlace {
+struct SurfaceLocation {
   glm::vec3 position;  ///< metres
   glm::vec3 normal;    ///< unit, of the side
 };
 
-inline SurfacePlace place_on(const Scene& scene, std::uint32_t oriented_face,
-                             const glm::vec3& position) {
+inline SurfaceLocation location_on(const Scene& scene, std::uint32_t oriented_face,
+                                   const glm::vec3& position) {
   return {position, glm::vec3(face_normal(scene, oriented_face))};
 }
 
-/// How a shadow ray differs from the straight way between two points.
-struct SightLine {
-  float lift;      ///< it runs so far above them, metres
+/// How a shadow ray differs from the line between two points.
+struct ShadowRayInset {
+  float offset;    ///< it runs so far above them, metres
   float left_out;  ///< and ends short of the second by this part of its length
 };
 
 /// Whether nothing is between two points of one surface, just above it. Where it is curved, a line
 /// of sight as deep in it as a circle's chord is lifted out by twice as much.
-bool see_each_other(const RayScene& rays, const SurfacePlace& from, const SurfacePlace& to,
-                    const SightLine& line);
+bool see_each_other(const RayScene& rays, const SurfaceLocation& from, const SurfaceLocation& to,
+                    const ShadowRayInset& line);
 
 }  // namespace photile::trace

@@ -13,9 +13,9 @@ namespace photile::trace {
 namespace {
 
 constexpr double cells_of_height = 25;  // side of a cell: 0.1 m in a room of 2.5 m
-constexpr double cut_share = 0.9;       // of the way from the point up to its ceiling
+constexpr double cut_fraction = 0.9;    // of the way from the point up to its ceiling
 constexpr std::size_t most_cells = 1u << 20;
-constexpr int looks_ahead = 64;        // along a camera's middle ray
+constexpr int samples_ahead = 64;      // along a camera's middle ray
 constexpr double border_slack = 0.01;  // of a cell: a wall belongs to the room before it
 
 constexpr std::array<glm::i32vec2, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -26,8 +26,8 @@ std::optional<double> distance_to(const RayScene& rays, const glm::dvec3& from,
   const glm::vec3 ray(direction);
   const auto hit = trace::intersect(rays, glm::vec3(from), ray);
   if (!hit) return std::nullopt;
-  const glm::dvec3 place(trace::surface_hit(rays.scene(), *hit, ray).position);
-  return glm::dot(place - from, direction);
+  const glm::dvec3 point(trace::surface_hit(rays.scene(), *hit, ray).position);
+  return glm::dot(point - from, direction);
 }
 
 std::uint64_t key_of(const glm::i32vec2& cell) {
@@ -81,7 +81,7 @@ std::optional<Room> Room::around(const RayScene& rays, const PlanAxes& axes,
     most = there;
     seed = other;
   }
-  Room room(rays, axes, seed + cut_share * most->up * axes.up,
+  Room room(rays, axes, seed + cut_fraction * most->up * axes.up,
             (most->up + most->down) / cells_of_height);
   if (!room.spread()) return std::nullopt;
   return room;
@@ -91,8 +91,8 @@ std::optional<Room> Room::of_camera(const RayScene& rays, const PlanAxes& axes,
                                     const Camera& camera) {
   const trace::FlushDenormals flush_denormals;
   const double seen = distance_to(rays, camera.position, camera.forward).value_or(0);
-  for (int i = 0; i < looks_ahead; ++i) {
-    const glm::dvec3 point = camera.position + seen * i / looks_ahead * camera.forward;
+  for (int i = 0; i < samples_ahead; ++i) {
+    const glm::dvec3 point = camera.position + seen * i / samples_ahead * camera.forward;
     if (!headroom_at(rays, axes, point)) continue;
     return around(rays, axes, point);
   }
@@ -168,14 +168,14 @@ bool Room::holds(const glm::dvec2& plan) const {
       if (!reached(cell)) continue;
       const glm::dvec3 from = middle_of(cell), way = point - from;
       const double length = glm::length(way);
-      const double share = length > 0 ? std::max(0.0, 1 - border_slack * cell_ / length) : 0;
-      if (!trace::occluded(*rays_, glm::vec3(from), glm::vec3(from + share * way))) return true;
+      const double fraction = length > 0 ? std::max(0.0, 1 - border_slack * cell_ / length) : 0;
+      if (!trace::occluded(*rays_, glm::vec3(from), glm::vec3(from + fraction * way))) return true;
     }
   }
   return false;
 }
 
-std::vector<glm::dvec3> Room::places() const {
+std::vector<glm::dvec3> Room::positions() const {
   std::vector<glm::dvec3> all;
   for (const std::uint64_t key : reached_) {
     all.push_back(middle_of(

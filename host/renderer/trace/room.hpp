@@ -50,7 +50,7 @@ class Room {
   bool holds(const glm::dvec2& plan) const;
 
   /// Points in the cut, spread evenly: one for each `cell_area`.
-  std::vector<glm::dvec3> places() const;
+  std::vector<glm::dvec3> positions() const;
   double cell_area() const { return cell_ * cell_; }
   /// The height of the cut along `up`, metres: just below the ceiling.
   double cut_height() const { return glm::dot(seed_, axes_.up); }

@@ -31,7 +31,7 @@ Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,
 
 /// Both ways that light takes at the boundary of glass.
 struct SplitLight {
-  float reflectance;  ///< share of the light that is reflected, in (0, 1)
+  float reflectance;  ///< fraction of the light that is reflected, in (0, 1)
   Scattered reflected, transmitted;
 };
 
@@ -45,7 +45,7 @@ std::optional<SplitLight> both_parts(const Scene& scene, const SurfacePoint& poi
 std::optional<Scattered> scatter_opaque(const Scene& scene, const SurfacePoint& point,
                                         const glm::vec3& direction, const RandomBlock& random);
 
-/// Share of light that a pane of thin glass lets through, per channel. `cosine` in [0, 1] to its
+/// Fraction of light that a pane of thin glass lets through, per channel. `cosine` in [0, 1] to its
 /// normal.
 glm::vec3 pane_transmittance(const Material& material, float cosine);
 

@@ -20,7 +20,7 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
   constexpr double reach = 1e-3;  // metres
   const Scene& scene = rays.scene();
   EyeRecord record;
-  std::vector<HitPlace> places;
+  std::vector<HitIndex> indices;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const Sensor& sensor = sensors[i];
     const glm::vec3 down(-sensor.normal);
@@ -35,9 +35,9 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
     append_hit(impl_of(rays), *point,
                {glm::vec3(sensor.position), down, glm::vec3(1.0f), static_cast<std::uint32_t>(i)},
                record);
-    places.push_back({0, static_cast<std::uint32_t>(i)});
+    indices.push_back({0, static_cast<std::uint32_t>(i)});
   }
-  return hits_at({&record, 1}, places);
+  return hits_at({&record, 1}, indices);
 }
 
 namespace {
@@ -45,11 +45,15 @@ namespace {
 /// All rays of a row's sensor.
 class Gatherer {
  public:
-  Gatherer(const RayScene& rays, const LightSampler& lamps, const EyeSetup& setup,
+  Gatherer(const RayScene& rays, const LightSampler& light_sampler, const EyeSetup& setup,
            const Photometer& photometer, std::uint32_t pixel)
-      : rays_(rays), lamps_(lamps), setup_(setup), photometer_(photometer), pixel_(pixel) {}
+      : rays_(rays),
+        light_sampler_(light_sampler),
+        setup_(setup),
+        photometer_(photometer),
+        pixel_(pixel) {}
 
-  void trace(EyeRecord& record, std::vector<SeenEmission>& lamps) {
+  void trace(EyeRecord& record, std::vector<VisibleEmission>& emission) {
     const PrimaryHitParameters& film = *setup_.parameters;
     const auto number = [&](int sample) {
       return std::uint64_t{pixel_} * static_cast<std::uint64_t>(film.samples_per_pixel) +
@@ -57,13 +61,13 @@ class Gatherer {
     };
     const RandomBlock scramble =
         RandomStream(film.seed, number(0), 0).block(Purpose::sensor_direction, 0);
-    // One number for all choices of lights: each is looked at as often as its chance says.
+    // One number for all choices of lights: each is sampled as often as its probability says.
     const double shift =
         RandomStream(film.seed, number(0), 0).block(Purpose::sensor_light, 2).uniform_double(0);
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       const RandomStream random(film.seed, number(sample), 0);
       follow(random, sobol_point(static_cast<std::uint32_t>(sample), scramble), record);
-      sample_light(random, (sample + shift) / film.samples_per_pixel, lamps);
+      sample_light(random, (sample + shift) / film.samples_per_pixel, emission);
     }
   }
 
@@ -77,26 +81,27 @@ class Gatherer {
     const glm::vec3 direction = photometer_.sample(spread, own.uniform(0), own.uniform(1));
     const float density = photometer_.density(direction);
     if (!(density > 0.0f)) return;
-    const LightTechnique looking{lamps_, density, false, by_power_alone, !photometer_.sees_lamps()};
+    const LightTechnique looking{light_sampler_, density, false, by_power_alone,
+                                 !photometer_.sees_lights()};
     follow_eye_ray(setup_, {photometer_.origin(), direction, weight(), pixel_}, random, record,
                    &looking);
   }
 
   void sample_light(const RandomStream& random, double choice,
-                    std::vector<SeenEmission>& lamps) const {
-    const auto lamp = lamps_.sample(photometer_.origin(), RandomBlock::of(choice),
-                                    random.block(Purpose::sensor_light, 1));
-    if (!lamp || !(photometer_.sees_lamps() || lamp->distant)) return;
-    const float density = photometer_.density(lamp->direction);
+                    std::vector<VisibleEmission>& emission) const {
+    const auto light = light_sampler_.sample(photometer_.origin(), RandomBlock::of(choice),
+                                             random.block(Purpose::sensor_light, 1));
+    if (!light || !(photometer_.sees_lights() || light->distant)) return;
+    const float density = photometer_.density(light->direction);
     if (!(density > 0.0f)) return;
-    const glm::vec3 arrives = density * weight() * lamp->received *
-                              transmittance(rays_, photometer_.origin(), lamp->target);
+    const glm::vec3 arrives = density * weight() * light->received *
+                              transmittance(rays_, photometer_.origin(), light->target);
     if (arrives == glm::vec3(0.0f)) return;
-    lamps.push_back({pixel_, lamp->layer, arrives * lamp->weight_beside(density)});
+    emission.push_back({pixel_, light->layer, arrives * light->weight_beside(density)});
   }
 
   const RayScene& rays_;
-  const LightSampler& lamps_;
+  const LightSampler& light_sampler_;
   const EyeSetup& setup_;
   const Photometer& photometer_;
   std::uint32_t pixel_;
@@ -105,7 +110,7 @@ class Gatherer {
 }  // namespace
 
 PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
-                            SensorResponse response, const LightSampler& lamps,
+                            SensorResponse response, const LightSampler& light_sampler,
                             const PrimaryHitParameters& film, int first_row, int last_row,
                             std::span<const std::uint32_t> map_of) {
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
@@ -116,12 +121,12 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
                        .distant = &distant};
   const auto count = static_cast<std::size_t>(last_row - first_row);
   std::vector<EyeRecord> rows(count);
-  std::vector<std::vector<SeenEmission>> seen(count);
+  std::vector<std::vector<VisibleEmission>> seen(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const FlushDenormals flush_denormals;
     const auto pixel = static_cast<std::uint32_t>(first_row) + static_cast<std::uint32_t>(i);
     const Photometer photometer(sensors[pixel], sensors[pixel].response.value_or(response));
-    Gatherer(rays, lamps, setup, photometer, pixel).trace(rows[i], seen[i]);
+    Gatherer(rays, light_sampler, setup, photometer, pixel).trace(rows[i], seen[i]);
   });
   PrimaryHitBatch batch = batch_of(rays, std::move(rows), map_of);
   for (const auto& row : seen) {

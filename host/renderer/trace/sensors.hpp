@@ -22,7 +22,7 @@ class Photometer {
         normal_(sensor.normal),
         facing_(sensor.facing),
         response_(response),
-        sees_lamps_(sensor.sees_lamps),
+        sees_lights_(sensor.sees_lights),
         frame_(normal_) {}
 
   /// A plane on the side of a surface on which the point is.
@@ -30,7 +30,7 @@ class Photometer {
       : origin_(point.origin_towards(point.normal)), normal_(point.normal), frame_(normal_) {}
 
   const glm::vec3& origin() const { return origin_; }
-  bool sees_lamps() const { return sees_lamps_; }
+  bool sees_lights() const { return sees_lights_; }
 
   /// Density of `sample`, per steradian: the response over pi.
   float density(const glm::vec3& direction) const {
@@ -65,13 +65,13 @@ class Photometer {
     if (response != SensorResponse::planar) return glm::vec3(sensor.position);
     // A plane sensor may lie on a surface: its rays start a little above.
     const glm::dvec3 size = glm::abs(sensor.position);
-    const double clearance = clearance_per_coordinate * std::max({size.x, size.y, size.z, 1e-3});
-    return glm::vec3(sensor.position + clearance * sensor.normal);
+    const double ray_offset = ray_offset_per_coordinate * std::max({size.x, size.y, size.z, 1e-3});
+    return glm::vec3(sensor.position + ray_offset * sensor.normal);
   }
 
   glm::vec3 origin_, normal_, facing_{1.0f, 0.0f, 0.0f};
   SensorResponse response_ = SensorResponse::planar;
-  bool sees_lamps_ = true;
+  bool sees_lights_ = true;
   Frame frame_;
 };
 
@@ -87,7 +87,7 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors);
 ///   lights    of the scene
 ///   map_of   as in trace_primary_hits
 PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
-                            SensorResponse response, const LightSampler& lamps,
+                            SensorResponse response, const LightSampler& light_sampler,
                             const PrimaryHitParameters& film, int first_row, int last_row,
                             std::span<const std::uint32_t> map_of);
 

@@ -16,7 +16,7 @@ namespace {
 struct Interpolated {
   glm::dvec3 position;
   glm::dvec3 normal;  ///< unit, of side 0
-  double clearance;
+  double ray_offset;
 };
 
 Interpolated interpolate(const Scene& scene, const TriangleHit& where) {
@@ -27,7 +27,7 @@ Interpolated interpolate(const Scene& scene, const TriangleHit& where) {
   const double u = std::clamp(static_cast<double>(where.u), 0.0, 1.0);
   const double v = std::clamp(static_cast<double>(where.v), 0.0, 1.0 - u);
   return {a + u * (b - a) + v * (c - a), cross / glm::length(cross),
-          clearance_per_coordinate *
+          ray_offset_per_coordinate *
               std::max({largest(glm::abs(a)), largest(glm::abs(b)), largest(glm::abs(c))})};
 }
 
@@ -64,7 +64,7 @@ SurfacePoint on_side(const TriangleHit& where, const Interpolated& at, std::uint
   point.side = side;
   point.position = glm::vec3(at.position);
   point.normal = glm::vec3(side == 0 ? at.normal : -at.normal);
-  point.clearance = static_cast<float>(at.clearance);
+  point.ray_offset = static_cast<float>(at.ray_offset);
   return point;
 }
 
@@ -130,7 +130,8 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
       std::max(grazing, std::abs(glm::dot(glm::dvec3(point.normal), glm::dvec3(direction))));
   const double sides = light.two_sided ? 2 : 1;
   const double intensity =
-      distribution.intensity(LightAxes(light).to_lamp(glm::dvec3(direction))) / distribution.flux();
+      distribution.intensity(LightAxes(light).to_light(glm::dvec3(direction))) /
+      distribution.flux();
   return texel * static_cast<float>(glm::pi<double>() * sides * intensity / cosine);
 }
 
@@ -153,13 +154,13 @@ scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point) {
 
 float opacity(const Scene& scene, const SurfacePoint& point) {
   const Material& material = material_of(scene, point);
-  float share = material.opacity;
+  float fraction = material.opacity;
   if (material.opacity_texture != none && !scene.corner_uv.empty()) {
-    share *=
+    fraction *=
         scene.textures[material.opacity_texture].sample_data(texture_coordinates(scene, point)).a;
   }
-  if (material.opacity_cutoff > 0.0f) return share >= material.opacity_cutoff ? 1.0f : 0.0f;
-  return std::clamp(share, 0.0f, 1.0f);
+  if (material.opacity_cutoff > 0.0f) return fraction >= material.opacity_cutoff ? 1.0f : 0.0f;
+  return std::clamp(fraction, 0.0f, 1.0f);
 }
 
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point) {

@@ -15,13 +15,13 @@ struct TriangleHit {
   float u, v;  ///< barycentric weights of the second and third corner
 };
 
-/// Clearance over the largest coordinate of the triangle's corners. The position is interpolated in
-/// double precision and rounded once (2^-24 of a coordinate), and Embree's plane distance is wrong
-/// by a few roundings of the corners' distances, so 2^-19 leaves a margin of an order of magnitude.
-/// The idea of an offset in units of rounding is Waechter and Binder's ("A fast and robust method
-/// for avoiding self-intersection", Ray Tracing Gems, 2019); theirs scales with the point, which
-/// is too little at the origin of a large triangle and too much on a small scene.
-inline constexpr double clearance_per_coordinate = 0x1p-19;
+/// The offset of rays over the largest coordinate of the triangle's corners. The position is
+/// interpolated in double precision and rounded once (2^-24 of a coordinate), and Embree's plane
+/// distance is wrong by a few roundings of the corners' distances, so 2^-19 leaves a margin of an
+/// order of magnitude. The idea of an offset in units of rounding is Waechter and Binder's ("A fast
+/// and robust method for avoiding self-intersection", Ray Tracing Gems, 2019); theirs scales with
+/// the point, which is too little at the origin of a large triangle and too much on a small scene.
+inline constexpr double ray_offset_per_coordinate = 0x1p-19;
 
 /// A point on one side of a triangle.
 struct SurfacePoint {
@@ -30,12 +30,12 @@ struct SurfacePoint {
   glm::vec3 position{0.0f};  ///< metres
   glm::vec3 normal{0.0f};    ///< unit geometric normal on this side
   /// How far from the position a ray has to start so that it cannot meet its own triangle, metres.
-  float clearance = 0;
+  float ray_offset = 0;
 
   std::uint32_t oriented_face() const { return oriented(where.triangle, side); }
   /// Origin of a ray that leaves in `direction`, to this side or the other.
   glm::vec3 origin_towards(const glm::vec3& direction) const {
-    return position + (glm::dot(direction, normal) < 0.0f ? -clearance : clearance) * normal;
+    return position + (glm::dot(direction, normal) < 0.0f ? -ray_offset : ray_offset) * normal;
   }
 };
 
@@ -84,7 +84,7 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
 /// What an opaque surface reflects there, textured. Without a specular lobe F0 and F90 are 0.
 scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
 
-/// Share of the surface that is there, in [0, 1]; 1 where its material has no cutouts.
+/// Fraction of the surface that is there, in [0, 1]; 1 where its material has no cutouts.
 float opacity(const Scene& scene, const SurfacePoint& point);
 
 /// The unit interpolated normal of a point's corners, on its side: the same from wherever it is

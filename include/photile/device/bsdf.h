@@ -11,7 +11,7 @@
 //           + Fm (1 - E1(i)) (1 - E1(o)) / (pi (1 - E1_mean))                      several facets
 //           + albedo (1 - E(i)) (1 - E(o)) / (pi (1 - E_mean))                     the base
 //   F       = F0 + (F90 - F0) (1 - i.h)^5                                          Schlick's
-//   E       = (share of light that one facet reflects) + Fm (1 - E1)               the coat's
+//   E       = (fraction of light that one facet reflects) + Fm (1 - E1)               the coat's
 //   albedo
 //
 // D is the GGX distribution (Walter et al. 2007), G2 Smith's height-correlated masking and

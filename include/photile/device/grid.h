@@ -1,6 +1,6 @@
 /* The uniform grid of one photon map, as C++ and OpenCL C both see it. Scalar members only: a
-   float3 is 16 bytes on the device. The size is asserted in host/renderer/maps/map_page.hpp and compared
-   with the device's in tests/device. */
+   float3 is 16 bytes on the device. The size is asserted in host/renderer/maps/map_page.hpp and
+   compared with the device's in tests/device. */
 #ifndef PHOTILE_DEVICE_GRID_H
 #define PHOTILE_DEVICE_GRID_H
 
@@ -15,8 +15,8 @@
        v ^   rows
          |  +--+--+--+--+
          |  |  |  |  |  |      cells in row-major order, first_cell + row * columns + column;
-         |  +--+--+--+--+      their entries are contiguous, so the cells
-         |  |  |  |  |  |      [column0, column1] of a row are one range of entries
+         |  +--+--+--+--+      their records are contiguous, so the cells
+         |  |  |  |  |  |      [column0, column1] of a row are one range of records
          |  +--+--+--+--+
    minimum ----------------> u   columns
 
@@ -32,7 +32,8 @@ typedef struct {
   float slack; /* how far rounding may move a projected point across a cell border, metres */
   unsigned int columns, rows;
   unsigned int first_cell; /* into cell_start of the map's page */
-  unsigned int mixed; /* 1 if some photon's normal may disagree with some triangle of the map */
+  unsigned int
+      normal_filtered; /* 1 if some photon's normal may disagree with some triangle of the map */
 } PhotileGrid;
 
 #endif

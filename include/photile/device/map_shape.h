@@ -22,7 +22,7 @@ typedef struct {
   /* The box along the axes: who enters must be near both, so that lists of candidates, which are
      made by this one, decide nothing. */
   float low_x, low_y, low_z, high_x, high_y, high_z;
-  unsigned int triangle; /* place of its corners where photons are compared with just one, else
+  unsigned int triangle; /* index of its corners where photons are compared with just one, else
                             PHOTILE_NO_TRIANGLE */
 } PhotileMapShape;
 

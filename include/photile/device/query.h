@@ -7,7 +7,7 @@
 typedef struct {
   unsigned int first_hit, hit_count; /* hits [first_hit, first_hit + hit_count) of the batch */
   unsigned int first_map;            /* of the page */
-  unsigned int entry_stride;         /* from one plane of the page's photon records to the next */
+  unsigned int record_stride;        /* from one plane of the page's photon records to the next */
   unsigned int k;                    /* at most so many neighbours, */
   float radius;                      /* none farther than this, metres */
   float least_radius;                /* that a smaller disc is taken to have, metres */
@@ -21,11 +21,11 @@ typedef struct {
 
 /* The surface at a hit, where normals are compared or discs are clipped. */
 typedef struct {
-  float normal[3];    /* of the hit's oriented face */
-  float inwards[3];   /* from the hit to the centroid of its triangle */
-  unsigned int facet; /* as photile/device/surface.h has it, like those below */
+  float normal[3];     /* of the hit's oriented face */
+  float inwards[3];    /* from the hit to the centroid of its triangle */
+  unsigned int region; /* as photile/device/surface.h has it, like those below */
   unsigned int triangle;
-  unsigned int sheet;
+  unsigned int component;
 } PhotileHitSurface;
 
 /* The reflection at a hit, where surfaces have a specular lobe. */

@@ -19,26 +19,28 @@ typedef struct {
 } PhotileSurfaceNode;
 
 #define PHOTILE_PIECE_BORDER 0x80000000u /* in `triangle`: the piece is a border edge */
-#define PHOTILE_SHEET_UNLIT 0x80000000u  /* in `front_sheet`, `back_sheet`: without photons */
-#define PHOTILE_NO_SHEET 0xFFFFFFFFu     /* in `front_sheet`, `back_sheet`: none, and unlit */
-#define PHOTILE_NO_FACET 0xFFFFFFFFu     /* in `facet`: none whose border is known */
+#define PHOTILE_COMPONENT_UNLIT \
+  0x80000000u /* in `front_component`, `back_component`: without photons */
+#define PHOTILE_NO_COMPONENT \
+  0xFFFFFFFFu                         /* in `front_component`, `back_component`: none, and unlit */
+#define PHOTILE_NO_REGION 0xFFFFFFFFu /* in `region`: none whose border is known */
 
 /* Eight pieces. A triangle has its corners a, b, c. A border edge runs from a to b; c is the unit
-   vector in the plane of its facet, perpendicular to the edge, that points into the facet. Lanes
-   without a piece are border edges of PHOTILE_NO_FACET. */
+   vector in the plane of its region, perpendicular to the edge, that points into the region. Lanes
+   without a piece are border edges of PHOTILE_NO_REGION. */
 typedef struct {
   float a_x[PHOTILE_SURFACE_WIDTH], a_y[PHOTILE_SURFACE_WIDTH], a_z[PHOTILE_SURFACE_WIDTH];
   float b_x[PHOTILE_SURFACE_WIDTH], b_y[PHOTILE_SURFACE_WIDTH], b_z[PHOTILE_SURFACE_WIDTH];
   float c_x[PHOTILE_SURFACE_WIDTH], c_y[PHOTILE_SURFACE_WIDTH], c_z[PHOTILE_SURFACE_WIDTH];
   float normal_x[PHOTILE_SURFACE_WIDTH], normal_y[PHOTILE_SURFACE_WIDTH],
-      normal_z[PHOTILE_SURFACE_WIDTH];             /* of the triangle's side 0, unit */
-  unsigned int facet[PHOTILE_SURFACE_WIDTH];       /* of the triangle, or that the edge bounds */
-  unsigned int triangle[PHOTILE_SURFACE_WIDTH];    /* of the scene */
-  unsigned int front_sheet[PHOTILE_SURFACE_WIDTH]; /* of the triangle's side 0 */
-  unsigned int back_sheet[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
-  float front_exposure[PHOTILE_SURFACE_WIDTH];     /* that counts of its area: 1, or less where */
-  float back_exposure[PHOTILE_SURFACE_WIDTH];      /* most of it lies under other surface; -1 of */
-                                                   /* unlit regions, which lie on others */
+      normal_z[PHOTILE_SURFACE_WIDTH];          /* of the triangle's side 0, unit */
+  unsigned int region[PHOTILE_SURFACE_WIDTH];   /* of the triangle, or that the edge bounds */
+  unsigned int triangle[PHOTILE_SURFACE_WIDTH]; /* of the scene */
+  unsigned int front_component[PHOTILE_SURFACE_WIDTH]; /* of the triangle's side 0 */
+  unsigned int back_component[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
+  float front_open_fraction[PHOTILE_SURFACE_WIDTH]; /* that counts of its area: 1, or less where */
+  float back_open_fraction[PHOTILE_SURFACE_WIDTH];  /* most of it lies under other surface; -1 of */
+                                                    /* unlit regions, which lie on others */
 } PhotileSurfaceLeaf;
 
 #endif

@@ -22,17 +22,17 @@ CL_API_ENTRY cl_int CL_API_CALL clGetLayerInfo(cl_layer_info name, size_t bytes,
   return CL_SUCCESS;
 }
 
-CL_API_ENTRY cl_int CL_API_CALL clInitLayer(cl_uint entry_count, const cl_icd_dispatch* below,
-                                            cl_uint* own_entry_count,
-                                            const cl_icd_dispatch** own_entries) {
+CL_API_ENTRY cl_int CL_API_CALL clInitLayer(cl_uint record_count, const cl_icd_dispatch* below,
+                                            cl_uint* own_record_count,
+                                            const cl_icd_dispatch** own_records) {
   static cl_icd_dispatch entries;
   const cl_uint count = sizeof entries / sizeof entries.clGetPlatformIDs;
-  if (entry_count < count || below == nullptr || own_entries == nullptr) return CL_INVALID_VALUE;
+  if (record_count < count || below == nullptr || own_records == nullptr) return CL_INVALID_VALUE;
   next = below;
   entries = *below;
   replace_entries(entries);
-  *own_entry_count = count;
-  *own_entries = &entries;
+  *own_record_count = count;
+  *own_records = &entries;
   if (const char* const mark = std::getenv("PHOTILE_LAYER_MARK")) {
     if (std::FILE* const file = std::fopen(mark, "w")) std::fclose(file);
   }

@@ -14,7 +14,7 @@
 
 namespace {
 
-size_t wanted_size() {
+size_t requested_size() {
   const char* const value = std::getenv("PHOTILE_WORK_GROUP_SIZE");
   return value == nullptr ? 0 : std::strtoul(value, nullptr, 10);
 }
@@ -33,12 +33,12 @@ CL_API_ENTRY cl_int CL_API_CALL enqueue(cl_command_queue queue, cl_kernel kernel
                                         const size_t* global, const size_t* local,
                                         cl_uint wait_count, const cl_event* wait_list,
                                         cl_event* event) {
-  static const size_t wanted = wanted_size();
-  if (wanted == 0 || dimensions != 1) {
+  static const size_t requested = requested_size();
+  if (requested == 0 || dimensions != 1) {
     return next->clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local,
                                         wait_count, wait_list, event);
   }
-  const size_t group = std::min({wanted, largest_size(queue, kernel), *global});
+  const size_t group = std::min({requested, largest_size(queue, kernel), *global});
   const size_t items = *global / group * group;
   return next->clEnqueueNDRangeKernel(queue, kernel, 1, offset, &items, &group, wait_count,
                                       wait_list, event);

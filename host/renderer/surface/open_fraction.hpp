@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "surface/facets.hpp"
-#include "surface/sheets.hpp"
+#include "surface/coplanar_regions.hpp"
+#include "surface/smooth_components.hpp"
 #include "surface/surface_mesh.hpp"
 
 namespace photile::surface {
@@ -14,9 +14,10 @@ namespace photile::surface {
 /// Per oriented face: the fraction of its points above which, within a fifth of the radius, no
 /// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
 /// is covered in places counts as open, so that it is right where it is.
-///   lit   per sheet
-std::vector<float> find_exposure(const SurfaceMesh& mesh, const Facets& facets,
-                                 const Sheets& sheets, const std::vector<std::uint8_t>& lit,
-                                 double radius, double angle_degrees);
+///   lit   per component
+std::vector<float> find_open_fractions(const SurfaceMesh& mesh, const CoplanarRegions& regions,
+                                       const SmoothComponents& components,
+                                       const std::vector<std::uint8_t>& lit, double radius,
+                                       double angle_degrees);
 
 }  // namespace photile::surface

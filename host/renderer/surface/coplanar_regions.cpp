@@ -1,4 +1,4 @@
-#include "surface/facets.hpp"
+#include "surface/coplanar_regions.hpp"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -14,7 +14,7 @@ namespace photile::surface {
 
 namespace {
 
-/// Two triangles of a facet differ from each other by twice the angle: a cosine of 1 - 8e-7.
+/// Two triangles of a region differ from each other by twice the angle: a cosine of 1 - 8e-7.
 constexpr double least_cosine = 1 - 2e-7;
 constexpr double largest_height = 1e-3;  ///< over the radius
 
@@ -46,8 +46,8 @@ bool equally_dark(std::span<const std::uint8_t> dark, const MeshEdge& a, const M
 
 std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const std::uint8_t> dark) {
   std::vector<Beyond> beyond(mesh.normal.size(), Beyond{none, none, none});
-  tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
-    mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
+  tbb::parallel_for(std::size_t{0}, mesh.edge_chunks(), [&](std::size_t chunk) {
+    mesh.for_each_edge_of(chunk, [&](std::span<const MeshEdge> edges) {
       if (edges.size() > most_triangles_of_edge) return;
       for (const MeshEdge& edge : edges) {
         const MeshEdge* next = continuation(mesh, edges, edge);
@@ -60,13 +60,13 @@ std::vector<Beyond> triangles_beyond(const SurfaceMesh& mesh, std::span<const st
   return beyond;
 }
 
-class FacetGrower {
+class RegionGrower {
  public:
-  FacetGrower(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, double radius,
-              std::vector<std::uint32_t>& plane)
+  RegionGrower(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, double radius,
+               std::vector<std::uint32_t>& plane)
       : mesh_(mesh), beyond_(beyond), height_(largest_height * radius), plane_(plane) {}
 
-  /// The triangles of all facets, each facet's together, its seed first.
+  /// The triangles of all regions, each region's together, its seed first.
   const std::vector<std::uint32_t>& members() const { return members_; }
 
   void grow(std::uint32_t seed) {
@@ -124,7 +124,8 @@ void add_borders(const SurfaceMesh& mesh, const std::vector<Beyond>& beyond, std
 
 }  // namespace
 
-Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::uint8_t> dark) {
+CoplanarRegions find_coplanar_regions(const SurfaceMesh& mesh, double radius,
+                                      std::span<const std::uint8_t> dark) {
   const std::size_t count = mesh.normal.size();
   std::vector<std::uint32_t> seeds;
   for (std::uint32_t t = 0; t < count; ++t) {
@@ -138,13 +139,13 @@ Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::
     return area[a] != area[b] ? area[a] > area[b] : a < b;
   });
   const std::vector<Beyond> beyond = triangles_beyond(mesh, dark);
-  Facets facets;
-  facets.of_triangle.assign(count, PHOTILE_NO_FACET);
-  facets.plane.assign(count, none);
-  FacetGrower grower(mesh, beyond, radius, facets.plane);
+  CoplanarRegions regions;
+  regions.of_triangle.assign(count, PHOTILE_NO_REGION);
+  regions.plane.assign(count, none);
+  RegionGrower grower(mesh, beyond, radius, regions.plane);
   std::vector<std::size_t> first_of;
   for (const std::uint32_t seed : seeds) {
-    if (facets.plane[seed] != none) continue;
+    if (regions.plane[seed] != none) continue;
     first_of.push_back(grower.members().size());
     grower.grow(seed);
   }
@@ -153,22 +154,22 @@ Facets find_facets(const SurfaceMesh& mesh, double radius, std::span<const std::
   tbb::parallel_for(std::size_t{0}, borders.size(), [&](std::size_t i) {
     const std::span members(grower.members().data() + first_of[i], first_of[i + 1] - first_of[i]);
     std::vector<BorderEdge> own;
-    for (const std::uint32_t t : members) add_borders(mesh, beyond, t, facets.plane, own);
+    for (const std::uint32_t t : members) add_borders(mesh, beyond, t, regions.plane, own);
     const bool small = diagonal_of(mesh.scene, members) <= 2 * radius;
     if (small && members.size() <= 2 * own.size()) return;
-    for (const std::uint32_t t : members) facets.of_triangle[t] = members.front();
+    for (const std::uint32_t t : members) regions.of_triangle[t] = members.front();
     borders[i] = std::move(own);
   });
   for (const std::vector<BorderEdge>& own : borders) {
-    facets.borders.insert(facets.borders.end(), own.begin(), own.end());
+    regions.borders.insert(regions.borders.end(), own.begin(), own.end());
   }
-  return facets;
+  return regions;
 }
 
-PlaneTree::PlaneTree(const SurfaceMesh& mesh, const Facets& facets)
-    : mesh_(mesh), facets_(facets), tree_(geometry::triangle_boxes(mesh.scene)) {
+PlaneTree::PlaneTree(const SurfaceMesh& mesh, const CoplanarRegions& regions)
+    : mesh_(mesh), regions_(regions), tree_(geometry::triangle_boxes(mesh.scene)) {
   plane_ = tree_.folded(
-      nothing, [&](std::uint32_t t) { return mesh.counts(t) ? facets.plane[t] : nothing; },
+      nothing, [&](std::uint32_t t) { return mesh.counts(t) ? regions.plane[t] : nothing; },
       [](std::uint32_t a, std::uint32_t b) {
         if (a == nothing || a == b) return b;
         return b == nothing ? a : several;

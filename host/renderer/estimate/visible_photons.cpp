@@ -1,4 +1,4 @@
-#include "estimate/seen_photons.hpp"
+#include "estimate/visible_photons.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -10,7 +10,7 @@
 #include "trace/ray_query.hpp"
 
 namespace photile::estimate {
-SeenPhotons::SeenPhotons(const RayScene& rays, const Photons& photons)
+VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons)
     : rays_(rays),
       position_(photons.position),
       oriented_face_(photons.oriented_face),
@@ -21,8 +21,8 @@ SeenPhotons::SeenPhotons(const RayScene& rays, const Photons& photons)
   }
 }
 
-std::vector<std::uint32_t> SeenPhotons::lit(const Estimates& estimates, std::size_t hits,
-                                            std::size_t lights) {
+std::vector<std::uint32_t> VisiblePhotons::lit(const Estimates& estimates, std::size_t hits,
+                                               std::size_t lights) {
   std::vector<std::uint32_t> lit;
   for (std::uint32_t hit = 0; hit < hits; ++hit) {
     bool any = false;
@@ -34,8 +34,9 @@ std::vector<std::uint32_t> SeenPhotons::lit(const Estimates& estimates, std::siz
   return lit;
 }
 
-void SeenPhotons::leave_out_hidden(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
-                                   const NeighbourLists& near, Estimates& estimates) const {
+void VisiblePhotons::leave_out_hidden(const PrimaryHits& hits,
+                                      std::span<const std::uint32_t> chosen,
+                                      const NeighbourLists& near, Estimates& estimates) const {
   const Scene& scene = rays_.scene();
   const std::size_t lights = rays_.needs().light_count;
   const auto k = static_cast<std::size_t>(near.k);
@@ -45,24 +46,24 @@ void SeenPhotons::leave_out_hidden(const PrimaryHits& hits, std::span<const std:
     all.assign(lights, 0.0);
     seen.assign(lights, 0.0);
     const std::uint32_t hit = chosen[row];
-    const float lift = defaults::photon_ray_offset * std::sqrt(near.squared_radius[row]);
-    const trace::SurfacePlace here =
-        trace::place_on(scene, hits.oriented_face[hit], hits.position[hit]);
+    const float offset = defaults::photon_ray_offset * std::sqrt(near.squared_radius[row]);
+    const trace::SurfaceLocation here =
+        trace::location_on(scene, hits.oriented_face[hit], hits.position[hit]);
     for (const std::uint32_t photon : std::span(near.photons).subspan(row * k, k)) {
       if (photon == none) break;
       const std::size_t layer = light_.empty() ? 0 : light_[photon];
       all[layer] += flux_[photon];
-      const trace::SurfacePlace there =
-          trace::place_on(scene, oriented_face_[photon], position_[photon]);
+      const trace::SurfaceLocation there =
+          trace::location_on(scene, oriented_face_[photon], position_[photon]);
       // Nodes may lie on the foot of a wall: the line ends short of them.
-      if (trace::see_each_other(rays_, there, here, {lift, defaults::visibility_left_out}))
+      if (trace::see_each_other(rays_, there, here, {offset, defaults::visibility_left_out}))
         seen[layer] += flux_[photon];
     }
     for_each_estimate(estimates, hit, lights, [&](std::size_t layer, std::size_t i) {
       if (!(seen[layer] < all[layer])) return;
-      const auto share = static_cast<float>(seen[layer] / all[layer]);
-      estimates.irradiance[i] *= share;
-      if (!estimates.radiance.empty()) estimates.radiance[i] *= share;
+      const auto fraction = static_cast<float>(seen[layer] / all[layer]);
+      estimates.irradiance[i] *= fraction;
+      if (!estimates.radiance.empty()) estimates.radiance[i] *= fraction;
     });
   });
 }

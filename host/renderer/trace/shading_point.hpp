@@ -15,10 +15,10 @@ namespace photile::trace {
 
 /// The point of its surface where a hit lies.
 inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit) {
-  const std::uint32_t sided = hits.oriented_face[hit];
+  const std::uint32_t face = hits.oriented_face[hit];
   return surface_point(
-      scene, nearest_on_triangle(scene, triangle_of(sided), glm::dvec3(hits.position[hit])),
-      side_of(sided));
+      scene, nearest_on_triangle(scene, triangle_of(face), glm::dvec3(hits.position[hit])),
+      side_of(face));
 }
 
 /// How the surface reflects light against the ray of an eye that arrived there, smoothly shaded. A
@@ -34,7 +34,7 @@ inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size
   return bsdf;
 }
 
-/// What light counts for the two things measured at a receiver.
+/// What light counts for the two things measured at a shading point.
 struct LightWeights {
   glm::vec3 irradiance{1.0f};
   glm::vec3 radiance{1.0f};  ///< reflected
@@ -44,12 +44,12 @@ struct LightWeights {
   }
 };
 
-/// Weighs light by its cosine alone and as it is reflected, and draws directions that serve both:
+/// Weighs light by its cosine alone and as it is reflected, and draws directions for both:
 /// on a glossy surface half of them follow the cosine, for a narrow lobe would find next to nothing
 /// of the irradiance. References are kept.
-class Receiver {
+class ShadingPoint {
  public:
-  Receiver(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
+  ShadingPoint(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}
 
   /// The weights of light from `direction` (unit, away from the surface), per steradian.
   LightWeights weights(const glm::vec3& direction) const {

@@ -1,4 +1,4 @@
-#include "surface/sheets.hpp"
+#include "surface/smooth_components.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -92,18 +92,18 @@ void for_each_likely_pair(const SurfaceMesh& mesh, std::span<const MeshEdge> edg
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees) {
   const double cos_angle = std::cos(glm::radians(angle_degrees));
-  std::vector<std::vector<Connection>> connected(mesh.edge_shares());
-  std::vector<std::vector<BoundaryEdge>> alone(mesh.edge_shares());
-  tbb::parallel_for(std::size_t{0}, mesh.edge_shares(), [&](std::size_t share) {
-    mesh.for_each_edge_of(share, [&](std::span<const MeshEdge> edges) {
+  std::vector<std::vector<Connection>> connected(mesh.edge_chunks());
+  std::vector<std::vector<BoundaryEdge>> alone(mesh.edge_chunks());
+  tbb::parallel_for(std::size_t{0}, mesh.edge_chunks(), [&](std::size_t chunk) {
+    mesh.for_each_edge_of(chunk, [&](std::span<const MeshEdge> edges) {
       if (edges.size() == 1) {
         const MeshEdge& edge = edges.front();
         const auto corners = mesh.scene.corners(edge.triangle);
-        alone[share].push_back({corners[edge.index], corners[(edge.index + 1) % 3], edge.triangle});
+        alone[chunk].push_back({corners[edge.index], corners[(edge.index + 1) % 3], edge.triangle});
       }
       const auto connect = [&](const MeshEdge& a, const MeshEdge& b) {
         if (!(fold_cosine(mesh, a, b) >= cos_angle - cosine_slack)) return;
-        connected[share].push_back({a.triangle, b.triangle, flip_between(a, b), true});
+        connected[chunk].push_back({a.triangle, b.triangle, flip_between(a, b), true});
       };
       if (edges.size() > most_triangles_in_pairs) {
         for_each_likely_pair(mesh, edges, connect);
@@ -115,30 +115,31 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
     });
   });
   std::vector<Connection> connections;
-  std::vector<BoundaryEdge> lone;
+  std::vector<BoundaryEdge> boundary;
   append_all(connected, connections);
-  append_all(alone, lone);
-  join_along_edges(mesh, BoundaryEdges(std::move(lone), 1e-3 * radius), cos_angle, connections);
+  append_all(alone, boundary);
+  join_along_edges(mesh, BoundaryEdges(std::move(boundary), 1e-3 * radius), cos_angle, connections);
   return connections;
 }
 
-Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connections,
-                   std::span<const std::uint8_t> dark) {
+SmoothComponents join_components(const SurfaceMesh& mesh, std::span<const Connection> connections,
+                                 std::span<const std::uint8_t> dark) {
   geometry::DisjointSets joined(mesh.original.size());
   for_each_pair_of_sides(connections, [&](std::uint32_t a, std::uint32_t b) {
     if (dark.empty() || dark[a] == dark[b]) joined.join(a, b);
   });
-  Sheets sheets;
-  sheets.of.assign(mesh.original.size(), none);
+  SmoothComponents components;
+  components.of.assign(mesh.original.size(), none);
   for (std::uint32_t s = 0; s < mesh.original.size(); ++s) {
     const std::uint32_t first = joined.find(mesh.original[s]);
-    sheets.of[s] = first == s ? sheets.count++ : sheets.of[first];
+    components.of[s] = first == s ? components.count++ : components.of[first];
   }
-  return sheets;
+  return components;
 }
 
-Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees) {
-  return join_sheets(mesh, find_connections(mesh, radius, angle_degrees));
+SmoothComponents find_smooth_components(const SurfaceMesh& mesh, double radius,
+                                        double angle_degrees) {
+  return join_components(mesh, find_connections(mesh, radius, angle_degrees));
 }
 
 }  // namespace photile::surface

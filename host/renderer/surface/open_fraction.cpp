@@ -1,4 +1,4 @@
-#include "surface/exposure.hpp"
+#include "surface/open_fraction.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -128,13 +128,14 @@ class BoxColumns {
   std::array<std::vector<float>, 3> low_, high_;
 };
 
-class ExposureFinder {
+class OpenFractionFinder {
  public:
-  ExposureFinder(const SurfaceMesh& mesh, const Facets& facets, const Sheets& sheets,
-                 const std::vector<std::uint8_t>& lit, double radius, double angle_degrees)
+  OpenFractionFinder(const SurfaceMesh& mesh, const CoplanarRegions& regions,
+                     const SmoothComponents& components, const std::vector<std::uint8_t>& lit,
+                     double radius, double angle_degrees)
       : mesh_(mesh),
-        facets_(facets),
-        sheets_(sheets),
+        regions_(regions),
+        components_(components),
         lit_(lit),
         radius_(radius),
         cos_angle_(std::cos(glm::radians(angle_degrees))) {
@@ -142,7 +143,7 @@ class ExposureFinder {
       const bool front = is_dark(oriented(t, 0)), back = is_dark(oriented(t, 1));
       if (!mesh.counts(t) || (!front && !back)) continue;
       dark_.push_back(
-          {mesh.normal[t], geometry::corners_of(mesh.scene, t), facets.plane[t], front, back});
+          {mesh.normal[t], geometry::corners_of(mesh.scene, t), regions.plane[t], front, back});
       dark_boxes_.push_back(geometry::triangle_box(mesh.scene, t));
     }
     dark_tree_ = geometry::BoxTree(dark_boxes_);
@@ -150,7 +151,7 @@ class ExposureFinder {
 
   /// Writes that of sides [first, last) that are lit and original. Sides that follow each other
   /// mostly lie close together: what may cover one of them is looked up for all of them.
-  void find(std::uint32_t first, std::uint32_t last, std::span<float> exposure) const {
+  void find(std::uint32_t first, std::uint32_t last, std::span<float> open_fraction) const {
     std::vector<LitSide> sides;
     geometry::Box all;
     float each = 0;
@@ -176,7 +177,7 @@ class ExposureFinder {
       } else {
         dark_tree_.visit_overlapping(dark_boxes_, side.prism, look_at);
       }
-      exposure[side.own] = open_part(side.corners, covers);
+      open_fraction[side.own] = open_part(side.corners, covers);
     }
   }
 
@@ -200,7 +201,7 @@ class ExposureFinder {
     const glm::dvec3 normal = normal_of(s);
     const Corners corners = geometry::corners_of(mesh_.scene, triangle_of(s));
     // A cover lies within the slab, and so where it covers within the prism over the triangle.
-    return {s, facets_.plane[triangle_of(s)], normal, corners,
+    return {s, regions_.plane[triangle_of(s)], normal, corners,
             box_of_prism(corners, -coincident * radius_ * normal, reach * radius_ * normal)};
   }
 
@@ -221,14 +222,14 @@ class ExposureFinder {
     return side_of(s) == 0 ? mesh_.normal[triangle_of(s)] : -mesh_.normal[triangle_of(s)];
   }
 
-  /// Whether a side of the triangle that no light reaches looks against `normal`.
+  /// Whether a side of the triangle that no light reaches faces against `normal`.
   bool faces_in_the_dark(const DarkTriangle& dark, const glm::dvec3& normal) const {
     const std::uint32_t sides = groups::agreeing_sides(dark.normal, -normal, cos_angle_);
     return ((sides & groups::equal_sides) != 0 && dark.front) ||
            ((sides & groups::opposite_sides) != 0 && dark.back);
   }
 
-  bool is_dark(std::uint32_t s) const { return lit_[sheets_.of[s]] == 0; }
+  bool is_dark(std::uint32_t s) const { return lit_[components_.of[s]] == 0; }
 
   /// Appends a dark triangle that lies above a side, close to it, as seen along its normal.
   void add_cover(const LitSide& side, const Projection& outline, const DarkTriangle& dark,
@@ -248,8 +249,8 @@ class ExposureFinder {
   }
 
   const SurfaceMesh& mesh_;
-  const Facets& facets_;
-  const Sheets& sheets_;
+  const CoplanarRegions& regions_;
+  const SmoothComponents& components_;
   const std::vector<std::uint8_t>& lit_;
   double radius_, cos_angle_;
   const std::array<glm::dvec2, samples> weights_ = sample_weights();
@@ -260,20 +261,21 @@ class ExposureFinder {
 
 }  // namespace
 
-std::vector<float> find_exposure(const SurfaceMesh& mesh, const Facets& facets,
-                                 const Sheets& sheets, const std::vector<std::uint8_t>& lit,
-                                 double radius, double angle_degrees) {
-  const ExposureFinder finder(mesh, facets, sheets, lit, radius, angle_degrees);
-  std::vector<float> exposure(mesh.original.size(), 1.0f);
+std::vector<float> find_open_fractions(const SurfaceMesh& mesh, const CoplanarRegions& regions,
+                                       const SmoothComponents& components,
+                                       const std::vector<std::uint8_t>& lit, double radius,
+                                       double angle_degrees) {
+  const OpenFractionFinder finder(mesh, regions, components, lit, radius, angle_degrees);
+  std::vector<float> open_fraction(mesh.original.size(), 1.0f);
   constexpr std::size_t sides_at_a_time = 32;
-  const std::size_t blocks = (exposure.size() + sides_at_a_time - 1) / sides_at_a_time;
+  const std::size_t blocks = (open_fraction.size() + sides_at_a_time - 1) / sides_at_a_time;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t first = block * sides_at_a_time;
     finder.find(static_cast<std::uint32_t>(first),
-                static_cast<std::uint32_t>(std::min(first + sides_at_a_time, exposure.size())),
-                exposure);
+                static_cast<std::uint32_t>(std::min(first + sides_at_a_time, open_fraction.size())),
+                open_fraction);
   });
-  return exposure;
+  return open_fraction;
 }
 
 }  // namespace photile::surface

@@ -1,4 +1,4 @@
-// Sheets: oriented faces that connect over edges which fold by no more than an angle.
+// Smooth components: oriented faces that connect over edges which fold by no more than an angle.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace photile::surface {
 
-struct Sheets {
+struct SmoothComponents {
   std::vector<std::uint32_t> of;  ///< per oriented face
   std::uint32_t count = 0;        ///< numbered in the order of their first oriented faces
 };
@@ -37,10 +37,11 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
 
 /// What connects, but for sides of which one is dark and the other is not.
 ///   dark   per oriented face, or empty
-Sheets join_sheets(const SurfaceMesh& mesh, std::span<const Connection> connections,
-                   std::span<const std::uint8_t> dark = {});
+SmoothComponents join_components(const SurfaceMesh& mesh, std::span<const Connection> connections,
+                                 std::span<const std::uint8_t> dark = {});
 
 /// All that connects.
-Sheets find_sheets(const SurfaceMesh& mesh, double radius, double angle_degrees);
+SmoothComponents find_smooth_components(const SurfaceMesh& mesh, double radius,
+                                        double angle_degrees);
 
 }  // namespace photile::surface

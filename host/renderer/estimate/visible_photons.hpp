@@ -16,16 +16,16 @@ namespace photile::estimate {
 /// Where the wall of a ring stands on a floor, photons inside it lie close to hits outside, and
 /// would show as a bright rim there. Caustics end abruptly at what casts them, so that of these it
 /// matters.
-class SeenPhotons {
+class VisiblePhotons {
  public:
   /// Keeps a reference to `rays`, and copies of what it needs of the photons.
-  SeenPhotons(const RayScene& rays, const Photons& photons);
+  VisiblePhotons(const RayScene& rays, const Photons& photons);
 
   /// Hits of which some estimate is not 0: those that need their neighbours looked at.
   static std::vector<std::uint32_t> lit(const Estimates& estimates, std::size_t hits,
                                         std::size_t lights);
 
-  /// Scales each layer's estimate of a hit by that share of the flux of its neighbours which the
+  /// Scales each layer's estimate of a hit by that fraction of the flux of its neighbours which the
   /// hit sees along the surface. The area that they lie on is left whole: beside a wall that stands
   /// in a caustic the estimate is darker, as at the border of any light.
   ///   chosen   of the hits
