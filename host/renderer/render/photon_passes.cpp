@@ -42,7 +42,9 @@ class LazyLight : public estimate::LightAtPoints {
 }  // namespace
 
 PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons)
-    : photons_(std::move(photons)), layer_powers_(estimate::layer_powers(rays.scene())) {
+    : photons_(std::move(photons)),
+      layer_powers_(estimate::layer_powers(rays.scene())),
+      is_shared_(plan.used().processes != nullptr) {
   if (!plan.reads_light_maps()) return;
   estimate::LightAtPoints& of_points = *photons_.all.of_points;
   estimate::LightAtPoints& of_nodes = *photons_.all.of_nodes;
@@ -62,7 +64,7 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
 
 std::span<const std::uint32_t> PassLight::map_of() const {
   const auto& estimate = photons_.all.estimate;
-  return cache_ || !estimate ? std::span<const std::uint32_t>() : estimate->map_of();
+  return cache_ || !estimate || is_shared_ ? std::span<const std::uint32_t>() : estimate->map_of();
 }
 
 std::vector<double> PassLight::fractions() const {

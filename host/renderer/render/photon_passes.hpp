@@ -62,7 +62,8 @@ class PassLight {
   const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
 
   /// The order in which the light is found fastest: per oriented face, the map of a hit; empty
-  /// where the order does not matter.
+  /// where the order does not matter, and where processes share the maps: each has maps of its own,
+  /// and by their numbers the hits of a pixel would be summed in another order on each.
   std::span<const std::uint32_t> map_of() const;
   /// Each device's part of all points so far; empty where that is not known.
   std::vector<double> fractions() const;
@@ -70,6 +71,7 @@ class PassLight {
  private:
   const PassPhotons photons_;
   const std::vector<double> layer_powers_;
+  const bool is_shared_;  ///< with other processes
   std::optional<cache::IrradianceGather> gather_;  ///< where rays value nodes
   std::optional<cache::GatheredNodes> gathered_;
   std::optional<cache::ValuedBy> by_photons_;  ///< where photons value nodes
