@@ -100,7 +100,12 @@ class Maps {
 
   ~Maps() {
     if (!devices_) return;
-    const Unlocked unlocked;
+    if (is_forked()) {
+      static_cast<void>(new auto(std::move(cloud_)));  // the device is the parent's
+      return;
+    }
+    // Maps may live until the interpreter ends, when nobody is allowed to begin work.
+    const py::gil_scoped_release release;
     const std::lock_guard lock(devices_->mutex);
     cloud_.reset();
   }

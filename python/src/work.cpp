@@ -120,9 +120,14 @@ class Flag {
 
 }  // namespace
 
+bool is_forked() {
+  const pid_t process = all_work().process;
+  return process != 0 && process != getpid();
+}
+
 Working::Working() {
   Work& work = all_work();
-  if (work.process != 0 && work.process != getpid()) {
+  if (is_forked()) {
     throw UsageError(
         "this process was forked off one that has used photile, and lacks its threads; start it "
         "anew, as multiprocessing.get_context('spawn') does");

@@ -12,6 +12,10 @@
 
 namespace photile::python {
 
+/// Whether this process was forked off one that has used the library, whose threads and devices it
+/// lacks.
+bool is_forked();
+
 /// Counts as work of the library while it lives: the interpreter ends when none is left, and asks
 /// what is under way to stop. Made and destroyed with the interpreter's lock.
 /// Errors: UsageError in a child forked off a process that has worked, whose threads it lacks, and

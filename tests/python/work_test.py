@@ -167,6 +167,28 @@ time.sleep(1)
     assert done.returncode == 0, done
 
 
+MAPS = """
+import os, numpy, photile
+maps = photile.PhotonMaps(numpy.zeros((9, 3), numpy.float32), radius=0.1)
+"""
+
+
+def test_photon_maps_may_live_until_the_interpreter_ends():
+    done = run("", MAPS)
+    assert done.returncode == 0, done
+
+
+def test_a_forked_child_may_drop_the_photon_maps_of_its_parent():
+    done = run("""
+child = os.fork()
+if child == 0:
+    del maps
+    os._exit(0)
+print(os.waitpid(child, 0)[1])
+""", MAPS)
+    assert done.stdout == "0\n" and done.returncode == 0, done
+
+
 def test_notes_go_to_the_logger(caplog):
     # A scene of mirrors alone stores no photons, and a line says so.
     scene = photile.Scene(
