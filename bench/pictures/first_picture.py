@@ -84,13 +84,6 @@ def measured(command, cache, installed=""):
     return {**cost, "stages": record["stages"], "photons": record["photons_stored"]}
 
 
-def share_of_maps(run, all_made):
-    """Which part of the maps, and of the references in them, a picture made."""
-    made, there = ([stage["figures"] for stage in one["stages"]
-                    if stage["stage"] == "build photon maps"][0] for one in (run, all_made))
-    return {name: made[name] / there[name] for name in ("maps", "references")}
-
-
 def median_of(runs):
     """The run whose processor seconds are the median, with the least and the most."""
     runs = sorted(runs, key=lambda run: run["processor"])
@@ -112,8 +105,7 @@ def measure(photile, scene, paths, with_default, installed, repeats):
             runs["installed kernels"].append(measured(picture, fresh, installed))
             runs["empty cache"].append(measured(picture, cache))
             runs["full cache"].append(measured(picture, cache))
-            saving = measured([*picture, "--save-maps", maps], cache)
-            runs["full cache"][-1]["of_all"] = share_of_maps(runs["full cache"][-1], saving)
+            measured([*picture, "--save-maps", maps], cache)
             runs["saved maps"].append(measured([*picture, "--load-maps", maps], cache))
             if with_default:
                 runs["default quality"].append(measured(default, fresh, installed))
@@ -207,10 +199,6 @@ def page(results):
                      "bytes a stored photon", "told by the stages"],
                     rows + rival_rows(results["rivals"])),
         empty=stage_table(cases, STAGES_OF[0]), full=stage_table(cases, STAGES_OF[1]),
-        shares=table(["scene", "maps", "references"],
-                     [[case, *(f"{100 * share:.0f}%" for share in
-                               states["full cache"]["of_all"].values())]
-                      for case, states in cases.items()]),
         load=f"{results['load']:.0f}")
 
 
