@@ -25,6 +25,8 @@ libopenimageio-dev     | all other pictures
 libfreetype-dev        | the letters of legends
 libtinygltf-dev        | reads glTF
 libtinyobjloader-dev   | reads OBJ
+libdraco-dev           | compressed meshes of glTF
+libmeshoptimizer-dev   | the same
 nlohmann-json3-dev     | JSON
 libfmt-dev             | text output
 libcli11-dev           | command line

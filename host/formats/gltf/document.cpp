@@ -17,6 +17,7 @@
 
 #include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
+#include "gltf/compression.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {
@@ -32,6 +33,24 @@ std::string_view json_chunk(std::span<const unsigned char> bytes, bool binary) {
   const std::size_t length =
       bytes[12] | bytes[13] << 8 | bytes[14] << 16 | static_cast<std::size_t>(bytes[15]) << 24;
   return text.substr(binary_header, length);
+}
+
+/// A file with other JSON text in place of the first `length` bytes of its own.
+std::vector<unsigned char> with_json(std::span<const unsigned char> bytes, bool binary,
+                                     std::size_t length, std::string json) {
+  if (!binary) return {json.begin(), json.end()};
+  constexpr std::size_t header = 12, chunk_header = 8, alignment = 4;
+  json.resize((json.size() + alignment - 1) / alignment * alignment, ' ');
+  std::vector<unsigned char> changed(bytes.begin(), bytes.begin() + header + chunk_header);
+  changed.insert(changed.end(), json.begin(), json.end());
+  const std::size_t rest = std::min(bytes.size(), header + chunk_header + length);
+  changed.insert(changed.end(), bytes.begin() + static_cast<std::ptrdiff_t>(rest), bytes.end());
+  const auto write = [&](std::size_t at, std::size_t value) {
+    for (std::size_t i = 0; i < 4; ++i) changed[at + i] = value >> (8 * i) & 0xFF;
+  };
+  write(8, changed.size());
+  write(header, json.size());
+  return changed;
 }
 
 /// tinygltf asks for a file under several folders; SceneFolder alone decides what is read.
@@ -75,11 +94,17 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
   const std::string_view magic(reinterpret_cast<const char*>(bytes.data()),
                                std::min<std::size_t>(bytes.size(), 4));
   const bool binary = magic == "glTF";
-  const auto size = static_cast<unsigned int>(bytes.size());
+  auto size = static_cast<unsigned int>(bytes.size());
   // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
   bytes.resize(bytes.size() + 8, 0);
   const std::string_view json = json_chunk(std::span(bytes).first(size), binary);
   check_required_extensions(check_json(json, context), context);
+  const std::string changed = without_packed_parts(json);
+  if (!changed.empty()) {
+    bytes = with_json(std::span(bytes).first(size), binary, json.size(), changed);
+    size = static_cast<unsigned int>(bytes.size());
+    bytes.resize(bytes.size() + 8, 0);
+  }
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks(context.folder));
   loader.SetImageLoader(keep_encoded, nullptr);
@@ -99,6 +124,7 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
   }
   if (!error.empty()) context.warnings.add("malformed glTF: " + first_line(error));
   warn_of_extensions(model, context);
+  unpack_meshes(model, context);
   return model;
 }
 

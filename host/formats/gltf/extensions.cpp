@@ -13,10 +13,12 @@
 namespace photile::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 11> understood_extensions{
+constexpr std::array<std::string_view, 13> understood_extensions{
     "EXT_lights_area",
     "EXT_lights_ies",
     "EXT_lights_image_based",
+    "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -36,11 +38,9 @@ constexpr std::array<std::string_view, 4> harmless_extensions{
 };
 
 /// What to do about extensions that files of the wild have.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 7> remedies{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
-    {"EXT_meshopt_compression", "export without compression of meshes"},
     {"EXT_texture_webp", "save its textures as PNG or JPEG"},
-    {"KHR_draco_mesh_compression", "export without compression of meshes"},
     {"KHR_materials_pbrSpecularGlossiness",
      "its colours are lost; convert them to metallic-roughness"},
     {"KHR_materials_variants", "surfaces have their default materials"},

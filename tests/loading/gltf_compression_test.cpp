@@ -1,0 +1,278 @@
+// Meshes that Draco or meshopt packed, beside the same meshes as they were.
+#ifdef PHOTILE_HAS_MESH_CODECS
+
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <meshoptimizer.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "scene_files.hpp"
+
+namespace photile::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint32_t sheet_cells = 12;
+
+/// A wavy sheet of 1 m x 1 m, which shines.
+struct Sheet {
+  std::vector<float> positions, normals;
+  std::vector<std::uint32_t> indices;
+
+  Sheet() {
+    for (std::uint32_t y = 0; y <= sheet_cells; ++y) {
+      for (std::uint32_t x = 0; x <= sheet_cells; ++x) {
+        const float u = static_cast<float>(x) / sheet_cells,
+                    v = static_cast<float>(y) / sheet_cells;
+        positions.insert(positions.end(), {u, v, 0.1f * std::sin(6 * u)});
+        const float slope = -0.6f * std::cos(6 * u), length = std::hypot(slope, 1.0f);
+        normals.insert(normals.end(), {slope / length, 0, 1 / length});
+      }
+    }
+    for (std::uint32_t y = 0; y < sheet_cells; ++y) {
+      for (std::uint32_t x = 0; x < sheet_cells; ++x) {
+        const std::uint32_t a = y * (sheet_cells + 1) + x, b = a + 1, c = a + sheet_cells + 1,
+                            d = c + 1;
+        indices.insert(indices.end(), {a, b, d, a, d, c});
+      }
+    }
+  }
+  std::size_t points() const { return positions.size() / 3; }
+};
+
+/// The document of a sheet whose buffer holds positions, normals and indices, in this order.
+json document_of(const Sheet& sheet) {
+  json document = square_document();
+  const std::size_t attribute = sheet.positions.size() * sizeof(float);
+  const std::size_t corners = sheet.indices.size() * sizeof(std::uint32_t);
+  document["buffers"] = {{{"uri", "sheet.bin"}, {"byteLength", 2 * attribute + corners}}};
+  document["bufferViews"] = {
+      {{"buffer", 0}, {"byteOffset", 0}, {"byteLength", attribute}, {"byteStride", 12}},
+      {{"buffer", 0}, {"byteOffset", attribute}, {"byteLength", attribute}, {"byteStride", 12}},
+      {{"buffer", 0}, {"byteOffset", 2 * attribute}, {"byteLength", corners}}};
+  document["accessors"] = {
+      {{"bufferView", 0}, {"componentType", 5126}, {"count", sheet.points()}, {"type", "VEC3"}},
+      {{"bufferView", 1}, {"componentType", 5126}, {"count", sheet.points()}, {"type", "VEC3"}},
+      {{"bufferView", 2},
+       {"componentType", 5125},
+       {"count", sheet.indices.size()},
+       {"type", "SCALAR"}}};
+  document["meshes"][0]["primitives"][0] = {
+      {"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}, {"indices", 2}, {"material", 0}};
+  return document;
+}
+
+Scene load(const json& document, const std::string& buffer, const char* name = "scene.gltf") {
+  const SceneFolderOnDisk folder;
+  folder.write("sheet.bin", buffer);
+  return load_scene(folder.write(name, document.dump()), {});
+}
+
+Scene as_it_is(const Sheet& sheet) {
+  return load(document_of(sheet),
+              bytes_of(sheet.positions) + bytes_of(sheet.normals) + bytes_of(sheet.indices));
+}
+
+std::string packed_vertices(const void* values, std::size_t count, std::size_t stride) {
+  std::string packed(meshopt_encodeVertexBufferBound(count, stride), '\0');
+  packed.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
+                                           packed.size(), values, count, stride));
+  return packed;
+}
+
+std::string packed_triangles(const Sheet& sheet) {
+  std::string packed(meshopt_encodeIndexBufferBound(sheet.indices.size(), sheet.points()), '\0');
+  packed.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(packed.data()),
+                                          packed.size(), sheet.indices.data(),
+                                          sheet.indices.size()));
+  return packed;
+}
+
+/// The document with its views packed, and the buffer that meshopt's exporters leave empty.
+struct PackedSheet {
+  json document;
+  std::string buffer;
+
+  PackedSheet(const Sheet& sheet, const std::vector<std::string>& views)
+      : document(document_of(sheet)) {
+    document["extensionsUsed"] = document["extensionsRequired"] = {"EXT_meshopt_compression"};
+    const std::size_t whole = document["buffers"][0]["byteLength"];
+    document["buffers"].push_back(
+        {{"byteLength", whole},
+         {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      json& view = document["bufferViews"][i];
+      const bool corners = i + 1 == views.size();
+      view["buffer"] = 1;
+      view["extensions"]["EXT_meshopt_compression"] = {
+          {"buffer", 0},
+          {"byteOffset", buffer.size()},
+          {"byteLength", views[i].size()},
+          {"byteStride", corners ? 4 : 12},
+          {"count", corners ? sheet.indices.size() : sheet.points()},
+          {"mode", corners ? "TRIANGLES" : "ATTRIBUTES"}};
+      buffer += views[i];
+    }
+    document["buffers"][0]["byteLength"] = buffer.size();
+  }
+  json& packing(std::size_t view) {
+    return document["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+  }
+};
+
+PackedSheet packed(const Sheet& sheet) {
+  return {sheet,
+          {packed_vertices(sheet.positions.data(), sheet.points(), 12),
+           packed_vertices(sheet.normals.data(), sheet.points(), 12), packed_triangles(sheet)}};
+}
+
+double area_of(const Scene& scene) {
+  double area = 0;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) area += triangle_area(scene, t);
+  return area;
+}
+
+TEST_CASE("what meshopt packed without a filter is the mesh bit by bit") {
+  const Sheet sheet;
+  const Scene expected = as_it_is(sheet);
+  REQUIRE(expected.triangle_count() == 2 * sheet_cells * sheet_cells);
+  const PackedSheet from = packed(sheet);
+  CHECK(from.buffer.size() < 0.7 * from.document["buffers"][1]["byteLength"].get<double>());
+  const Scene scene = load(from.document, from.buffer);
+  CHECK(scene.report.warnings.empty());
+  CHECK(scene.vertices == expected.vertices);
+  CHECK(scene.triangles == expected.triangles);
+  CHECK(scene.corner_normal == expected.corner_normal);
+}
+
+TEST_CASE("positions that meshopt packed by exponents are right to their bits") {
+  const Sheet sheet;
+  std::vector<std::uint32_t> exponents(sheet.positions.size());
+  meshopt_encodeFilterExp(exponents.data(), sheet.points(), 12, 18, sheet.positions.data());
+  PackedSheet from(
+      sheet, {packed_vertices(exponents.data(), sheet.points(), 12),
+              packed_vertices(sheet.normals.data(), sheet.points(), 12), packed_triangles(sheet)});
+  from.packing(0)["filter"] = "EXPONENTIAL";
+  const Scene scene = load(from.document, from.buffer);
+  CHECK(scene.triangle_count() == 2 * sheet_cells * sheet_cells);
+  CHECK(area_of(scene) == Approx(area_of(as_it_is(sheet))).epsilon(1e-4));
+}
+
+TEST_CASE("damaged or boundless meshopt data is refused by the view's name") {
+  const Sheet sheet;
+  const auto refusal = [](const PackedSheet& from) {
+    return input_error_of([&] { load(from.document, from.buffer); });
+  };
+  PackedSheet cut = packed(sheet);
+  cut.packing(2)["byteLength"] = 20;
+  CHECK_THAT(refusal(cut), Catch::Contains("bufferViews[2]"));
+  PackedSheet beyond = packed(sheet);
+  beyond.packing(0)["byteOffset"] = beyond.buffer.size();
+  CHECK_THAT(refusal(beyond), Catch::Contains("bufferViews[0] lies outside its buffer"));
+  PackedSheet bomb = packed(sheet);
+  bomb.packing(1)["count"] = 1'000'000'000;
+  CHECK_THAT(refusal(bomb), Catch::Contains("bufferViews[1]: 1000000000 elements"));
+  PackedSheet odd = packed(sheet);
+  odd.packing(0)["byteStride"] = 7;
+  CHECK_THAT(refusal(odd), Catch::Contains("7 bytes"));
+  PackedSheet unknown = packed(sheet);
+  unknown.packing(0)["mode"] = "SPHERES";
+  CHECK_THAT(refusal(unknown), Catch::Contains("SPHERES"));
+  PackedSheet changed = packed(sheet);
+  changed.buffer[0] = 'x';
+  CHECK_THAT(refusal(changed), Catch::Contains("is damaged"));
+}
+
+/// The document with a Draco stream of the sheet, of so many bits a coordinate, as its buffer.
+std::pair<json, std::string> draco_sheet(const Sheet& sheet, int bits) {
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(static_cast<int>(sheet.indices.size() / 3));
+  const int positions =
+      builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int normals = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
+  for (std::uint32_t face = 0; 3 * face < sheet.indices.size(); ++face) {
+    const std::uint32_t* corner = &sheet.indices[3 * face];
+    const auto set = [&](int attribute, const std::vector<float>& of) {
+      builder.SetAttributeValuesForFace(attribute, draco::FaceIndex(face), &of[3 * corner[0]],
+                                        &of[3 * corner[1]], &of[3 * corner[2]]);
+    };
+    set(positions, sheet.positions);
+    set(normals, sheet.normals);
+  }
+  const auto mesh = builder.Finalize();
+  draco::ExpertEncoder encoder(*mesh);
+  encoder.SetAttributeQuantization(positions, bits);
+  encoder.SetAttributeQuantization(normals, bits);
+  encoder.SetTrackEncodedProperties(true);
+  draco::EncoderBuffer stream;
+  REQUIRE(encoder.EncodeToBuffer(&stream).ok());
+
+  json document = document_of(sheet);
+  document["extensionsUsed"] = document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  document["buffers"][0]["byteLength"] = stream.size();
+  document["bufferViews"] = {{{"buffer", 0}, {"byteLength", stream.size()}}};
+  for (json& accessor : document["accessors"]) accessor.erase("bufferView");
+  json& primitive = document["meshes"][0]["primitives"][0];
+  for (const int accessor : {0, 1}) {
+    document["accessors"][accessor]["count"] = encoder.num_encoded_points();
+  }
+  primitive["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 0},
+      {"attributes",
+       {{"POSITION", mesh->attribute(positions)->unique_id()},
+        {"NORMAL", mesh->attribute(normals)->unique_id()}}}};
+  return {document, {stream.data(), stream.size()}};
+}
+
+TEST_CASE("what Draco packed is the mesh to the bits that it kept") {
+  const Sheet sheet;
+  const Scene expected = as_it_is(sheet);
+  const auto [document, buffer] = draco_sheet(sheet, 16);
+  const Scene scene = load(document, buffer);
+  CHECK(scene.report.warnings.empty());
+  REQUIRE(scene.triangle_count() == expected.triangle_count());
+  CHECK(area_of(scene) == Approx(area_of(expected)).epsilon(1e-4));
+  CHECK(scene.corner_normal.size() == expected.corner_normal.size());
+  for (const glm::vec3& vertex : scene.vertices) {
+    const auto nearest =
+        std::min_element(expected.vertices.begin(), expected.vertices.end(),
+                         [&](const glm::vec3& a, const glm::vec3& b) {
+                           return glm::distance(a, vertex) < glm::distance(b, vertex);
+                         });
+    CHECK(glm::distance(*nearest, vertex) < 1e-4f);
+  }
+}
+
+TEST_CASE("damaged Draco data is refused by the mesh's name") {
+  const Sheet sheet;
+  const auto [document, buffer] = draco_sheet(sheet, 12);
+  const auto refusal = [](const json& changed, const std::string& bytes) {
+    return input_error_of([&] { load(changed, bytes); });
+  };
+  json cut = document;
+  cut["bufferViews"][0]["byteLength"] = buffer.size() / 2;
+  CHECK_THAT(refusal(cut, buffer), Catch::Contains("mesh 'square': its Draco data is damaged"));
+  std::string spoilt = buffer;
+  spoilt[0] = 'x';
+  CHECK_THAT(refusal(document, spoilt), Catch::Contains("is damaged"));
+  json other = document;
+  other["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]
+       ["POSITION"] = 77;
+  CHECK_THAT(refusal(other, buffer), Catch::Contains("an attribute that the file names"));
+  json fewer = document;
+  fewer["accessors"][0]["count"] = 5;
+  CHECK_THAT(refusal(fewer, buffer), Catch::Contains("points of 5"));
+  json absent = document;
+  absent["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] =
+      9;
+  CHECK_THAT(refusal(absent, buffer), Catch::Contains("has no buffer view"));
+}
+
+}  // namespace
+}  // namespace photile::test
+
+#endif
