@@ -26,13 +26,11 @@ class FirstPicture(unittest.TestCase):
     def test_the_page_has_a_row_for_each_state_and_stage(self):
         states = {state: {**run(1.5, trace=0.25, build=0.5), "least": 1.0, "most": 2.0}
                   for state in first_picture.STATES}
-        states["full cache"]["of_all"] = {"maps": 0.083, "references": 0.5}
         rivals = {"classroom": {state: {"processor": 2.0, "seconds": 1.0, "bytes": 5_000_000,
                                         "least": 1.5, "most": 2.5}
                                 for state in first_picture.RIVAL_STATES},
                   "kitchen": "not installed: mitsuba"}
         page = first_picture.page({"photile": {"room": states}, "rivals": rivals, "load": 3.2})
-        self.assertIn("| room | 8% | 50% |", page)
         self.assertIn("a load of 3, the mean", page)
         for state in first_picture.STATES:
             self.assertIn(f"| room, {state} | 1.50 (1.00-2.00) | 3.00 | 3 | 150 | 50.0% |", page)
@@ -42,13 +40,6 @@ class FirstPicture(unittest.TestCase):
         self.assertIn("denoised: kitchen | not installed: mitsuba |", page)
         self.assertEqual(page.count("| trace | 0.25 / 0.50 |"), len(first_picture.STAGES_OF))
 
-    def test_a_picture_makes_a_share_of_the_maps(self):
-        def building(maps, references):
-            return {"stages": [{"stage": "build photon maps",
-                                "figures": {"maps": maps, "references": references}}]}
-
-        self.assertEqual(first_picture.share_of_maps(building(2, 300), building(8, 400)),
-                         {"maps": 0.25, "references": 0.75})
 
 
 if __name__ == "__main__":
