@@ -2,12 +2,13 @@
 //
 //   OPENCL_LAYERS=<build>/tests/device/layers/libphotile_oclgrind_layer.so OCLGRIND_UNINITIALIZED=1
 //
-// Two faults of its shadow memory make it crash or report what is initialised:
+// Three faults of its shadow memory make it crash or report what is initialised:
 // - It takes each element that clEnqueueFillBuffer sets for a buffer of its own. It follows a write
 //   of a whole buffer well, so that fills become writes here.
 // - A new buffer at a released one's address keeps the shadow of the old, whose size may be
-// another.
-//   So no buffer is released.
+//   another. So no buffer is released.
+// - What a buffer of the host's memory holds (CL_MEM_USE_HOST_PTR) counts as uninitialised. Kernels
+//   only read such buffers, so that copies do.
 #include <cstring>
 #include <vector>
 
@@ -27,11 +28,20 @@ CL_API_ENTRY cl_int CL_API_CALL fill(cl_command_queue queue, cl_mem buffer, cons
                                     wait_count, wait_list, event);
 }
 
+CL_API_ENTRY cl_mem CL_API_CALL create(cl_context context, cl_mem_flags flags, size_t bytes,
+                                       void* host, cl_int* status) {
+  if ((flags & CL_MEM_USE_HOST_PTR) != 0) {
+    flags = (flags & ~cl_mem_flags{CL_MEM_USE_HOST_PTR}) | CL_MEM_COPY_HOST_PTR;
+  }
+  return next->clCreateBuffer(context, flags, bytes, host, status);
+}
+
 CL_API_ENTRY cl_int CL_API_CALL keep(cl_mem) { return CL_SUCCESS; }
 
 }  // namespace
 
 void replace_entries(cl_icd_dispatch& entries) {
+  entries.clCreateBuffer = create;
   entries.clEnqueueFillBuffer = fill;
   entries.clReleaseMemObject = keep;
 }
