@@ -174,6 +174,9 @@ inline constexpr int measuring_repeats = 8;
 inline constexpr double wall_band = 0.5;           ///< metres that EN 12464-1 lets grids leave out
 inline constexpr double maintenance_factor = 1.0;  ///< none: the light of a new installation
 
+/// What is told as a doubt: no paint reflects so much, and a candle emits 12 lm.
+inline constexpr double doubtful_reflectance = 0.95, doubtful_lumens = 5;
+
 // False colour, as Radiance's falsecolor has them
 inline constexpr int legend_steps = 8;
 

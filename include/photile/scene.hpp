@@ -309,12 +309,20 @@ struct MeshInstance {
 };
 
 /// What the import found worth telling.
+/// What a file calls a part of its geometry: a node of glTF that has a mesh, an object or group of
+/// OBJ.
+struct ImportedMesh {
+  std::string name;
+  std::uint64_t triangles = 0;  ///< that the scene took
+};
+
 struct ImportReport {
   std::vector<std::string> warnings;       ///< one line each: object, what was found, what was done
   std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
   std::uint64_t non_finite_triangles = 0;  ///< NaN, infinite or too far a corner; dropped
   std::uint64_t duplicate_triangles = 0;   ///< exactly on another; dropped
   std::uint64_t polygons_triangulated = 0;
+  std::vector<ImportedMesh> meshes;  ///< in the order of the file
 };
 
 /// Geometry is one indexed triangle soup. Corners of a triangle are stored in canonical order (the
@@ -412,6 +420,9 @@ struct SceneLoadOptions {
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
   /// Which of the scenes in a glTF file: name or index; "" = the file's default, else its first.
   std::string scene = {};
+  /// Globs of what is left out: nodes of glTF with all below them, its meshes, objects and groups
+  /// of OBJ.
+  std::vector<std::string> hidden = {};
   /// Which axis of the file points up: "x", "y", "z", "-x", "-y" or "-z"; the scene is turned so
   /// that it becomes y. "" = y, and a warning where the geometry looks as if it were z.
   std::string up = {};
@@ -443,8 +454,8 @@ struct SceneLoadOptions {
 /// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).
 /// Errors: InputError naming the file and the remedy when it is missing, unreadable, malformed,
 /// beyond a limit of limits.hpp, without triangles or without lights; UsageError when `up` is no
-/// axis, the file has no such scene, a grouping matches no light, or its group bears the name of a
-/// light outside it.
+/// axis, the file has no such scene, a grouping matches no light, a glob of `hidden` matches
+/// nothing, or a group bears the name of a light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 /// Up to this many layers (see light_layers.hpp) each has a value at every hit and pixel. With

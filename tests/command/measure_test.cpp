@@ -92,6 +92,50 @@ TEST_CASE("a report shows the moods of a picture, and is printed as PDF") {
             .exit_code == 2);
 }
 
+TEST_CASE("measure tells what is seldom meant, with --quiet, too") {
+  const FileFolder folder;
+  std::string materials = box_mtl(), box = box_obj();
+  materials.replace(materials.find("Kd 0.7 0.6 0.5"), 14, "Kd 0.98 0.98 0.98");
+  folder.write("box.mtl", materials + "newmtl dim\nKd 0 0 0\nKe 1e-6 1e-6 1e-6\n");
+  // Above the ceiling, and a spark within the room.
+  box +=
+      "v -0.2 2 -0.2\nv 0.2 2 -0.2\nv 0.2 2 0.2\nv -0.2 2 0.2\n"
+      "o outside\nusemtl red_lamp\nf 17 18 19 20\n"
+      "v -0.2 0.98 -0.2\nv 0.2 0.98 -0.2\nv 0.2 0.98 0.2\nv -0.2 0.98 0.2\n"
+      "o spark\nusemtl dim\nf 21 22 23 24\n";
+  const Outcome told =
+      succeed(measure(folder.write("box.obj", box), {"--plane", "floor+0.75", "--spacing", "0.5"}));
+  CHECK_THAT(
+      told.errors,
+      Contains("warning: 1 material on 12 triangles reflect 95% of light and more, 'wall' 98%"));
+  CHECK_THAT(told.errors,
+             Contains("warning: light 'spark' emits") && Contains("less than a candle"));
+  CHECK_THAT(told.errors, Contains("warning: light 'outside' reaches no point"));
+  CHECK_THAT(told.errors, !Contains("light 'left'") && !Contains("light 'right'"));
+
+  // A sound room passes in silence.
+  const FileFolder other;
+  const Outcome sound =
+      succeed(measure(write_box(other), {"--plane", "floor+0.75", "--spacing", "0.5"}));
+  CHECK_THAT(sound.errors, !Contains("warning"));
+}
+
+TEST_CASE("a report's picture of other reflectances than are measured is told") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  succeed(typed("render", scene, "--photons 5k --size 16x12 --samples 1 --quiet -o",
+                folder / "as_is.exr"));
+  const auto report = [&](const std::vector<std::string>& more) {
+    const std::vector<std::string> report_of{
+        "--plane", "floor+0.75",      "--spacing", "0.5",
+        "-o",      folder / "a.html", "--picture", folder / "as_is.exr"};
+    return succeed(measure(scene, typed(report_of, more)));
+  };
+  CHECK_THAT(report({}).errors, !Contains("shows other"));
+  CHECK_THAT(report({"--reflectance", "wall=0.3"}).errors,
+             Contains("warning: ") && Contains("as_is.exr shows other surfaces or reflectances"));
+}
+
 TEST_CASE("points of Radiance are measured in their order, with paths or photons alike") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

@@ -33,6 +33,31 @@ TEST_CASE("node transforms apply from the root down: translation, rotation, scal
   CHECK(found);
 }
 
+TEST_CASE("--set hide leaves out nodes with all below them, and meshes, by their names") {
+  nlohmann::json document = square_document();
+  document["meshes"].push_back(document["meshes"][0]);
+  document["meshes"][1]["name"] = "other square";
+  document["nodes"].push_back({{"name", "cone of light"}, {"mesh", 0}, {"children", {2}}});
+  document["nodes"].push_back({{"name", "below"}, {"mesh", 1}, {"translation", {0, 0, 3}}});
+  document["nodes"][1]["translation"] = {0, 0, 1};
+  document["scenes"][0]["nodes"] = {0, 1};
+  const auto names = [&](const std::vector<std::string>& hidden) {
+    SceneLoadOptions options;
+    options.hidden = hidden;
+    std::vector<std::string> found;
+    for (const ImportedMesh& mesh : load_gltf(document, options).report.meshes) {
+      CHECK(mesh.triangles == 2);
+      found.push_back(mesh.name);
+    }
+    return found;
+  };
+  CHECK(names({}) == std::vector<std::string>{"panel", "cone of light", "below"});
+  CHECK(names({"cone*"}) == std::vector<std::string>{"panel"});
+  CHECK(names({"other*"}) == std::vector<std::string>{"panel", "cone of light"});
+  CHECK_THROWS_WITH(names({"cone*", "chair"}),
+                    Catch::Contains("hide=chair") && Catch::Contains("has no such node"));
+}
+
 TEST_CASE("a mirrored node keeps the front of its triangles where the mirror puts it") {
   nlohmann::json document = square_document();
   document["nodes"][0]["scale"] = {-1, 1, 1};  // mirrors in x: the square still faces +z

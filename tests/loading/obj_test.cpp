@@ -16,6 +16,21 @@
 namespace photile::test {
 namespace {
 
+TEST_CASE("--set hide leaves out objects and groups of an OBJ") {
+  const std::string obj = unit_square +
+                          "o lamp\nusemtl lamp\nf 1 2 3 4\n"
+                          "v 0 0 1\nv 1 0 1\nv 1 1 1\no haze\nusemtl wall\nf 5 6 7\n";
+  SceneLoadOptions options;
+  CHECK(load_obj(obj, lamp_and_wall, options).triangle_count() == 3);
+  options.hidden = {"ha?e"};
+  const Scene scene = load_obj(obj, lamp_and_wall, options);
+  CHECK(scene.triangle_count() == 2);
+  REQUIRE(scene.report.meshes.size() == 1);
+  CHECK(scene.report.meshes[0].name == "lamp");
+  options.hidden = {"fog"};
+  CHECK_THROWS_AS(load_obj(obj, lamp_and_wall, options), UsageError);
+}
+
 TEST_CASE("an OBJ square becomes two triangles of area 1 that face its winding's side") {
   const Scene scene = load_obj(unit_square + "o panel\nusemtl lamp\nf 1 2 3 4\n", lamp_and_wall);
   REQUIRE(scene.triangle_count() == 2);

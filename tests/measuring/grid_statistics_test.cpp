@@ -35,6 +35,37 @@ Repeats noisy(std::mt19937& random, std::size_t repeats, std::size_t sensors, do
   return values;
 }
 
+/// One grid of the sensors of two lights and of both.
+Measurement measured(std::vector<double> left, std::vector<double> right) {
+  GridValues grid;
+  grid.lights.resize(3);
+  grid.lights[1].light = "left";
+  grid.lights[2].light = "right";
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    grid.lights[0].sensors.push_back({left[i] + right[i], 0});
+    grid.lights[1].sensors.push_back({left[i], 0});
+    grid.lights[2].sensors.push_back({right[i], 0});
+  }
+  return {grid};
+}
+
+TEST_CASE(
+    "points without light and lights that reach no point are doubted, but not those turned off") {
+  std::vector<MixedLight> lights(2);
+  lights[0].name = "left";
+  lights[1].name = "right";
+  lights[0].power = lights[1].power = 1;
+  CHECK(doubts_of(measured({3, 1}, {2, 0}), lights).empty());
+  const auto dark = doubts_of(measured({3, 0, 0}, {2, 0, 0}), lights);
+  REQUIRE(dark.size() == 1);
+  CHECK_THAT(dark[0], Contains("2 of 3 points have no light"));
+  const auto without_right = doubts_of(measured({3, 1}, {0, 0}), lights);
+  REQUIRE(without_right.size() == 1);
+  CHECK_THAT(without_right[0], Contains("light 'right' reaches no point"));
+  lights[1].power = 0;
+  CHECK(doubts_of(measured({3, 1}, {0, 0}), lights).empty());
+}
+
 TEST_CASE("without noise the figures are those of the values, and their errors 0") {
   const Repeats repeats(3, {200, 500, 300, 400});
   const GridStatistics s = statistics_of(repeats, 0, 4);

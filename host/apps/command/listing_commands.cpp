@@ -164,6 +164,7 @@ struct InfoOptions {
 
 void print_text(const Scene& scene, const LightMix& mix) {
   for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
+  for (const auto& line : mesh_summary(scene)) std::cout << line << '\n';
   for (const auto& line : material_summary(scene)) std::cout << line << '\n';
   for (const Camera& camera : scene.cameras) {
     const glm::dvec3 position = in_world(scene, camera).position;
@@ -171,7 +172,7 @@ void print_text(const Scene& scene, const LightMix& mix) {
                              camera.name, position.x, position.y, position.z,
                              glm::degrees(camera.vertical_field_of_view));
   }
-  for (const auto& line : info_warnings(scene)) std::cout << "warning: " << line << '\n';
+  for (const auto& line : info_warnings(scene, mix)) std::cout << "warning: " << line << '\n';
 }
 
 void run_info(const InfoOptions& options) {

@@ -107,7 +107,9 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   return grids;
 }
 
-void warn(const Scene& scene, const std::vector<measuring::SensorGrid>& grids, Progress& progress) {
+void warn(const Scene& scene, const LightMix& mix, const std::vector<measuring::SensorGrid>& grids,
+          Progress& progress) {
+  for (const std::string& line : doubts_of(scene, mix)) progress.note("warning: " + line);
   if (has_hidden_caustics(scene)) {
     progress.note(
         "warning: what mirrors and glass throw onto sensors from point, spot and directional "
@@ -152,7 +154,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
-  warn(scene, grids, progress);
+  warn(scene, mix, grids, progress);
 
   MeasuringParameters& parameters = options.parameters;
   parameters.photons = render.parameters;
@@ -165,7 +167,12 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (options.daylight_factor) {
     keep_sky(measurement);
     if (all_dark(measurement)) progress.note(report::no_sky_warning);
+  } else {
+    for (const std::string& line : measuring::doubts_of(measurement, mix.lights)) {
+      progress.note("warning: " + line);
+    }
   }
+  outputs.check_picture(scene, progress);
   outputs.write(measurement,
                 {scene, mix, parameters, render.mood.mood, requirement, moods, included});
   for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {

@@ -11,6 +11,7 @@
 #include "command/command_line.hpp"
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
+#include "command/run_record.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
 #include "common/files.hpp"
@@ -234,6 +235,17 @@ void MeasureOutputs::check_moods(const std::filesystem::path& moods) const {
   const view::Moods kept(moods);
   const LightMix mix = read_light_mix(picture_);
   for (const std::string& name : kept.names()) kept.changes(name, mix);
+}
+
+void MeasureOutputs::check_picture(const Scene& scene, Progress& progress) const {
+  if (picture_.empty()) return;
+  const PictureHeader header = read_header(picture_);
+  const auto surfaces = header.attributes.find("photile.surfaces");
+  if (surfaces == header.attributes.end() || surfaces->second == digest_of_surfaces(scene)) return;
+  progress.note(fmt::format(
+      "warning: {} shows other surfaces or reflectances than are measured; render it anew with the "
+      "options of this command",
+      picture_.string()));
 }
 
 void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {

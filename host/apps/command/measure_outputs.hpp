@@ -56,6 +56,9 @@ class MeasureOutputs {
   /// one file; those of note_output.
   void check_names(const std::vector<measuring::SensorGrid>& grids) const;
 
+  /// Warns where the picture of --picture shows other surfaces than `scene` has.
+  void check_picture(const Scene& scene, Progress& progress) const;
+
   /// Checks that the moods of a file fit the picture, which `write` shows in them ("" = none).
   /// Errors: those of report_pictures.
   void check_moods(const std::filesystem::path& moods) const;

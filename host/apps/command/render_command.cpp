@@ -237,6 +237,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   const Camera camera = projected(camera_of(scene, options), options);
   set_film_size(options.parameters.film, options.size, camera);
   record.scene = scene.source.filename().string();
+  record.surfaces = digest_of_surfaces(scene);
   record.camera = camera.name;
   record.integrator = name_of(options.integrator);
   record.quality = options.quality;

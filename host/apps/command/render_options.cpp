@@ -79,7 +79,7 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
       ->transform(count_between(0, limits::max_threads))
       ->capture_default_str()
       ->group("Run");
-  command.add_flag("-q,--quiet", options.quiet, "print errors only")->group("Run");
+  command.add_flag("-q,--quiet", options.quiet, "print warnings and errors only")->group("Run");
 }
 
 void add_setting_options(CLI::App& command, RenderOptions& options,

@@ -108,6 +108,7 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   auto& attributes = picture.attributes;
   attributes["photile.version"] = version_number();
   attributes["photile.scene"] = record.scene;
+  attributes["photile.surfaces"] = record.surfaces;
   attributes["photile.camera"] = record.camera;
   attributes["photile.integrator"] = record.integrator;
   attributes["photile.quality"] = name_of(record.quality);
@@ -168,6 +169,12 @@ namespace {
 constexpr const char* attribute = "photile.settings";
 
 }  // namespace
+
+std::string digest_of_surfaces(const Scene& scene) {
+  ContentHash hash;
+  scene::add_surfaces(scene, hash);
+  return hex(hash.digest());
+}
 
 std::string digest_of(const Scene& scene) {
   ContentHash hash;

@@ -31,7 +31,8 @@ struct KernelRecord {
 struct RunRecord {
   bool has_photons() const { return !devices.empty(); }
 
-  std::string scene;  ///< the file's name, without folders: a picture should not tell them
+  std::string scene;     ///< the file's name, without folders: a picture should not tell them
+  std::string surfaces;  ///< digest_of_surfaces
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
   Quality quality = Quality::draft;  ///< whose settings are used but for those given
@@ -58,6 +59,10 @@ nlohmann::json run_json(const RunRecord& record);
 
 /// Largest memory that the process has had so far, bytes.
 std::uint64_t peak_host_bytes();
+
+/// A digest of where surface is and how it reflects: pictures of one scene with other reflectances
+/// have another.
+std::string digest_of_surfaces(const Scene& scene);
 
 /// A digest of all that light in the scene depends on.
 std::string digest_of(const Scene& scene);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command/terminal_progress.hpp"
+#include "photile/defaults.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
 
@@ -29,9 +30,11 @@ std::string reflectance_text(const Scene& scene, const Material& material) {
                      reflectance->matt, luminance(glm::dvec3(material.specular)));
 }
 
+constexpr std::size_t most_meshes_told = 20;
+
 /// "1 camera", "2 cameras"
-std::string counted(std::size_t count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+std::string counted(std::size_t count, const std::string& noun, const std::string& nouns = "") {
+  return fmt::format("{} {}", count, count == 1 ? noun : nouns.empty() ? noun + "s" : nouns);
 }
 
 const char* interaction_name(const Material& material) {
@@ -167,13 +170,17 @@ Extents extents_of(const Scene& scene) {
 }
 
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
-  const glm::dvec3 size = extents_of(scene).size();
+  const Extents extents = extents_of(scene);
+  const glm::dvec3 size = extents.size();
   std::vector<std::string> lines{
       fmt::format(
           "scene: {}: {}, {}, {}, {}", scene.source.string(),
           counted(scene.triangle_count(), "triangle"), counted(scene.materials.size(), "material"),
           counted(scene.textures.size(), "texture"), counted(scene.cameras.size(), "camera")),
-      fmt::format("extents: {:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z)};
+      fmt::format("extents: {:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, "
+                  "{:.4g}, {:.4g})",
+                  size.x, size.y, size.z, extents.lowest.x, extents.lowest.y, extents.lowest.z,
+                  extents.highest.x, extents.highest.y, extents.highest.z)};
   const std::vector<double> powers = powers_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
@@ -206,8 +213,61 @@ std::vector<std::string> material_summary(const Scene& scene) {
   return lines;
 }
 
-std::vector<std::string> info_warnings(const Scene& scene) {
+std::vector<std::string> mesh_summary(const Scene& scene) {
+  std::vector<ImportedMesh> meshes = scene.report.meshes;
+  std::stable_sort(meshes.begin(), meshes.end(), [](const ImportedMesh& a, const ImportedMesh& b) {
+    return a.triangles > b.triangles;
+  });
+  std::vector<std::string> lines;
+  for (const ImportedMesh& mesh : meshes) {
+    if (lines.size() == most_meshes_told) {
+      lines.push_back(fmt::format("{} smaller ones: --json lists all",
+                                  counted(meshes.size() - most_meshes_told, "mesh", "meshes")));
+      break;
+    }
+    lines.push_back(fmt::format("mesh: {}: {}", mesh.name, counted(mesh.triangles, "triangle")));
+  }
+  return lines;
+}
+
+std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix) {
+  std::vector<std::string> lines;
+  const std::vector<std::size_t> triangles = triangles_of_materials(scene);
+  std::string brightest;
+  double most = 0;
+  std::size_t materials = 0, covered = 0;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    if (material.interaction != Interaction::opaque || triangles[i] == 0) continue;
+    const double reflectance = scene::reflectance_of(scene, material)->whole;
+    if (reflectance < defaults::doubtful_reflectance) continue;
+    ++materials;
+    covered += triangles[i];
+    if (reflectance > most) most = reflectance, brightest = material.name;
+  }
+  if (materials > 0) {
+    lines.push_back(fmt::format(
+        "{} on {} reflect {:.0f}% of light and more, '{}' {:.0f}%; white paint reflects 85%: set "
+        "others with --reflectance",
+        counted(materials, "material"), counted(covered, "triangle"),
+        100 * defaults::doubtful_reflectance, brightest, 100 * most));
+  }
+  const std::vector<double> powers = powers_of(scene, mix);
+  const double lumens = scene.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const double flux = lumens * powers[i];
+    if (scene.lights[i].is_distant() || !(flux > 0) || flux >= defaults::doubtful_lumens) continue;
+    lines.push_back(
+        fmt::format("light '{}' emits {:.2g} lm, less than a candle (12 lm); --light NAME=FLUX "
+                    "changes it",
+                    scene.lights[i].name, flux));
+  }
+  return lines;
+}
+
+std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix) {
   std::vector<std::string> lines = scene.report.warnings;
+  for (std::string& line : doubts_of(scene, mix)) lines.push_back(std::move(line));
   const std::vector<std::uint32_t> open = scene::open_edges_of_glass(scene);
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (open[i] == 0) continue;
@@ -236,12 +296,16 @@ json scene_json(const Scene& scene, const LightMix& mix) {
                 {"highest", components(extents.highest)},
                 {"size", components(extents.size())}}},
               {"origin", components(scene.origin)},
+              {"meshes", json::array()},
               {"materials", json::array()},
               {"lights", json::array()},
               {"groups", json::array()},
               {"cameras", json::array()},
-              {"warnings", info_warnings(scene)}};
+              {"warnings", info_warnings(scene, mix)}};
   const std::vector<std::size_t> triangles = triangles_of_materials(scene);
+  for (const ImportedMesh& mesh : scene.report.meshes) {
+    result["meshes"].push_back({{"name", mesh.name}, {"triangles", mesh.triangles}});
+  }
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     result["materials"].push_back(material_json(scene, scene.materials[i], triangles[i]));
   }

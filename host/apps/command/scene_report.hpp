@@ -30,8 +30,16 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 /// How each material scatters, on how many triangles and with which texture, a line each.
 std::vector<std::string> material_summary(const Scene& scene);
 
-/// The import's warnings, and what takes a look at every triangle: solid glass on open sheets.
-std::vector<std::string> info_warnings(const Scene& scene);
+/// The names that --set hide knows, with their triangles: a line for each of the largest.
+std::vector<std::string> mesh_summary(const Scene& scene);
+
+/// What is no error and seldom meant, a line each: materials that reflect nearly all light, and
+/// lamps that emit less than a candle.
+std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix);
+
+/// The import's warnings, doubts_of, and what takes a look at every triangle: solid glass on open
+/// sheets.
+std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix);
 
 /// Everything that `photile info` tells.
 nlohmann::json scene_json(const Scene& scene, const LightMix& mix);

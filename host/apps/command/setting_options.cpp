@@ -201,6 +201,16 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
            [&options](const SettingValue& value) {
              options.scene = std::get<std::string_view>(value);
            }},
+      {.name = "hide",
+       .group = group,
+       .range = Text{"GLOB"},
+       .help = "leaves out what the file calls so: nodes with all below them, meshes, objects, "
+               "groups; repeatable",
+       .initial = "nothing is left out",
+       .set =
+           [&options](const SettingValue& value) {
+             options.hidden.emplace_back(std::get<std::string_view>(value));
+           }},
       {.name = "portals",
        .group = group,
        .range = Text{"auto, off or GLOB"},

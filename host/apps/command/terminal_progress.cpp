@@ -145,7 +145,7 @@ void TerminalProgress::end() {
 }
 
 void TerminalProgress::note(const std::string& line) {
-  if (style_ == Style::quiet) return;
+  if (style_ == Style::quiet && !(line.starts_with("warning: ") && leads())) return;
   const std::scoped_lock lock(mutex_);
   erase();
   print_line(one_line(line));

@@ -103,7 +103,8 @@ class Walk {
         names_(options.output),
         devices_(devices),
         progress_(progress),
-        scene_digest_(digest_of(scene)) {
+        scene_digest_(digest_of(scene)),
+        surfaces_(digest_of_surfaces(scene)) {
     if (!options.png.empty()) png_names_.emplace(options.png);
     if (!to_exr_) png_names_.emplace(options.output);
     for (const int frame : frames_) {
@@ -165,6 +166,7 @@ class Walk {
   RunRecord record_of(const Camera& camera) const {
     RunRecord record;
     record.scene = scene_.source.filename().string();
+    record.surfaces = surfaces_;
     record.camera = camera.name;
     record.integrator = "photon-map";
     record.quality = options_.render.quality;
@@ -297,7 +299,7 @@ class Walk {
   std::optional<walk::FrameNames> png_names_;
   std::span<Device> devices_;
   TerminalProgress& progress_;
-  const std::string scene_digest_;
+  const std::string scene_digest_, surfaces_;
   std::optional<SceneRenderer> renderer_;
   std::optional<walk::ContactSheet> sheet_;
   std::optional<double> exposure_;  ///< stops

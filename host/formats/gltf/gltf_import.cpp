@@ -253,6 +253,7 @@ void import_gltf(reading::ImportContext& context) {
   const std::vector<MaterialCoordinates> coordinates =
       add_gltf_materials(model, accessors, context);
   std::vector<NodeVisit> visits = visit_nodes(model, context);
+  context.check_hidden();
   for (const NodeVisit& visit : visits) {
     context.visited_nodes.push_back(static_cast<std::uint32_t>(visit.node));
   }

@@ -396,7 +396,12 @@ void add_gltf_meshes(const tinygltf::Model& model, const AccessorReader& accesso
   MeshImporter importer(model, accessors, visits, coordinates, context);
   check_panel_names(model, visits, context);
   for (std::size_t i = 0; i < visits.size(); ++i) {
+    const std::size_t before = context.scene.triangles.size();
     importer.add(visits[i], i);
+    const std::size_t added = context.scene.triangles.size() - before;
+    if (added > 0) {
+      context.scene.report.meshes.push_back({node_name(model, visits[i].node), added});
+    }
     importer.add_panel(visits[i], i);
   }
   importer.finish();

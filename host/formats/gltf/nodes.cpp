@@ -10,6 +10,7 @@
 
 #include "gltf/document.hpp"
 #include "gltf/lights.hpp"
+#include "gltf/meshes.hpp"
 #include "gltf/panels.hpp"
 #include "photile/limits.hpp"
 
@@ -108,7 +109,7 @@ struct Level {
 
 class Walk {
  public:
-  Walk(const tinygltf::Model& model, const reading::ImportContext& context)
+  Walk(const tinygltf::Model& model, reading::ImportContext& context)
       : model_(model), context_(context), on_path_(model.nodes.size(), false) {}
 
   void from_root(int root, std::vector<NodeVisit>& visits) {
@@ -141,14 +142,19 @@ class Walk {
       throw context_.error(
           fmt::format("nodes nested more than {} levels deep", limits::max_node_depth));
     }
+    if (context_.is_hidden(node_name(model_, node))) return;
     on_path_[static_cast<std::size_t>(node)] = true;
     const glm::dmat4 world = parent * local_transform(model_.nodes[static_cast<std::size_t>(node)]);
-    visits.push_back({node, world});
+    const int mesh = model_.nodes[static_cast<std::size_t>(node)].mesh;
+    const bool has_mesh = mesh >= 0 && static_cast<std::size_t>(mesh) < model_.meshes.size();
+    if (!has_mesh || !context_.is_hidden(name_of_mesh(model_, mesh))) {
+      visits.push_back({node, world});
+    }
     path_.push_back({node, 0, world});
   }
 
   const tinygltf::Model& model_;
-  const reading::ImportContext& context_;
+  reading::ImportContext& context_;
   std::vector<bool> on_path_;
   std::vector<Level> path_;
 };

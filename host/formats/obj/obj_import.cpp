@@ -375,6 +375,10 @@ void import_obj(reading::ImportContext& context) {
       file.positions[vertex] = glm::dvec3(std::numeric_limits<double>::quiet_NaN());
     }
   }
+  std::vector<bool> is_hidden;
+  for (const std::string& object : file.objects) is_hidden.push_back(context.is_hidden(object));
+  std::erase_if(file.faces, [&](const ObjFace& face) { return is_hidden[face.object]; });
+  context.check_hidden();
   place(file, context.scene.turn, context.options.metres_per_unit);
   move_to_origin(file, context.scene);
   context.scene.unit = PowerUnit::watt;
@@ -384,10 +388,16 @@ void import_obj(reading::ImportContext& context) {
   scene::MeshBuilder builder(context.scene,
                              {needs.textures, reading::has_emission_texture(context), true});
   reading::PlainMaterials plain_materials(context.scene);
+  std::vector<std::uint64_t> triangles(file.objects.size(), 0);
   for (const ObjFace& face : file.faces) {
     context.check_cancelled();
     const std::size_t name = face.material == none ? material_index.size() - 1 : face.material;
+    const std::size_t before = context.scene.triangles.size();
     add_face(file, face, material_index[name], builder, plain_materials, context);
+    triangles[face.object] += context.scene.triangles.size() - before;
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (triangles[i] > 0) context.scene.report.meshes.push_back({file.objects[i], triangles[i]});
   }
   builder.finish();
   scene::drop_flat_normals(context.scene, needs);

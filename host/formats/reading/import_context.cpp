@@ -1,5 +1,8 @@
 #include "reading/import_context.hpp"
 
+#include <fmt/format.h>
+#include <fnmatch.h>
+
 #include <utility>
 
 #include "pictures/textures.hpp"
@@ -26,6 +29,26 @@ Material without_textures(const Scene& scene, Material material) {
 }
 
 }  // namespace
+
+bool ImportContext::is_hidden(const std::string& name) {
+  has_hidden_.resize(options.hidden.size());
+  bool hidden = false;
+  for (std::size_t i = 0; i < options.hidden.size(); ++i) {
+    if (::fnmatch(options.hidden[i].c_str(), name.c_str(), 0) != 0) continue;
+    has_hidden_[i] = hidden = true;
+  }
+  return hidden;
+}
+
+void ImportContext::check_hidden() const {
+  for (std::size_t i = 0; i < options.hidden.size(); ++i) {
+    if (i < has_hidden_.size() && has_hidden_[i]) continue;
+    throw UsageError(
+        fmt::format("--set hide={}: {} has no such node, mesh, object or group; photile "
+                    "info lists them",
+                    options.hidden[i], folder.scene_file().string()));
+  }
+}
 
 std::uint32_t PlainMaterials::of(std::uint32_t material) {
   const auto next = static_cast<std::uint32_t>(scene_.materials.size());

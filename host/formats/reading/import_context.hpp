@@ -38,6 +38,13 @@ struct ImportContext {
     if (++calls_ % calls_between_checks == 0) progress.throw_if_cancelled();
   }
   std::uint32_t calls_ = 0;  ///< of check_cancelled
+
+  /// Whether SceneLoadOptions::hidden leaves out what has this name.
+  bool is_hidden(const std::string& name);
+
+  /// To be called once all names are known. Errors: UsageError that names a glob without a match.
+  void check_hidden() const;
+  std::vector<bool> has_hidden_ = {};  ///< per glob: whether it had a match
 };
 
 /// Whether some material's emission has a texture.

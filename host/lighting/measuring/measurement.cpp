@@ -132,6 +132,39 @@ Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readin
   return result;
 }
 
+std::vector<std::string> doubts_of(const Measurement& measurement,
+                                   std::span<const MixedLight> lights) {
+  std::size_t points = 0, dark = 0;
+  for (const GridValues& grid : measurement) {
+    const auto& sensors = grid.total().sensors;
+    points += sensors.size();
+    dark += static_cast<std::size_t>(std::count_if(sensors.begin(), sensors.end(),
+                                                   [](const Measured& m) { return m.value == 0; }));
+  }
+  std::vector<std::string> lines;
+  if (dark > 0 && dark < points) {
+    lines.push_back(fmt::format(
+        "{} of {} points have no light at all; they may lie outside the room or in things", dark,
+        points));
+  }
+  const auto is_lit = [&](std::string_view light) {
+    return std::any_of(measurement.begin(), measurement.end(), [&](const GridValues& grid) {
+      return std::any_of(grid.lights.begin(), grid.lights.end(), [&](const LightValues& values) {
+        return values.light == light && std::any_of(values.sensors.begin(), values.sensors.end(),
+                                                    [](const Measured& m) { return m.value > 0; });
+      });
+    });
+  };
+  // With one light alone its values are those of all together.
+  for (const MixedLight& light : lights) {
+    if (lights.size() < 2 || dark == points || !(light.power > 0) || is_lit(light.name)) continue;
+    lines.push_back(fmt::format(
+        "light '{}' reaches no point; it may hang outside the room, or above a closed ceiling",
+        light.name));
+  }
+  return lines;
+}
+
 void Readings::add(const LightLayers& layers, const LightMix& mix, double factor) {
   const LightLayers dense = layers.sparse() ? layers.dense() : layers;
   auto& repeat = repeats_.emplace_back();

@@ -91,6 +91,12 @@ using Measurement = std::vector<GridValues>;  ///< lux
 /// The values of each grid. `readings` are those of all grids' sensors, one grid after the other.
 Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readings);
 
+/// What is no error and seldom meant, a line each: points without any light beside points with
+/// some, and lights that reach no point.
+///   lights   their powers; those of 0 are off
+std::vector<std::string> doubts_of(const Measurement& measurement,
+                                   std::span<const MixedLight> lights);
+
 /// The readings of all grids' sensors, one grid after the other. Errors: those of `gather`.
 Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,
                        std::span<Device> devices, const MeasuringParameters& parameters,

@@ -90,6 +90,24 @@ void add_environment(const EnvironmentMap& map, ContentHash& hash) {
 
 }  // namespace
 
+void add_surfaces(const Scene& scene, ContentHash& hash) {
+  hash.add(scene.vertices);
+  hash.add(scene.triangles);
+  hash.add(scene.front_side);
+  hash.add(scene.triangle_material);
+  hash.add(scene.triangle_light);
+  hash.add(scene.corner_uv);
+  hash.add(scene.corner_emission_uv);
+  hash.add(scene.corner_normal);
+  hash.add(scene.corner_tangent);
+  hash.add(std::uint64_t{scene.materials.size()});
+  for (const Material& material : scene.materials) add_material(material, hash);
+  hash.add(std::uint64_t{scene.metallic_roughness.size()});
+  for (const MetallicRoughness& model : scene.metallic_roughness) {
+    add_metallic_roughness(model, hash);
+  }
+}
+
 void add_scene(const Scene& scene, ContentHash& hash) {
   const auto& [source, unit, origin, turn, vertices, triangles, front_side, triangle_material,
                triangle_light, corner_uv, corner_emission_uv, corner_normal, corner_tangent,
@@ -98,19 +116,7 @@ void add_scene(const Scene& scene, ContentHash& hash) {
   hash.add(unit);
   hash.add(origin);
   for (int axis = 0; axis < 3; ++axis) hash.add(turn[axis]);
-  hash.add(vertices);
-  hash.add(triangles);
-  hash.add(front_side);
-  hash.add(triangle_material);
-  hash.add(triangle_light);
-  hash.add(corner_uv);
-  hash.add(corner_emission_uv);
-  hash.add(corner_normal);
-  hash.add(corner_tangent);
-  hash.add(std::uint64_t{materials.size()});
-  for (const Material& material : materials) add_material(material, hash);
-  hash.add(std::uint64_t{metallic_roughness.size()});
-  for (const MetallicRoughness& model : metallic_roughness) add_metallic_roughness(model, hash);
+  add_surfaces(scene, hash);
   hash.add(std::uint64_t{textures.size()});
   for (const Texture& texture : textures) {
     hash.add(texture.width());

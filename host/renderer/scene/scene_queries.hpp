@@ -32,6 +32,9 @@ inline bool within_limit(const glm::dvec3& position) {
          std::abs(position.z) <= most;
 }
 
+/// Adds where surface is and how it reflects, but for the texels of pictures.
+void add_surfaces(const Scene& scene, ContentHash& hash);
+
 /// Adds everything that light depends on: geometry, materials, texels, lights with their groups,
 /// and the unit; not cameras and names of files.
 void add_scene(const Scene& scene, ContentHash& hash);
