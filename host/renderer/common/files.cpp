@@ -85,7 +85,9 @@ std::string temporary_name() {
 /// so across machines and containers, where process numbers mean nothing.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
-  static std::set<fs::path> done;  // a walk writes thousands of files into one folder
+  // A walk writes thousands of files into one folder. Never destroyed: a Device that is static
+  // keeps its kernels when the process ends.
+  static auto& done = *new std::set<fs::path>;
   const std::lock_guard lock(mutex);
   if (!done.insert(fs::absolute(folder).lexically_normal()).second) return;
   std::error_code error;
