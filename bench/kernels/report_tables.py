@@ -25,8 +25,8 @@ def figure(ratio):
 
 def knn_text():
     return """
-Microseconds a query; all hardware threads, the same queries, in the order of the renderer: by sided
-triangle, then along a Morton curve. All find the k nearest photons within R (`automatic_radius`,
+Microseconds a query; all hardware threads, the same queries, in the order of the renderer: by oriented
+face, then along a Morton curve. All find the k nearest photons within R (`automatic_radius`,
 twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1 over
 the disc, per light. Maps are those of `--set maps=auto`, the default.
 

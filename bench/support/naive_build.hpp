@@ -13,8 +13,8 @@ struct NaiveBuild {
   double references = 0;   ///< a photon: oriented faces whose map it enters
 };
 
-/// On all hardware threads of the host, nothing written. A photon enters the map of a sided
-/// triangle that lies within the radius and whose normal agrees with its own triangle's. As many
+/// On all hardware threads of the host, nothing written. A photon enters the map of an oriented
+/// face that lies within the radius and whose normal agrees with its own triangle's. As many
 /// photons are tested as make `most_pairs` pairs with triangles.
 NaiveBuild time_naive_build(const Scene& scene, const Photons& photons, double radius,
                             double angle_degrees, const Repeats& repeats, double most_pairs = 2e8);

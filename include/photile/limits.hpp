@@ -39,7 +39,7 @@ inline constexpr int max_light_map_levels = 12;  ///< of refinement: positions f
 // Scene
 inline constexpr std::uint64_t max_file_bytes = 2ull << 30;      ///< the scene file itself
 inline constexpr std::uint64_t max_external_bytes = 8ull << 30;  ///< buffers and images together
-inline constexpr std::uint64_t max_triangles = 500'000'000ull;   ///< sided indices fit 32 bits
+inline constexpr std::uint64_t max_triangles = 500'000'000ull;   ///< oriented faces fit 32 bits
 inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
 /// Metres from the scene's origin. Areas times photons, and squares of distances, stay within the
 /// range of a float.

@@ -91,9 +91,9 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       Progress& progress = Progress::none(),
                                       std::span<const std::uint8_t> landed = {});
 
-/// Finds groups whose members are the maps of patches, by boxes: each map that holds a sided
-/// triangle whose normal agrees and whose box lies at most `radius` from the box of the sided
-/// triangle. That is a few more than have a triangle in its group; what those hold in vain, no
+/// Finds groups whose members are the maps of patches, by boxes: each map that holds an oriented
+/// face whose normal agrees and whose box lies at most `radius` from the box of the oriented
+/// face. That is a few more than have a triangle in its group; what those hold in vain, no
 /// query finds. Found patch by patch, so that time grows with the patches near a triangle and not
 /// with the triangles.
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,

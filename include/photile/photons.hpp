@@ -60,8 +60,8 @@ struct Photons {
 /// stable counting sort; fills `first_of`.
 Photons sort_by_oriented_face(Photons photons, std::size_t oriented_face_count);
 
-/// The photons of several runs of paths as if one process had traced them: those of each sided
-/// triangle in the order of the runs. All arrays that one run has, all have.
+/// The photons of several runs of paths as if one process had traced them: those of each oriented
+/// face in the order of the runs. All arrays that one run has, all have.
 ///   runs   in the order light, path; consumed, so that only one array exists twice
 Photons merge_runs(std::vector<Photons> runs);
 

@@ -21,6 +21,8 @@ class Progress {
   virtual void end();
   /// A line for the user that is no progress: what was chosen, approximated or left out.
   virtual void note(const std::string& line);
+  /// A line that users want who want no others: what may make the result wrong. By default a note.
+  virtual void warn(const std::string& line);
   /// True once the user asked to stop; stages then throw Interrupted at their next safe point.
   virtual bool cancelled() const;
 

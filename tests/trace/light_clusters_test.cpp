@@ -75,7 +75,8 @@ Looked look(const LightSampler& lamps, const glm::vec3& point,
 }  // namespace
 
 TEST_CASE(
-    "light clusters: light samples of a point are unbiased, and have less noise near one lamp of many") {
+    "light clusters: light samples of a point are unbiased, and have less noise near one lamp of "
+    "many") {
   SceneBuilder builder = floor_under_row();
   constexpr double power = 0.3;
   const glm::vec3 bulb(3, 0.5f, 1);

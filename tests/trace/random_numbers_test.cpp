@@ -158,7 +158,8 @@ TEST_CASE("The scatter of independent scrambles is an honest error") {
   CHECK(squares / errors == Approx(1).margin(6 * std::sqrt(4.0 / trials)));
 }
 
-TEST_CASE("The light samples of a pixel's samples share their sequences and take every light as often") {
+TEST_CASE(
+    "The light samples of a pixel's samples share their sequences and take every light as often") {
   const RandomStream of_pixel(1, 2, 0);
   for (int lamps : {2, 4, 16}) {
     std::vector<int> count(static_cast<std::size_t>(lamps), 0);

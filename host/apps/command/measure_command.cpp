@@ -109,16 +109,16 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
 
 void warn(const Scene& scene, const LightMix& mix, const std::vector<measuring::SensorGrid>& grids,
           Progress& progress) {
-  for (const std::string& line : doubts_of(scene, mix)) progress.note("warning: " + line);
+  for (const std::string& line : doubts_of(scene, mix)) progress.warn(line);
   if (has_hidden_caustics(scene)) {
-    progress.note(
-        "warning: what mirrors and glass throw onto sensors from point, spot and directional "
+    progress.warn(
+        "what mirrors and glass throw onto sensors from point, spot and directional "
         "lights is missing; lamps with an area are seen in them");
   }
   const std::size_t covered = measuring::covered_sensors(scene, grids);
   if (covered > 0) {
-    progress.note(
-        fmt::format("warning: {} points have a surface less than 1 cm before them; they may lie in "
+    progress.warn(
+        fmt::format("{} points have a surface less than 1 cm before them; they may lie in "
                     "furniture or just below a top",
                     covered));
   }
@@ -169,7 +169,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
     if (all_dark(measurement)) progress.note(report::no_sky_warning);
   } else {
     for (const std::string& line : measuring::doubts_of(measurement, mix.lights)) {
-      progress.note("warning: " + line);
+      progress.warn(line);
     }
   }
   outputs.check_picture(scene, progress);

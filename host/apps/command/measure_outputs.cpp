@@ -242,8 +242,8 @@ void MeasureOutputs::check_picture(const Scene& scene, Progress& progress) const
   const PictureHeader header = read_header(picture_);
   const auto surfaces = header.attributes.find("photile.surfaces");
   if (surfaces == header.attributes.end() || surfaces->second == digest_of_surfaces(scene)) return;
-  progress.note(fmt::format(
-      "warning: {} shows other surfaces or reflectances than are measured; render it anew with the "
+  progress.warn(fmt::format(
+      "{} shows other surfaces or reflectances than are measured; render it anew with the "
       "options of this command",
       picture_.string()));
 }

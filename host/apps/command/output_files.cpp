@@ -201,14 +201,14 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
     if (file.empty()) return;
     write_png(file, report::false_colour_picture(values, displayed, false_colour_.of(unit)));
     if (report::Sheet::has_font()) return;
-    notes.note(
-        fmt::format("warning: {}: the legend has no numbers without the font DejaVu Sans; "
+    notes.warn(
+        fmt::format("{}: the legend has no numbers without the font DejaVu Sans; "
                     "install fonts-dejavu-core",
                     file.string()));
   };
   draw(illuminance_, lux, "lux");
   draw(luminance_, candela, "cd/m2");
-  for (const std::string& line : picture.overflows()) notes.note("warning: " + line);
+  for (const std::string& line : picture.overflows()) notes.warn(line);
 }
 
 }  // namespace photile::app

@@ -92,8 +92,8 @@ RenderResult render_refined(
   };
   RenderResult best = refine(goal, parameters, {make, tell, elapsed}, progress);
   if (standard_error_of(best) > goal.error && goal.error > 0) {
-    progress.note(fmt::format("warning: a standard error of {} was not reached, but {}",
-                              percent(goal.error), percent(standard_error_of(best))));
+    progress.warn(fmt::format("a standard error of {} was not reached, but {}", percent(goal.error),
+                              percent(standard_error_of(best))));
   }
   return best;
 }

@@ -137,8 +137,8 @@ LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::spa
 LightLayers render_by_paths(const Scene& scene, const Camera& camera, const Views& views,
                             RunRecord& record, Progress& progress) {
   if (has_hidden_caustics(scene)) {
-    progress.note(
-        "warning: paths do not find what mirrors and glass throw from point, spot and directional "
+    progress.warn(
+        "paths do not find what mirrors and glass throw from point, spot and directional "
         "lights; photon maps do");
   }
   PathTracerResult result =

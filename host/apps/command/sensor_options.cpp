@@ -90,7 +90,7 @@ measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) 
 void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                         measuring::SensorGrid& grid, Progress& progress) {
   if (!grid.remark.empty()) {
-    progress.note(fmt::format("warning: {}: {}", grid.name, grid.remark));
+    progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
   }
   const std::size_t all = grid.sensors.size();
   const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid);

@@ -31,11 +31,10 @@ void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
   for (const auto& line : scene_summary(scene, mix)) progress.note(line);
   const std::vector<std::string>& warnings = scene.report.warnings;
   for (std::size_t i = 0; i < std::min(warnings.size(), shown_warnings); ++i) {
-    progress.note("warning: " + warnings[i]);
+    progress.warn(warnings[i]);
   }
   if (warnings.size() > shown_warnings) {
-    progress.note(
-        fmt::format("warning: {} more; photile info shows all", warnings.size() - shown_warnings));
+    progress.warn(fmt::format("{} more; photile info shows all", warnings.size() - shown_warnings));
   }
 }
 

@@ -145,7 +145,14 @@ void TerminalProgress::end() {
 }
 
 void TerminalProgress::note(const std::string& line) {
-  if (style_ == Style::quiet && !(line.starts_with("warning: ") && leads())) return;
+  if (style_ != Style::quiet) print_above(line);
+}
+
+void TerminalProgress::warn(const std::string& line) {
+  if (leads()) print_above("warning: " + line);
+}
+
+void TerminalProgress::print_above(const std::string& line) {
   const std::scoped_lock lock(mutex_);
   erase();
   print_line(one_line(line));

@@ -51,7 +51,7 @@ std::string completed_text(const StageProgress& progress);
 /// for the device. Cancelled by SIGINT and SIGTERM (processes.hpp). One stage at a time.
 class TerminalProgress : public Progress {
  public:
-  /// `quiet`: stages and notes print nothing.
+  /// `quiet`: stages and notes print nothing; warnings do, on the first of several processes.
   explicit TerminalProgress(bool quiet);
   /// Removes the bar of a stage that was left by an exception.
   ~TerminalProgress() override;
@@ -60,14 +60,16 @@ class TerminalProgress : public Progress {
   void advance(std::uint64_t count) override;
   void end() override;
   void note(const std::string& line) override;
+  void warn(const std::string& line) override;
   bool cancelled() const override;
 
  private:
   enum class Style { quiet, lines, bar };
 
   void keep_drawing(std::stop_token stop);
-  void draw();                    // needs mutex_
-  void erase();                   // needs mutex_
+  void draw();   // needs mutex_
+  void erase();  // needs mutex_
+  void print_above(const std::string& line);
   StageProgress current() const;  // needs mutex_
 
   const Style style_;

@@ -46,8 +46,8 @@ struct Reference {
 Reference trace_reference(const Scene& scene, const Camera& camera, const LightMix& mix,
                           const TradeOptions& options, Progress& progress) {
   if (has_hidden_caustics(scene)) {
-    progress.note(
-        "warning: the path-traced reference lacks caustics of point, spot and directional lights; "
+    progress.warn(
+        "the path-traced reference lacks caustics of point, spot and directional lights; "
         "give a complete one with --reference");
   }
   PrimaryHitParameters film = eye_rays(options.render.parameters);
@@ -145,8 +145,8 @@ void warn_of_noise(const Reference& reference, std::span<const trade::TradePoint
         return point.error.relative_mse < 4 * reference.relative_mse;
       });
   if (near == 0) return;
-  progress.note(
-      fmt::format("warning: {} of {} errors are within twice the reference's own, which is "
+  progress.warn(
+      fmt::format("{} of {} errors are within twice the reference's own, which is "
                   "in them; give more --reference-samples",
                   near, points.size()));
 }

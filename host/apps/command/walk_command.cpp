@@ -219,7 +219,7 @@ class Walk {
     if (!leads()) return {};
     if (to_exr_) write_exr(names_.of(number(frame)), *picture);
     for (const std::string& line : picture->overflows()) {
-      progress_.note(fmt::format("warning: frame {}: {}", number(frame), line));
+      progress_.warn(fmt::format("frame {}: {}", number(frame), line));
     }
     return picture->root();
   }

@@ -51,11 +51,10 @@ std::span<const unsigned char> bytes_of(const tinygltf::Model& model, int buffer
   throw context.error(use + " lies outside its buffer; export it again");
 }
 
-/// A member that counts bytes or elements. Errors: InputError.
+/// A member that counts bytes or elements, 0 where it is not there. Errors: InputError.
 std::uint64_t size_member(const tinygltf::Value& object, const std::string& key,
-                          std::uint64_t otherwise, const std::string& use,
-                          const reading::ImportContext& context) {
-  const double value = number_member(object, key, static_cast<double>(otherwise));
+                          const std::string& use, const reading::ImportContext& context) {
+  const double value = number_member(object, key, 0);
   if (value >= 0 && value <= 0x1p53) return static_cast<std::uint64_t>(value);
   throw context.error(fmt::format("{}: {} is {}; export it again", use, key, value));
 }
@@ -87,7 +86,7 @@ class Unpacking {
     if (packing == nullptr) return;
     context_.progress.throw_if_cancelled();
     const std::string use = fmt::format("bufferViews[{}]", number);
-    const auto size = [&](const char* key) { return size_member(*packing, key, 0, use, context_); };
+    const auto size = [&](const char* key) { return size_member(*packing, key, use, context_); };
     using Mode = std::pair<std::string_view, MeshoptMode>;
     using Filter = std::pair<std::string_view, MeshoptFilter>;
     constexpr std::array modes{Mode{"ATTRIBUTES", MeshoptMode::attributes},

@@ -1,5 +1,5 @@
-// Charts of the light maps: planes with lattices, the surface that lies under each, and which sided
-// triangles share one.
+// Charts of the light maps: planes with lattices, the surface that lies under each, and which
+// oriented faces share one.
 #pragma once
 
 #include <algorithm>

@@ -61,7 +61,7 @@ class IrradianceGather {
  public:
   /// References are kept.
   ///   photons    of all light, and `of_nodes`, as SecondaryLight has them; k of about 100 suffices
-  ///   ends       light maps for these photons
+  ///   secondary  light maps for these photons, read where rays meet surface
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
   IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
@@ -92,7 +92,7 @@ class IrradianceGather {
   /// What all calls took so far.
   struct Costs {
     double ray_seconds = 0;       ///< tracing rays to surfaces
-    double estimate_seconds = 0;  ///< photons, at ends and at points
+    double estimate_seconds = 0;  ///< photons, at ray hits and at points
     double sum_seconds = 0;       ///< light samples, and sums
     std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
     std::uint64_t hits = 0;       ///< that met a surface

@@ -99,7 +99,7 @@ glm::vec4 summed_by_normal(const Estimates& values, std::size_t first, std::size
   return sum;
 }
 
-/// Whether a node holds light of a light, where nodes hold those alone that reach them.
+/// Whether a node holds a light, where nodes hold those alone that reach them.
 bool holds(const Estimates& values, std::size_t node, std::uint16_t light) {
   unsigned found = 0;
   for (std::size_t i = values.first[node]; i < values.first[node + 1]; ++i) {

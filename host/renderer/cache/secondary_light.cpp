@@ -110,7 +110,7 @@ void SecondaryLight::add_point(const IndirectLight& light, std::size_t point, st
   }
 }
 
-/// Finds which ends have estimates of their own, and what estimates weigh at each.
+/// Finds which ray hits have estimates of their own, and what estimates weigh at each.
 void SecondaryLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   const trace::EyeRecord& ray_hits = light.rays.ray_hits;
   light.weight.resize(ray_hits.hits.size());
@@ -153,8 +153,8 @@ bool SecondaryLight::is_open(const BilinearWeights& cell) const {
   return state == open_cell;
 }
 
-/// Finds the nodes of ends that have no estimates of their own. Ends that none of their nodes sees
-/// get one.
+/// Finds the nodes of ray hits that have no estimates of their own. Those that none of their
+/// nodes sees get one.
 void SecondaryLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   light.nodes.resize(has_own.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {
@@ -165,7 +165,7 @@ void SecondaryLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>&
       const trace::EyeHit& hit = light.rays.ray_hits.hits[index];
       if (find(hit.oriented_face, hit.position, light.nodes[index])) continue;
       has_own[index] = 1;
-      // Estimates of ends are radiance.
+      // Estimates of ray hits are radiance.
       light.weight[index] = hit.throughput;
     }
   });

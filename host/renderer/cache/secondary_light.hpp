@@ -24,12 +24,12 @@ struct SecondaryEstimates {
   Estimates estimates;  ///< of each hit
 };
 
-/// Where the rays of a run of points end, and what counts there.
+/// What the rays of a run of points meet, and what counts there.
 struct IndirectLight {
   trace::HemisphereRays rays;
   std::vector<std::uint32_t> own_of;  ///< of each hit: its own estimate, or none: light maps answer
   std::vector<BilinearWeights> nodes;  ///< of each hit that they answer
-  std::vector<glm::vec3> weight;       ///< of each end: of irradiance, or of radiance
+  std::vector<glm::vec3> weight;       ///< of each hit: of irradiance, or of radiance
   SecondaryEstimates own;              ///< of the run
 };
 
@@ -65,7 +65,7 @@ class SecondaryLight {
                  estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
       : rays_(rays), photons_(photons), nodes_(of_nodes), parameters_(maps) {}
 
-  /// Finds an estimate for each end.
+  /// Finds an estimate for each ray hit.
   /// Errors: as DeviceEstimators; Interrupted.
   IndirectLight query(trace::HemisphereRays rays, const Progress& progress);
 
@@ -118,7 +118,7 @@ class SecondaryLight {
         : maps(rays.scene(), parameters), visibility(rays, maps, any_contrast) {}
     LightMaps maps;
     NodeVisibility visibility;
-    /// Whether the middle of a cell sees all nodes, by the first node; known once an end asked.
+    /// Whether the middle of a cell sees all nodes, by the first node; known once a hit asked.
     mutable std::vector<std::uint8_t> cells;
   };
   const LightMapParameters parameters_;

@@ -98,12 +98,12 @@ const Material& material_of(const Scene& scene, std::uint32_t oriented_face) {
   return scene.materials[scene.triangle_material[triangle_of(oriented_face)]];
 }
 
-/// Writes the light of hits, or its errors, one after another, from nodes, from ends of rays or
-/// from their own estimates.
+/// Writes the light of hits, or its errors, one after another, from nodes, from the coarser
+/// cache that rays read, or from their own estimates.
 class Interpolation {
  public:
-  ///   row      per hit: that of its own estimate, or none
-  ///   ends     null where no hit reads them
+  ///   secondary   null where no hit reads it
+  ///   row         per hit: that of its own estimate, or none
   Interpolation(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& hits,
                 const HitReading& reading, const Estimates& nodes, const Estimates* secondary,
                 const Estimates& alone, std::span<const std::uint32_t> row)

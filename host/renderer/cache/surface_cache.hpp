@@ -58,8 +58,8 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 /// What the light of hits is read from.
 struct HitReading {
   static constexpr int own_estimate = -1, secondary = 0;
-  std::vector<int> levels;                ///< of nodes; or `ends`, or `own_estimate`
-  std::vector<BilinearWeights> bilinear;  ///< of nodes or ends
+  std::vector<int> levels;                ///< of nodes; or `secondary`, or `own_estimate`
+  std::vector<BilinearWeights> bilinear;  ///< of its nodes
 };
 
 class SurfaceCache : public estimate::LightAtPoints {
@@ -69,9 +69,9 @@ class SurfaceCache : public estimate::LightAtPoints {
   ///               with a normal map where photons value nodes, which ask where light comes from.
   ///               What a point gets from it does not depend on the points beside it.
   ///   source      values nodes
-  ///   secondary   where rays value nodes, the light that they find where they end, which is read
-  ///               where PrimaryHits::coarse says that it suffices; null where photons value nodes:
-  ///               the coarsest nodes are read there
+  ///   secondary   where rays value nodes, the light that they read where they meet surface; hits
+  ///               read it, too, where PrimaryHits::coarse says that it suffices; null where
+  ///               photons value nodes: the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
                estimate::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* secondary);
 

@@ -11,6 +11,7 @@ void Progress::begin(std::string_view, std::uint64_t, std::string_view) {}
 void Progress::advance(std::uint64_t) {}
 void Progress::end() {}
 void Progress::note(const std::string&) {}
+void Progress::warn(const std::string& line) { note("warning: " + line); }
 bool Progress::cancelled() const { return false; }
 
 void Progress::throw_if_cancelled() const {

@@ -33,6 +33,9 @@ class SharedProgress : public Progress {
   void note(const std::string& line) override {
     if (tells_) progress_.note(line);
   }
+  void warn(const std::string& line) override {
+    if (tells_) progress_.warn(line);
+  }
   bool cancelled() const override { return failed_ || progress_.cancelled(); }
 
  private:

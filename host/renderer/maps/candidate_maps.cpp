@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t few_members = 24;  ///< a list this short is not worth splitting
 constexpr std::size_t few_photons = 16;  ///< nor is one for this many photons
 
-constexpr std::size_t triangles_per_chunk = 1024;  ///< sided ones
+constexpr std::size_t triangles_per_chunk = 1024;  ///< of oriented faces
 
 /// The lists of some oriented faces in a row.
 struct Lists {

@@ -13,8 +13,8 @@
 
 namespace photile::maps {
 
-/// Lists of maps in compressed sparse rows; photons that lie close together on a sided
-/// triangle share a list. A large triangle has thousands of neighbours of which a photon on it
+/// Lists of maps in compressed sparse rows; photons that lie close together on an oriented
+/// face share a list. A large triangle has thousands of neighbours of which a photon on it
 /// reaches a few: without the lists the build would try them all.
 struct CandidateMaps {
   std::vector<std::uint32_t> list_of_photon;
@@ -46,7 +46,7 @@ struct MapNumbers {
 };
 
 /// Numbers the maps that are members of candidate lists, and renames the members.
-///   sided_count   oriented faces of the scene
+///   face_count   oriented faces of the scene
 MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t face_count);
 
 /// `values` of all oriented faces' or patches' maps: those of the numbered ones.

@@ -71,7 +71,7 @@ class PassLight {
  private:
   const PassPhotons photons_;
   const std::vector<double> layer_powers_;
-  const bool is_shared_;  ///< with other processes
+  const bool is_shared_;                           ///< with other processes
   std::optional<cache::IrradianceGather> gather_;  ///< where rays value nodes
   std::optional<cache::GatheredNodes> gathered_;
   std::optional<cache::ValuedBy> by_photons_;  ///< where photons value nodes

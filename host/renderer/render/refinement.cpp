@@ -35,6 +35,7 @@ class Deadline : public Progress {
   void advance(std::uint64_t count) override { to_.advance(count); }
   void end() override { to_.end(); }
   void note(const std::string& line) override { to_.note(line); }
+  void warn(const std::string& line) override { to_.warn(line); }
   bool cancelled() const override { return to_.cancelled() || is_over(); }
   bool is_over() const { return seconds_ > 0 && elapsed_() >= seconds_; }
 

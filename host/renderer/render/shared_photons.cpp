@@ -183,7 +183,7 @@ class Destinations {
 /// Per rank: the photons that go there, ascending.
 std::vector<std::vector<std::uint32_t>> photons_for(const Destinations& destinations,
                                                     const Photons& photons, std::uint32_t ranks) {
-  constexpr std::size_t triangles_per_chunk = 256;  // sided ones
+  constexpr std::size_t triangles_per_chunk = 256;  // of oriented faces
   const std::size_t sides = photons.first_of.size() - 1;
   std::vector<std::vector<std::vector<std::uint32_t>>> chunks((sides + triangles_per_chunk - 1) /
                                                               triangles_per_chunk);

@@ -36,8 +36,8 @@ class MapOwners {
 };
 
 /// What stages ask of the photons of all processes. Collective.
-///   own   those of this process's paths, which follow those of the ranks before, sorted by sided
-///         triangle
+///   own   those of this process's paths, which follow those of the ranks before, sorted by
+///         oriented face
 std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, const Photons& own);
 
 /// How many photons went where.

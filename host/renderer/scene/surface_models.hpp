@@ -71,9 +71,9 @@ struct MaterialReflectance {
 /// With a texture for the mean of its texels, each of the same weight. None for glass.
 std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Material& material);
 
-/// Scales the diffuse colour of an opaque material so that it reflects that share, and with it what
-/// varies by textures; a black one becomes grey. A mirror's colour is scaled as a whole.
-///   share   from 0 to 1
+/// Scales the diffuse colour of an opaque material so that it reflects that fraction, and with it
+/// what varies by textures; a black one becomes grey. A mirror's colour is scaled as a whole.
+///   fraction   from 0 to 1
 /// Returns false where that cannot be: glass, a lobe or texels that reflect more alone, or a colour
 /// that would exceed 1 in a channel.
 bool set_reflectance(Scene& scene, Material& material, double fraction);

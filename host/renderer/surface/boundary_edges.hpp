@@ -81,8 +81,9 @@ class BoundaryEdges {
   static constexpr int cells_across = 16;
   static int cell_along(float position) {
     // Written so that what is no number has a cell, too.
-    return position > -1.0f ? static_cast<int>(std::min(0.5f * (position + 1.0f), 0.9999f) * cells_across)
-                         : 0;
+    return position > -1.0f
+               ? static_cast<int>(std::min(0.5f * (position + 1.0f), 0.9999f) * cells_across)
+               : 0;
   }
   static std::size_t cell_at(int axis, int u, int v) {
     return static_cast<std::size_t>((axis * cells_across + u) * cells_across + v);

@@ -238,8 +238,8 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     if (!(density > 0.0f)) return;
     glm::vec3 weight = lobe.reflected(*direction) / density;
     const float survival = std::min(1.0f, largest(left * weight) / defaults::least_lobe_weight);
-    if (!(light_sample.direction.uniform(choice_word) < survival))
-      return;  // no other use for the word
+    // No other use for the word.
+    if (!(light_sample.direction.uniform(choice_word) < survival)) return;
     weight /= survival;
     left *= weight;
     const EyeRay ray{end.point.origin_towards(*direction), *direction, end.ray.throughput * weight,

@@ -42,7 +42,7 @@ struct Onward {
   float density;     ///< of the direction, per steradian
 };
 
-/// Light that a lobe reflects: of one light sample, which is added to the ends, and from a
+/// Light that a lobe reflects: of one light sample, which is added to the ray hits, and from a
 /// direction of its own; none where that would enter the surface.
 ///   hit   where the lobe is, with the throughput of the ray
 std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsdf,
@@ -67,13 +67,13 @@ std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsd
   return Onward{*direction, bsdf.reflected(*direction) / density, density};
 }
 
-/// Replaces the last end by light that reaches it, as long as it is surface near the point. A
+/// Replaces the last ray hit by light that reaches it, as long as it is surface near the point. A
 /// photon estimate there would show its blur, and on a narrow frame it would count the photons of
-/// faces that lie at angles to the end's.
+/// faces that lie at angles to the hit's.
 ///   from     the point
-///   before   ends of the rays before
+///   before   hits of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
-///   light_samples   to which those from near surface are added; their tag is the pixel
+///   light_samples   those from near surface are added to these; their tag is the pixel
 void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_t number,
                      std::size_t before, std::uint32_t stream, std::uint32_t streams,
                      ShadowRays& light_samples, EyeRecord& ray_hits) {
@@ -229,10 +229,10 @@ HemisphereRays join(std::vector<TaskHits> tasks) {
 
 }  // namespace
 
-HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t end) {
-  const glm::vec3& albedo = ray_hits.hits[end].diffuse_albedo;
-  if (ray_hits.glossy.empty() || ray_hits.glossy[end].lobe.f90 == 0.0f) return {albedo, false};
-  const GlossyEyeHit& glossy = ray_hits.glossy[end];
+HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t hit) {
+  const glm::vec3& albedo = ray_hits.hits[hit].diffuse_albedo;
+  if (ray_hits.glossy.empty() || ray_hits.glossy[hit].lobe.f90 == 0.0f) return {albedo, false};
+  const GlossyEyeHit& glossy = ray_hits.glossy[hit];
   const scene::Reflectance surface{albedo, glossy.lobe.specular, glossy.lobe.f90,
                                    glossy.lobe.roughness};
   const float cosine = std::max(glm::dot(glossy.lobe.normal, glossy.outgoing), 1e-6f);

@@ -51,12 +51,12 @@ struct HemisphereRays {
   }
 };
 
-/// What the surface of an end reflects towards its ray of light that is the same from everywhere.
+/// What the surface of a hit reflects towards its ray of light that is the same from everywhere.
 struct HitReflection {
   glm::vec3 reflectance;
   bool strong_lobe;  ///< its lobe reflects so much that it asks where light comes from
 };
-HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t end);
+HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t hit);
 
 /// Traces rays with the density of the cosine to the geometric normal, through cutouts, mirrors and
 /// glass to the next opaque surface. Lights in mirrors or behind glass that bends are not seen:

@@ -1,5 +1,5 @@
-// A photon's path from its light to its end, and the photons of many paths sorted by sided
-// triangle.
+// A photon's path from its light to its end, and the photons of many paths sorted by oriented
+// face.
 #pragma once
 
 #include <cstddef>

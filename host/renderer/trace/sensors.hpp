@@ -84,8 +84,8 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors);
 /// radiance of a sensor's rays is its irradiance / pi. At each ray a light is sampled, too; lights
 /// that both find are weighed (Veach and Guibas 1995). Depends on the sensors, the film's seed and
 /// samples only, not on how rows are split or on threads.
-///   lights    of the scene
-///   map_of   as in trace_primary_hits
+///   light_sampler   of the scene
+///   map_of          as in trace_primary_hits
 PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
                             SensorResponse response, const LightSampler& light_sampler,
                             const PrimaryHitParameters& film, int first_row, int last_row,
