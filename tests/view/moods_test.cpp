@@ -112,6 +112,25 @@ TEST_CASE("a mood in watts sets lamps in lumens") {
   CHECK(mix.lights[0].power == Approx(358));
 }
 
+TEST_CASE("a mood may switch a light or warm it without naming its power") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "room.moods.json";
+  std::ofstream(file) << R"({"photile_moods": 1, "moods": {
+      "x": {"ceiling": {"on": false}, "floor lamp": {"kelvin": 2700}}}})";
+  Moods moods(file);
+  const auto changes = moods.changes("x", lamps());
+  REQUIRE(changes.size() == 2);
+  CHECK(changes[0].value == "off");
+  CHECK(changes[1].value == "2700K");
+  LightBoard board(lamps());
+  const double before = board.controls()[0].power;
+  moods.apply("x", board);
+  CHECK_FALSE(board.controls()[0].on);
+  CHECK(board.controls()[0].power == before);
+  moods.keep("y", board);  // writes what was read, too
+  CHECK(Moods(file).changes("x", lamps()).size() == 2);
+}
+
 TEST_CASE("a damaged file of moods is refused with its name and what is wrong") {
   const TemporaryFolder folder;
   const auto file = folder.path / "room.moods.json";
@@ -124,7 +143,7 @@ TEST_CASE("a damaged file of moods is refused with its name and what is wrong") 
        {R"({"photile_moods": 1e10, "moods": {}})", "is not 1"},
        {R"({"photile_moods": 2, "moods": {}})", "is not 1"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": -1}}}})", "mood 'x', light 'a'"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {}}}})", "power"},
+       {R"({"photile_moods": 1, "moods": {"x": {"a": 5}}})", "another type"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "unit": "cd"}}}})", "no unit"},
        {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "color": "#12345g"}}}})",
         "no colour"},

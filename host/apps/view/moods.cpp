@@ -77,9 +77,10 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
     for (const auto& [name, lights] : document.at("moods").items()) {
       for (const auto& [light, setting] : lights.items()) {
         place = fmt::format("mood '{}', light '{}'", name, light);
-        Setting read{setting.at("power").get<double>(), unit_of(setting.value("unit", "lm")),
-                     setting.value("on", true), std::nullopt, 0};
-        if (!(read.power >= 0 && read.power <= limits::max_light_power)) {
+        Setting read{std::nullopt, unit_of(setting.value("unit", "lm")), setting.value("on", true),
+                     std::nullopt, 0};
+        if (setting.contains("power")) read.power = setting["power"].get<double>();
+        if (read.power && !(*read.power >= 0 && *read.power <= limits::max_light_power)) {
           throw std::invalid_argument(
               fmt::format("its power is not a number from 0 to {:g}", limits::max_light_power));
         }
@@ -89,7 +90,7 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
       }
     }
   } catch (const json::exception&) {  // its text means something to programmers alone
-    refuse("lacks its power, or holds a value of another type than moods have");
+    refuse("holds a value of another type than moods have");
   } catch (const std::invalid_argument& error) {
     refuse(error.what());
   }
@@ -138,12 +139,12 @@ std::vector<LightChange> Moods::changes(const std::string& name, const LightMix&
     const auto found = mood.find(light.name);
     if (found == mood.end()) continue;
     const Setting& setting = found->second;
-    if (!setting.on || setting.power == 0) {
+    if (!setting.on || setting.power == 0.0) {
       changes.push_back({light.name, "off"});
       continue;
     }
     const char* unit = setting.unit == PowerUnit::lumen ? "lm" : "W";
-    changes.push_back({light.name, fmt::format("{}{}", setting.power, unit)});
+    if (setting.power) changes.push_back({light.name, fmt::format("{}{}", *setting.power, unit)});
     if (setting.kelvin > 0) {
       changes.push_back({light.name, fmt::format("{}K", setting.kelvin)});
     } else if (setting.color) {
@@ -160,8 +161,9 @@ void Moods::apply(const std::string& name, LightBoard& board) const {
     there.push_back(control.name);
     const auto setting = mood.find(control.name);
     if (setting == mood.end()) continue;
-    control.power =
-        in_unit(setting->second.power, setting->second.unit, control.unit, board.lumen_per_watt());
+    if (const auto power = setting->second.power) {
+      control.power = in_unit(*power, setting->second.unit, control.unit, board.lumen_per_watt());
+    }
     control.on = setting->second.on;
     control.color = setting->second.color;
     control.kelvin = setting->second.kelvin;
@@ -186,9 +188,11 @@ void Moods::write(const std::map<std::string, Mood>& moods) const {
     json& lights = document["moods"][name] = json::object();
     for (const auto& [light, setting] : mood) {
       json& entry = lights[light];
-      entry = {{"power", setting.power},
-               {"unit", setting.unit == PowerUnit::lumen ? "lm" : "W"},
-               {"on", setting.on}};
+      entry = {{"on", setting.on}};
+      if (setting.power) {
+        entry["power"] = *setting.power;
+        entry["unit"] = setting.unit == PowerUnit::lumen ? "lm" : "W";
+      }
       if (setting.color) entry["color"] = hex_of(*setting.color);
       if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;
     }

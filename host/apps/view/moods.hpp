@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ namespace photile::view {
 ///                            "floor lamp": {"power": 800, "unit": "lm", "on": true,
 ///                                           "color": "#ffd9a0"}}}}
 ///
-/// In place of a colour there may be its temperature, "kelvin": 2700.
-/// A light that a mood does not name keeps its setting.
+/// In place of a colour there may be its temperature, "kelvin": 2700. What a mood does not name, a
+/// light or its power, stays as it is: {"on": false} alone is a setting.
 class Moods {
  public:
   /// Reads the file; none is none yet. Errors: InputError naming the file and what is wrong.
@@ -45,7 +46,7 @@ class Moods {
 
  private:
   struct Setting {
-    double power;
+    std::optional<double> power;
     PowerUnit unit;
     bool on;
     std::optional<glm::vec3> color;
