@@ -247,6 +247,18 @@ TEST_CASE("what Draco packed is the mesh to the bits that it kept") {
   }
 }
 
+TEST_CASE("a mesh that is there without compression, too, needs no Draco") {
+  const Sheet sheet;
+  json document = document_of(sheet);
+  document["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+  document["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
+      {"bufferView", 2}, {"attributes", {{"POSITION", 0}}}};  // no Draco data
+  const std::string buffer =
+      bytes_of(sheet.positions) + bytes_of(sheet.normals) + bytes_of(sheet.indices);
+  CHECK(load(document, buffer).vertices == as_it_is(sheet).vertices);
+  CHECK(load(document, buffer).triangle_count() == as_it_is(sheet).triangle_count());
+}
+
 TEST_CASE("damaged Draco data is refused by the mesh's name") {
   const Sheet sheet;
   const auto [document, buffer] = draco_sheet(sheet, 12);

@@ -116,6 +116,9 @@ class Unpacking {
   void unpack_primitive(tinygltf::Primitive& primitive, const std::string& use) {
     const tinygltf::Value* const packing = find_extension(primitive.extensions, draco);
     if (packing == nullptr) return;
+    // The same mesh uncompressed, for readers without Draco.
+    const tinygltf::Accessor* const positions = accessor_of(primitive, "POSITION");
+    if (positions != nullptr && positions->bufferView >= 0) return;
     context_.progress.throw_if_cancelled();
     std::vector<std::string> names;
     std::vector<DracoAttribute> attributes;
@@ -252,6 +255,12 @@ std::string without_packed_parts(std::string_view json) {
   for (nlohmann::json& mesh : elements(document, "meshes")) {
     for (nlohmann::json& primitive : elements(mesh, "primitives")) {
       if (member(primitive, {"extensions", draco}) == nullptr) continue;
+      const nlohmann::json* const position = member(primitive, {"attributes", "POSITION"});
+      nlohmann::json& accessors = elements(document, "accessors");
+      const bool whole = position != nullptr && position->is_number_unsigned() &&
+                         position->get<std::size_t>() < accessors.size() &&
+                         member(accessors[position->get<std::size_t>()], {"bufferView"}) != nullptr;
+      if (whole) continue;
       primitive.erase("indices");
       changed = true;
     }

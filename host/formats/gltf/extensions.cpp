@@ -38,11 +38,15 @@ constexpr std::array<std::string_view, 4> harmless_extensions{
 };
 
 /// What to do about extensions that files of the wild have.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> remedies{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
     {"EXT_texture_webp", "save its textures as PNG or JPEG"},
+    {"KHR_materials_anisotropy", "brushed metal shines alike in all directions"},
+    {"KHR_materials_clearcoat", "coats are left out: what is below them reflects alone"},
     {"KHR_materials_pbrSpecularGlossiness",
      "its colours are lost; convert them to metallic-roughness"},
+    {"KHR_materials_sheen", "cloth has no sheen"},
+    {"KHR_materials_unlit", "its surfaces are lit as all others are"},
     {"KHR_materials_variants", "surfaces have their default materials"},
     {"KHR_texture_basisu", "save its textures as PNG or JPEG"},
 }};
