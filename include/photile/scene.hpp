@@ -82,6 +82,14 @@ struct LuminousOpening {
   double projected_area(const PhotometricAxes& axes, const glm::dvec3& direction) const;
 };
 
+/// What a photometric file says of its luminaire beside the intensities; "" and 0 = nothing.
+struct LuminaireData {
+  std::string maker, article, luminaire, source;  ///< UTF-8; `source`: the lamps in it
+  double watts = 0;                               ///< that the luminaire takes
+  double kelvin = 0;                              ///< correlated colour temperature
+  double rendering = 0;                           ///< Ra, at least
+};
+
 /// Intensities on a grid of polar angles and azimuths, bilinear in the two angles between them and
 /// zero beyond the outermost. One point emits all light: the luminaire's own size is left out,
 /// which is the approximation of the files themselves (far-field photometry).
@@ -105,6 +113,8 @@ class IntensityDistribution {
 
   const LuminousOpening& opening() const { return opening_; }
   void set_opening(const LuminousOpening& opening) { opening_ = opening; }
+  const LuminaireData& data() const { return data_; }
+  void set_data(LuminaireData data) { data_ = std::move(data); }
 
   // Cells of the grid: column of azimuths x row of polar angles.
   std::size_t columns() const { return azimuth_.size() - 1; }
@@ -133,6 +143,7 @@ class IntensityDistribution {
   std::vector<double> polar_, azimuth_;  ///< radians
   std::vector<float> intensity_;
   LuminousOpening opening_;
+  LuminaireData data_;
   double flux_ = 0;
 };
 

@@ -253,6 +253,48 @@ TEST_CASE("openings are rectangles, circles in the way of 1995 or of 2019, or el
   }
 }
 
+TEST_CASE("keywords and input watts describe the luminaire", "[ies]") {
+  IesText file;
+  file.first_line =
+      "IESNA:LM-63-2002\n[MANUFAC] Good Light Ltd\n[LUMCAT] GL-40\n[LUMINAIRE] Panel\n"
+      "[MORE] recessed\n[LAMP] LED 4000 K CRI>80\n";
+  file.ballast = "1 1 36.5";
+  LuminaireData data = read_ies(file.str()).data();
+  CHECK(data.maker == "Good Light Ltd");
+  CHECK(data.article == "GL-40");
+  CHECK(data.luminaire == "Panel recessed");
+  CHECK(data.source == "LED 4000 K CRI>80");
+  CHECK(data.watts == 36.5);
+  CHECK(data.kelvin == 4000);
+  CHECK(data.rendering == 80);
+  file.first_line = "IESNA:LM-63-2002\n[LAMP] LED 5000lm\n[_CCT] 2700\n[_CRI] 95\n";
+  data = read_ies(file.str()).data();
+  CHECK(data.kelvin == 2700);  // and no lumens
+  CHECK(data.rendering == 95);
+  file.first_line = "IESNA:LM-63-2002\n";
+  data = read_ies(file.str()).data();
+  CHECK(data.maker.empty());
+  CHECK(data.kelvin == 0);
+}
+
+TEST_CASE("colours of lamps are found in the words for them", "[ies]") {
+  using photometry::kelvin_in, photometry::rendering_in;
+  CHECK(kelvin_in("4000") == 4000);
+  CHECK(kelvin_in("warm white / 2700 K") == 2700);
+  CHECK(kelvin_in("840") == 4000);
+  CHECK(kelvin_in("warm") == 0);
+  CHECK(kelvin_in("12") == 0);
+  CHECK(kelvin_in("999999") == 0);
+  CHECK(rendering_in("80") == 80);
+  CHECK(rendering_in("Ra > 90") == 90);
+  CHECK(rendering_in("1B") == 80);
+  CHECK(rendering_in("1A") == 90);
+  CHECK(rendering_in("3") == 40);
+  CHECK(rendering_in("930") == 90);
+  CHECK(rendering_in("5") == 0);
+  CHECK(rendering_in("") == 0);
+}
+
 TEST_CASE("a file cut before its last number is refused", "[ies]") {
   IesText file;
   file.tilt = "TILT=INCLUDE\n1 2 0 90 1 0.9\n";
@@ -288,6 +330,17 @@ TEST_CASE("intensities are per 1000 lm of the lamps, times the conversion factor
   CHECK(read_eulumdat(file.str()).flux() == Approx(2000).epsilon(1e-6));
   file.conversion = 0.5;
   CHECK(read_eulumdat(file.str()).flux() == Approx(1000).epsilon(1e-6));
+}
+
+TEST_CASE("a EULUMDAT file describes its luminaire") {
+  const LuminaireData data = read_eulumdat(EulumdatText{}.str()).data();
+  CHECK(data.maker == "maker");
+  CHECK(data.luminaire == "lamp");
+  CHECK(data.article == "number");
+  CHECK(data.source == "lamp");
+  CHECK(data.watts == 20);
+  CHECK(data.kelvin == 3000);
+  CHECK(data.rendering == 80);
 }
 
 TEST_CASE("decimal commas are points") {

@@ -16,6 +16,7 @@
 #include "glare/ugr_table.hpp"
 #include "loading/light_changes.hpp"
 #include "photile/errors.hpp"
+#include "report/luminaires.hpp"
 #include "report/tables.hpp"
 
 namespace photile::app {
@@ -43,6 +44,9 @@ void print_lamp(const IntensityDistribution& lamp) {
     std::cout << fmt::format(
         "luminous opening: {:.4g} m along azimuth 0 x {:.4g} m along 90, {:.4g} m high\n",
         opening.along_zero, opening.along_quarter, opening.height);
+  }
+  for (const auto& [name, value] : report::data_rows(lamp)) {
+    std::cout << fmt::format("{}: {}\n", name, value);
   }
 }
 

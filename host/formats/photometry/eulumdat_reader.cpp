@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
@@ -14,7 +16,10 @@ namespace {
 // Lines of the format, counted from 1.
 constexpr std::size_t symmetry_line = 3, plane_count_line = 4, angle_count_line = 6,
                       opening_line = 16, conversion_line = 24, set_count_line = 26;
-constexpr std::size_t lines_per_set = 6, flux_in_set = 3, direct_ratios = 10;
+constexpr std::size_t lines_per_set = 6, direct_ratios = 10;
+constexpr std::size_t maker_line = 1, luminaire_line = 9, article_line = 10;
+constexpr std::size_t type_in_set = 2, flux_in_set = 3, colour_in_set = 4, rendering_in_set = 5,
+                      watts_in_set = 6;  ///< after the line of the number of sets
 
 /// Symmetry indicator of the format.
 enum Symmetry : std::size_t {
@@ -48,6 +53,11 @@ class Lines {
     return parse_signed(text).value_or(0.0);
   }
 
+  /// UTF-8; "" beyond the end.
+  std::string text(std::size_t line) const {
+    return line > lines_.size() ? "" : one_line(trimmed(lines_[line - 1]));
+  }
+
   std::size_t count(const std::string& what, std::size_t line, std::uint64_t lowest,
                     std::uint64_t highest) const {
     const double value = number(what, line);
@@ -76,6 +86,18 @@ LuminousOpening opening_of(const Lines& lines) {
           .along_quarter = length,
           .height = height,
           .round = !(width > 0)};
+}
+
+/// The first set of lamps counts.
+LuminaireData data_of(const Lines& lines) {
+  LuminaireData data{lines.text(maker_line), lines.text(article_line), lines.text(luminaire_line),
+                     lines.text(set_count_line + type_in_set)};
+  const std::string colour = lines.text(set_count_line + colour_in_set);
+  data.kelvin = kelvin_in(colour);
+  data.rendering = rendering_in(lines.text(set_count_line + rendering_in_set));
+  if (data.rendering == 0 && colour.size() == 3) data.rendering = rendering_in(colour);
+  data.watts = std::max(0.0, lines.number_or_0(set_count_line + watts_in_set));
+  return data;
 }
 
 /// Numbers of the C planes whose intensities follow, counted from 0.
@@ -195,6 +217,7 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
   }
   IntensityDistribution distribution(name, PhotometricAxes{}, polar, azimuth, std::move(intensity));
   distribution.set_opening(opening_of(lines));
+  distribution.set_data(data_of(lines));
   return distribution;
 }
 

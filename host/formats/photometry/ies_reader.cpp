@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
@@ -28,6 +32,48 @@ Tilt find_tilt(const std::vector<std::string_view>& lines) {
     if (line.starts_with('=')) return {trimmed(line.substr(1)), i + 1};
   }
   throw files::ResourceError("no line starts with TILT=: this is no LM-63 file");
+}
+
+/// What the keywords before the TILT= line say. [MORE] goes on with the one before it; colours have
+/// no keyword of the standard, so makers write their own, or name the lamp by them.
+LuminaireData data_of(const std::vector<std::string_view>& lines, std::size_t end) {
+  std::map<std::string, std::string> values;
+  std::string keyword;
+  for (std::size_t i = 0; i < end; ++i) {
+    const std::string_view line = trimmed(lines[i]);
+    const std::size_t close = line.find(']');
+    if (!line.starts_with('[') || close == std::string_view::npos) continue;
+    const std::string value = one_line(trimmed(line.substr(close + 1)));
+    if (const std::string name = lower(line.substr(1, close - 1)); name != "more") {
+      keyword = name;
+      values[keyword] = value;
+    } else {
+      values[keyword] += " " + value;
+    }
+  }
+  LuminaireData data{values["manufac"], values["lumcat"], values["luminaire"],
+                     values["lamp"].empty() ? values["lampcat"] : values["lamp"]};
+  for (const auto& [name, value] : values) {
+    const auto names = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+    if (names("cct") || names("colortemp") || names("color temp")) data.kelvin = kelvin_in(value);
+    if (names("cri") || name == "ra" || name == "_ra") data.rendering = rendering_in(value);
+  }
+  const std::string& lamp = data.source;
+  const auto said = [&](std::string_view word) {
+    return std::min(lower(lamp).find(word), lamp.size());
+  };
+  // In the lamp's name four digits are kelvin where a K follows, since they may be lumens.
+  for (std::size_t k = said("k"); k < lamp.size() && data.kelvin == 0;
+       k = std::min(lower(lamp).find('k', k + 1), lamp.size())) {
+    const std::string before(trimmed(std::string_view(lamp).substr(0, k)));
+    if (before.size() >= 4) data.kelvin = kelvin_in(before.substr(before.size() - 4));
+  }
+  if (data.rendering == 0 && said("cri") < lamp.size()) {
+    const std::size_t cri = said("cri");
+    data.rendering = rendering_in(std::string_view(lamp).substr(cri));
+    if (data.rendering == 0 && cri >= 3) data.rendering = rendering_in(lamp.substr(cri - 3, 3));
+  }
+  return data;
 }
 
 void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
@@ -186,7 +232,8 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text,
   factor *= positive("ballast factor", reader);
   const double next = reader.number("ballast-lamp photometric factor");
   if (has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0) factor *= next;
-  reader.number("input watts");
+  LuminaireData data = data_of(lines, tilt.next - 1);
+  data.watts = reader.number("input watts");
   if (vertical * horizontal > limits::max_photometric_values) {
     throw files::ResourceError(
         fmt::format("{} vertical x {} horizontal angles; the limit is {} values", vertical,
@@ -200,6 +247,7 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text,
   IntensityDistribution distribution =
       type == Photometry::type_c ? type_c(name, web) : type_a_or_b(name, web, type);
   if (type == Photometry::type_c) distribution.set_opening(opening);
+  distribution.set_data(std::move(data));
   return distribution;
 }
 

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "common/ascii_text.hpp"
 #include "files/scene_files.hpp"
@@ -28,6 +31,59 @@ IntensityDistribution read_photometry(const std::string& name, std::span<const u
     throw files::ResourceError(fmt::format(
         "photometric file '{}': {}; get it again from the maker of the lamp", name, error.what()));
   }
+}
+
+namespace {
+
+/// The digits of a text, run by run, with where each begins.
+struct Digits {
+  std::size_t begin;
+  std::string_view run;
+};
+
+std::vector<Digits> digits_in(std::string_view text) {
+  constexpr std::string_view digits = "0123456789";
+  std::vector<Digits> runs;
+  for (std::size_t at = text.find_first_of(digits); at != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_not_of(digits, at), text.size());
+    runs.push_back({at, text.substr(at, end - at)});
+    at = text.find_first_of(digits, end);
+  }
+  return runs;
+}
+
+/// Groups of colour rendering by DIN 5035, as EULUMDAT has them, and the least Ra of each.
+constexpr std::array<std::pair<std::string_view, int>, 6> rendering_groups{
+    {{"1a", 90}, {"1b", 80}, {"2a", 70}, {"2b", 60}, {"3", 40}, {"4", 20}}};
+
+/// "840": Ra from 80, 4000 K; as lamps are named worldwide.
+bool is_colour_code(std::string_view run) {
+  return run.size() == 3 && run[0] >= '7' && run[1] >= '1' && run[1] <= '8';
+}
+
+}  // namespace
+
+double kelvin_in(std::string_view text) {
+  for (const Digits& digits : digits_in(text)) {
+    const double value = parse_number<double>(digits.run).value_or(0);
+    if (digits.run.size() >= 4 && value >= 1000 && value <= 25'000) return value;
+    if (is_colour_code(digits.run)) return 100 * *parse_number<int>(digits.run.substr(1));
+  }
+  return 0;
+}
+
+double rendering_in(std::string_view text) {
+  for (const Digits& digits : digits_in(text)) {
+    const double value = parse_number<double>(digits.run).value_or(0);
+    if (digits.run.size() == 2 || value == 100) return value <= 100 ? value : 0;
+    if (is_colour_code(digits.run)) return 10 * (digits.run[0] - '0');
+    if (digits.run.size() > 1) continue;
+    const std::string_view group = text.substr(digits.begin, 2);
+    for (const auto& [name, least] : rendering_groups) {
+      if (lower(group) == name) return least;
+    }
+  }
+  return 0;
 }
 
 namespace {

@@ -58,6 +58,13 @@ struct MeasuredPlane {
 /// of which the last may be missing. Azimuths ascend. Errors: ResourceError for any other range.
 std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths);
 
+/// A colour temperature, 1000 to 25000 K, that a text states: "4000", "LED 3000 K", or the last two
+/// digits of "840". 0 = none.
+double kelvin_in(std::string_view text);
+/// Ra that a text states: "80", "CRI 90", "Ra > 80", "1B" (EULUMDAT's groups of DIN 5035), or the
+/// first digit of "840". 0 = none.
+double rendering_in(std::string_view text);
+
 /// Reads an LM-63 file of photometric type A, B or C. Intensities are the candela values times the
 /// multiplier and the ballast factor, and in files of 1986 and 1991 times the ballast-lamp factor:
 /// where the rated lumens of the lamps count, they count already, and in absolute
