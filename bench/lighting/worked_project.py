@@ -39,7 +39,7 @@ MOODS = """{"photile_moods": 1, "moods": {
   "presentation": {"window_row": {"power": 1500}, "inner_row": {"power": 6000, "kelvin": 3000}}}}
 """
 PLANE = ("working plane", "lux", "all lights", "target", "UGR", "Ra")
-FIGURES = ("desks", "eyes", "lux", "all lights", "target", "UGR", "Ra", "wall at", "ceiling", "cylindrical")
+FIGURES = ("desks", "eyes", "lux", "all lights", "target", "UGR", "Ra", "north", "east", "south", "west", "ceiling", "cylindrical")
 
 STEPS = (
     Step("## The room\n\nThe architect's file is an empty room. What is it made of?",

@@ -36,6 +36,9 @@ TEST_CASE("info counts the triangles, materials, lights and extents of a box") {
   CHECK(facts["cameras"].size() == 1);
   CHECK(facts["extents"]["size"] == nlohmann::json::array({2.0, 2.0, 2.0}));
   CHECK(facts["warnings"].empty());
+  REQUIRE(facts["rooms"].size() == 1);
+  CHECK(facts["rooms"][0]["height"].get<double>() == Approx(2).epsilon(0.01));
+  CHECK(facts["rooms"][0]["area"].get<double>() == Approx(4).epsilon(0.01));
 }
 
 TEST_CASE("info gives a lamp's power as pi x area x luminance of its radiance") {

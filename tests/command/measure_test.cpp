@@ -198,8 +198,8 @@ TEST_CASE("a target is judged in the table, the JSON and the report") {
                        "floor+1.2", "--semi-cylindrical-at", "floor+1.2", "--target",
                        "Em=1,Uo=0.999,Ewall=1", "-o", folder / "a.json", "-o", folder / "a.html"}));
   CHECK_THAT(outcome.output, Contains("working plane: Em") && Contains("at least 1: met") &&
-                                 Contains("NOT MET") && Contains("wall at 90 degrees") &&
-                                 Contains("semi-cylindrical at 270 degrees"));
+                                 Contains("NOT MET") && Contains("east wall") &&
+                                 Contains("semi-cylindrical to the west"));
   const auto record = nlohmann::json::parse(folder.read("a.json"));
   CHECK(record["target"]["judgements"][0]["met"] == true);
   CHECK(record["target"]["judgements"][1]["met"] == false);
@@ -244,6 +244,41 @@ TEST_CASE("a report has the project, glare and a year beside its figures, and li
   CHECK_THAT(refusal({"--project", "x"}, 2), Contains("--project") && Contains("-o FILE.html"));
   CHECK_THAT(refusal({"--include", folder.write("b.json", "{}"), "-o", folder / "b.html"}, 3),
              Contains("b.json") && Contains("photile glare"));
+}
+
+TEST_CASE("a report describes the luminaires, their energy and the room, in two languages") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  // 1000 cd downwards, level to the horizon: pi x 1000 lm, taken from 31.4 W: 100 lm/W.
+  folder.write("spot.ies",
+               "IESNA:LM-63-2002\n[MANUFAC] Good & Ltd\n[LUMCAT] GL-1\n[LAMP] LED 3000K 90CRI\n"
+               "TILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 31.41593\n0 45 90\n0\n"
+               "1000 707.107 0\n");
+  folder.write("lamps.json", R"({"name": "new", "file": "spot.ies", "position": [0, 0.9, 0],
+      "count": [2, 1], "spacing": [0.5, 0]})");
+  folder.write("year.json",
+               R"([{"name": "desks", "mean_lux": 812, "DA": 0.6, "sDA": 0.8, "lamps":
+                   [{"name": "new", "kilowatt_hours": 44}],
+                   "EN 17037": {"target_lux": 310, "minimum_target_lux": 120}}])");
+  const auto report = [&](const std::string& language, const std::string& ra) {
+    succeed(measure(
+        scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "--inside", "0,0,0", "--luminaires",
+                folder / "lamps.json", "--include", folder / "year.json", "--language", language,
+                "--target", "Em=1,Ra=" + ra, "-o", folder / "a.html"}));
+    return folder.read("a.html");
+  };
+  const std::string page = report("en", "80");
+  CHECK_THAT(page, Contains("<h2>List of parts</h2>") && Contains("Good &amp; Ltd") &&
+                       Contains("GL-1") && Contains("3000 K") && Contains("cd/klm"));
+  CHECK_THAT(page, Contains("90, by the luminaires&#39; data sheets") ||
+                       Contains("90, by the luminaires' data sheets"));
+  // The box is 2 x 2 m and 2 m high.
+  CHECK_THAT(page, Contains("<dd>2.00 m</dd>") && Contains("<h2>Room</h2>"));
+  CHECK_THAT(page, Contains("<dt>LENI (EN 15193)</dt>") && Contains("44 kWh / a"));
+  CHECK_THAT(page, Contains("W/m2 / 100 lx") && Contains("counter(pages)"));
+  CHECK_THAT(report("de", "95"), Contains("<html lang=\"de\">") && Contains("Stückliste") &&
+                                     Contains("erfüllt") && Contains("nicht erfüllt") &&
+                                     Contains("Nutzebene") && !Contains("not met"));
 }
 
 TEST_CASE("a mood that names an unknown light is refused before anything is measured") {

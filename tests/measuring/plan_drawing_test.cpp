@@ -43,6 +43,8 @@ std::vector<std::string> all(const std::string& text, const std::string& pattern
   return found;
 }
 
+constexpr double begin = 58, metre = 160;  // pixels of the plane's plan
+
 /// Whether a path has all its corners at this x, in pixels.
 void check_runs_at(const std::string& path, double x) {
   const auto corners = all(path, "[ML]([0-9.]+) ");
@@ -80,9 +82,28 @@ TEST_CASE("the isolines of a slope run where the slope has the steps of the stan
   const std::string svg = plan(values, {.scale = 500, .steps = 1});
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
   REQUIRE(lines.size() == 2);
-  // The plan is 560 pixels wide and begins at 20.
-  check_runs_at(lines[0], 20 + 1.0 / 3 * 560);
-  check_runs_at(lines[1], 20 + 1.5 / 3 * 560);
+  // Four pixels a millimetre: at 1:25 a metre is 40 mm. Two rows of dimensions stand on the left.
+  CHECK_THAT(svg, Catch::Contains("slope, 1:25<") && Catch::Contains(">3.00</text>"));
+  check_runs_at(lines[0], begin + 1.0 * metre);
+  check_runs_at(lines[1], begin + 1.5 * metre);
+}
+
+TEST_CASE("a plan has the largest of the draughtsmen's scales at which it fits on a page") {
+  GridValues values = plane("hall", {1, 2, 3, 4, 5, 6});
+  const auto scale_of = [&](double width, double depth) {
+    values.grid.layout->u = {width, 0, 0};
+    values.grid.layout->v = {0, depth, 0};
+    const std::string svg = plan(values, {});
+    const double wide = std::stod(all(svg, "width=\"([0-9.]+)mm\"").front());
+    const double high = std::stod(all(svg, "height=\"([0-9.]+)mm\"").front());
+    CHECK(wide <= 180);
+    CHECK(high <= 190);
+    return all(svg, "hall, 1:([0-9.]+)<").front();
+  };
+  CHECK(scale_of(6, 5) == "50");   // 120 mm of 130
+  CHECK(scale_of(7, 5) == "75");   // 140 mm would not fit
+  CHECK(scale_of(4, 11) == "75");  // by its height
+  CHECK(scale_of(120, 80) == "1000");
 }
 
 TEST_CASE("isolines alone lie in the middles of the legend's steps") {
@@ -91,7 +112,7 @@ TEST_CASE("isolines alone lie in the middles of the legend's steps") {
       plan(values, {.scale = 500, .steps = 1, .contours = report::Contours::lines});
   const auto lines = all(svg, "stroke-width=\"1.5\" d=\"([^\"]*)\"");
   REQUIRE(lines.size() == 1);  // 250 lux
-  check_runs_at(lines[0], 20 + 2.0 / 3 * 560);
+  check_runs_at(lines[0], begin + 2.0 * metre);
 }
 
 TEST_CASE("steps of illuminance are those of EN 12464-1") {
@@ -116,7 +137,7 @@ TEST_CASE("a narrow plan is as wide as its title") {
   GridValues values =
       plane("a plane with a name that is much longer than it is wide", {1, 2, 3, 4, 5});
   values.grid.layout->u = {0.1, 0, 0};
-  const auto width = all(plan(values, {}), "width=\"([0-9]+)\" height");
+  const auto width = all(plan(values, {}), "viewBox=\"0 0 ([0-9]+) ");
   REQUIRE_FALSE(width.empty());
   // The narrowest letters of sans-serif fonts are about half as wide as high.
   CHECK(std::stod(width[0]) > 20 + 0.5 * 14 * 55);

@@ -37,6 +37,17 @@ Scene room_on_a_slab() {
   return builder.build();
 }
 
+TEST_CASE("a room has the size between its floor, its walls and its ceiling") {
+  const auto room = room_size(room_on_a_slab(), glm::dvec3(0.5, 1, 5));
+  REQUIRE(room);
+  CHECK(room->height == Approx(2.5).epsilon(0.005));
+  CHECK(room->floor == Approx(0).margin(0.005));
+  CHECK(room->area == Approx(24).epsilon(0.005));
+  CHECK(room->sides.x == Approx(4).epsilon(0.02));
+  CHECK(room->sides.y == Approx(6).epsilon(0.02));
+  CHECK_THROWS_AS(room_size(room_on_a_slab(), glm::dvec3(9, 1, 5)), UsageError);
+}
+
 /// An L: 4 x 4 m without the quarter x > 2, z > 2; y is up.
 Scene room_like_an_l() {
   test::SceneBuilder builder("L");
@@ -278,9 +289,8 @@ TEST_CASE("each wall has a grid that faces into the room, and so has the ceiling
 
 TEST_CASE("points of a wall that are glass are blank") {
   const auto walls = wall_grids(glazed_room(true), at_middle("floor"));
-  const auto right = std::find_if(walls.begin(), walls.end(), [](const SensorGrid& grid) {
-    return grid.name == "wall at 90 degrees";
-  });
+  const auto right = std::find_if(walls.begin(), walls.end(),
+                                  [](const SensorGrid& grid) { return grid.name == "east wall"; });
   REQUIRE(right != walls.end());
   CHECK_FALSE(right->sensors.empty());
   for (const BlankPoint& blank : right->blanks) CHECK(blank.sensor.position.z < 3.1);
@@ -388,7 +398,7 @@ TEST_CASE("a clearance looks before a wall, not into it") {
       const glm::dvec3& p = sensor.position;
       behind += p.x > 3.9 && p.y < 2 && p.z > 1 && p.z < 3 ? 1 : 0;
     }
-    CHECK((behind > 10) == (grid.name == "wall at 90 degrees"));
+    CHECK((behind > 10) == (grid.name == "east wall"));
     SensorGrid near = grid;
     CHECK(leave_out_furniture(scene, 0.4, near) == 0);
     CHECK(leave_out_furniture(scene, 0.6, grid) >= behind);

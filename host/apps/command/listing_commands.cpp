@@ -14,6 +14,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/foreign_text.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
@@ -164,6 +165,11 @@ struct InfoOptions {
 
 void print_text(const Scene& scene, const LightMix& mix) {
   for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
+  for (const auto& [camera, room] : measuring::rooms_of_cameras(scene)) {
+    std::cout << fmt::format(
+        "room: {:.1f} m2, {:.2f} x {:.2f} m, {:.2f} m high, floor at {:.2f} m, of camera {}\n",
+        room.area, room.sides.x, room.sides.y, room.height, room.floor, scene.cameras[camera].name);
+  }
   for (const auto& line : mesh_summary(scene)) std::cout << line << '\n';
   for (const auto& line : material_summary(scene)) std::cout << line << '\n';
   for (const Camera& camera : scene.cameras) {

@@ -87,7 +87,12 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   const auto add = [&](std::vector<measuring::SensorGrid> more) {
     for (auto& grid : more) grids.push_back(std::move(grid));
   };
-  if (options.walls) add(measuring::wall_grids(scene, plane_at(plane, "floor")));
+  const auto at = [&](const std::string& height) {
+    measuring::WorkingPlane level = plane_at(plane, height);
+    level.north = options.render.load.situation.north_degrees;
+    return level;
+  };
+  if (options.walls) add(measuring::wall_grids(scene, at("floor")));
   if (options.ceiling) {
     grids.push_back(measuring::ceiling_grid(scene, plane_at(plane, "floor")));
   }
@@ -95,7 +100,7 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
     grids.push_back(measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at)));
   }
   if (!options.semi_cylindrical_at.empty()) {
-    add(measuring::semi_cylindrical_grids(scene, plane_at(plane, options.semi_cylindrical_at)));
+    add(measuring::semi_cylindrical_grids(scene, at(options.semi_cylindrical_at)));
   }
   for (auto& grid : grids) clear_of_furniture(plane, scene, grid, progress);
   std::size_t sensors = 0;
@@ -174,7 +179,10 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   outputs.check_picture(scene, progress);
   outputs.write(measurement,
-                {scene, mix, parameters, render.mood.mood, requirement, moods, included});
+                {scene, mix, parameters, render.mood.mood, requirement, moods, included,
+                 outputs.any_report()
+                     ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
+                     : std::nullopt});
   for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
   }

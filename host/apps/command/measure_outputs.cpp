@@ -23,6 +23,7 @@
 #include "report/plan_lines.hpp"
 #include "report/report.hpp"
 #include "report/tables.hpp"
+#include "report/words.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
@@ -167,6 +168,11 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
   text("--project", options.project.name, "name of the project, for the report's head");
   text("--client", options.project.client, "for whom the report is; it ends with lines to sign on");
   text("--designer", options.project.designer, "who answers for it");
+  command.add_option("--language", options.language, "of the report")
+      ->type_name("")
+      ->check(CLI::IsMember(report::languages()))
+      ->capture_default_str()
+      ->group("Output");
   add_false_colour_options(command, options.false_colour);
 }
 
@@ -176,7 +182,8 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
       honeybee_(options.honeybee),
       picture_(options.picture),
       results_(options.results.begin(), options.results.end()),
-      project_(options.project) {
+      project_(options.project),
+      language_(options.language) {
   if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
   const std::map<std::string, std::vector<std::filesystem::path>*> lists{
       {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}, {".pdf", &pdf_}};
@@ -200,7 +207,7 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
     make_folder(honeybee_);
     for (const char* name : report::honeybee_tables) all.push_back(honeybee_ / name);
   }
-  const bool reports = !html_.empty() || !pdf_.empty();
+  const bool reports = any_report();
   const auto only_in_reports = [&](const char* option, bool given) {
     if (!given || reports) return;
     throw UsageError(
@@ -272,14 +279,28 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
                                             report::PlanSize::whole, surroundings[grid]));
     }
   }
-  if (html_.empty() && pdf_.empty()) return;
-  report::ReportText text{run.scene.source.filename().string(),
-                          facts_of(run),
-                          run.requirement,
-                          {lamp_schedule(run.scene, run.mix), reflectances(run.scene)},
-                          run.included.glare,
-                          project_,
-                          {}};
+  if (!any_report()) return;
+  const std::vector<report::Part> parts =
+      report::parts_of(run.scene, lumens_of(run.scene, run.mix));
+  report::ReportText text{
+      run.scene.source.filename().string(),
+      facts_of(run),
+      run.requirement,
+      {lamp_schedule(run.scene, run.mix), list_of_parts(parts), reflectances(run.scene)},
+      run.included.glare,
+      project_};
+  text.language = language_;
+  text.sheets = data_sheets(parts);
+  text.rendering = least_rendering(parts);
+  double area = 0;
+  if (const auto& room = run.room) {
+    area = room->area;
+    text.room = {{"floor area", fmt::format("{:.1f} m2", room->area)},
+                 {"sides", fmt::format("{:.2f} x {:.2f} m", room->sides.x, room->sides.y)},
+                 {"height", fmt::format("{:.2f} m", room->height)}};
+  }
+  text.energy = energy_of(parts, area, measurement.front().total().statistics.mean.value,
+                          run.included.kilowatt_hours);
   text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
   if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
   const std::string page = report::report_html(measurement, text, colours_, surroundings);

@@ -9,6 +9,7 @@
 #include "command/output_files.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
@@ -27,6 +28,7 @@ struct MeasureOutputOptions {
   std::string picture;               ///< EXR for the report, "" = none
   std::vector<std::string> results;  ///< JSON files for the report
   report::ReportProject project;
+  std::string language = "en";   ///< of the report
   bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 
@@ -42,6 +44,7 @@ struct MeasureRun {
   std::optional<measuring::Requirement> requirement = std::nullopt;
   std::filesystem::path moods = {};       ///< file of those that a report shows; "" = none
   report::IncludedResults included = {};  ///< of `included`
+  std::optional<measuring::RoomSize> room = std::nullopt;
 };
 
 class MeasureOutputs {
@@ -68,6 +71,8 @@ class MeasureOutputs {
     return report::included_results(results_, requirement);
   }
 
+  bool any_report() const { return !html_.empty() || !pdf_.empty(); }
+
   /// "lux", or "DF %" of daylight factors.
   const std::string& unit() const { return unit_; }
 
@@ -81,6 +86,7 @@ class MeasureOutputs {
   std::filesystem::path honeybee_, picture_;
   std::vector<std::filesystem::path> results_;
   report::ReportProject project_;
+  std::string language_;
 };
 
 }  // namespace photile::app

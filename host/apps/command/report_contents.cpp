@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "command/scene_report.hpp"
@@ -15,6 +17,7 @@
 #include "report/false_colour.hpp"
 #include "report/plan_lines.hpp"
 #include "report/report.hpp"
+#include "report/tables.hpp"
 #include "scene/surface_models.hpp"
 #include "view/moods.hpp"
 
@@ -37,38 +40,120 @@ std::string png_of(const Image& displayed) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void add_pictures(const LayeredPicture& picture, const std::string& caption,
-                  const report::FalseColour& colours,
-                  std::vector<report::ReportPicture>& pictures) {
-  const Image displayed = tone_map(picture.root(), {});
-  pictures.push_back({caption, png_of(displayed)});
+bool knows_illuminance(const LayeredPicture& picture) {
   constexpr std::size_t with_illuminance = 4;  // beside R, G and B
-  if (picture.lights() == 0 || picture.channel_names(0).size() < with_illuminance) return;
+  return picture.lights() > 0 && picture.channel_names(0).size() >= with_illuminance;
+}
+
+void add_pictures(const LayeredPicture& picture, const std::string& caption,
+                  const ToneMapping& shown, const report::FalseColour& colours,
+                  std::vector<report::ReportPicture>& pictures) {
+  const Image displayed = tone_map(picture.root(), shown);
+  pictures.push_back({caption, png_of(displayed)});
+  if (!knows_illuminance(picture)) return;
   const std::vector<float> lux = report::illuminance_of(picture);
-  pictures.push_back({caption + ": illuminance of the surfaces that are seen, lux",
-                      png_of(report::false_colour_picture(lux, displayed, colours))});
+  pictures.push_back({caption, png_of(report::false_colour_picture(lux, displayed, colours)),
+                      "illuminance of the surfaces that are seen, lux"});
 }
 
 }  // namespace
+
+std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
+  // Radiant watts would be read as those of the mains.
+  const LightGroups groups = light_groups_of(scene);
+  std::vector<double> lumens = powers_of(scene, mix);
+  for (std::size_t i = 0; i < lumens.size(); ++i) {
+    if (mix.lights[groups.group_of[i]].unit == PowerUnit::watt) lumens[i] *= mix.lumen_per_watt;
+  }
+  return lumens;
+}
+
+double least_rendering(const std::vector<report::Part>& parts) {
+  if (parts.empty()) return 0;
+  double least = 100;
+  for (const report::Part& part : parts) least = std::min(least, part.lamp->data().rendering);
+  return least;
+}
 
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix) {
   report::ReportTable table{
       "Luminaires",
       {"number", "name", "kind", "photometric file", "position (x, y, z), m", "luminous flux"},
       {}};
-  const std::vector<double> powers = powers_of(scene, mix);
-  const LightGroups groups = light_groups_of(scene);
+  const std::vector<double> lumens = lumens_of(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    // Radiant watts would be read as those of the mains.
-    const bool watts = mix.lights[groups.group_of[i]].unit == PowerUnit::watt;
-    const double lumens = (watts ? mix.lumen_per_watt : 1) * powers[i];
     table.rows.push_back(
         {std::to_string(i + 1), light.name, kind_name(light),
          light.distribution == none ? "" : scene.distributions[light.distribution].name(),
-         place_text(scene, light), format_power(lumens, PowerUnit::lumen)});
+         place_text(scene, light), format_power(lumens[i], PowerUnit::lumen)});
   }
   return table;
+}
+
+report::ReportTable list_of_parts(const std::vector<report::Part>& parts) {
+  report::ReportTable table{
+      "List of parts",
+      {"pieces", "maker", "article", "luminaire", "luminous flux", "power", "luminous efficacy"},
+      {}};
+  const auto row = [&](std::vector<std::string> cells, double lumens, double watts) {
+    const bool known = watts > 0;
+    cells.push_back(report::grouped(lumens, 4) + " lm");
+    cells.push_back(known ? report::grouped(watts, 4) + " W" : "");
+    cells.push_back(known ? fmt::format("{:.0f} lm/W", lumens / watts) : "");
+    table.rows.push_back(std::move(cells));
+  };
+  std::size_t count = 0;
+  double lumens = 0, watts = 0;
+  for (const report::Part& part : parts) {
+    const LuminaireData& data = part.lamp->data();
+    row({std::to_string(part.count), data.maker, data.article,
+         data.luminaire.empty() ? part.lamp->name() : data.luminaire},
+        part.lumens, part.watts);
+    count += part.count;
+    lumens += part.lumens;
+    watts += part.watts;
+  }
+  if (parts.size() > 1) row({std::to_string(count), "together", "", ""}, lumens, watts);
+  return table;
+}
+
+std::vector<report::DataSheet> data_sheets(const std::vector<report::Part>& parts) {
+  std::vector<report::DataSheet> sheets;
+  for (const report::Part& part : parts) {
+    report::DataSheet sheet{part.lamp->name(), report::data_rows(*part.lamp),
+                            report::polar_curve_svg(*part.lamp)};
+    sheet.rows.insert(sheet.rows.begin(),
+                      {"luminous flux", report::grouped(part.lamp->flux(), 4) + " lm"});
+    sheets.push_back(std::move(sheet));
+  }
+  return sheets;
+}
+
+std::vector<std::pair<std::string, std::string>> energy_of(const std::vector<report::Part>& parts,
+                                                           double area, double mean,
+                                                           double kilowatt_hours) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  double watts = 0;
+  const bool known = std::all_of(parts.begin(), parts.end(), [&](const report::Part& part) {
+    watts += part.watts;
+    return part.watts > 0;
+  });
+  if (known && watts > 0) {
+    rows.emplace_back("power of the luminaires", report::grouped(watts, 4) + " W");
+    if (area > 0) {
+      rows.emplace_back(
+          "power density",
+          fmt::format(
+              "{:.2f} W/m2{}", watts / area,
+              mean > 0 ? fmt::format(", {:.2f} W/m2 / 100 lx", 100 * watts / area / mean) : ""));
+    }
+  }
+  if (kilowatt_hours > 0 && area > 0) {
+    rows.emplace_back("LENI (EN 15193)", fmt::format("{:.1f} kWh/(m2 a), {:.0f} kWh / a",
+                                                     kilowatt_hours / area, kilowatt_hours));
+  }
+  return rows;
 }
 
 report::ReportTable reflectances(const Scene& scene) {
@@ -95,14 +180,28 @@ std::filesystem::path moods_of_report(const std::string& given,
 std::vector<report::ReportPicture> report_pictures(const std::filesystem::path& picture,
                                                    const std::filesystem::path& moods,
                                                    const report::FalseColour& colours) {
-  std::vector<report::ReportPicture> pictures;
-  add_pictures(*relit_picture(picture, {}), "as rendered", colours, pictures);
-  if (moods.empty()) return pictures;
-  const view::Moods kept(moods);
-  const LightMix mix = read_light_mix(picture);
-  for (const std::string& name : kept.names()) {
-    add_pictures(*relit_picture(picture, kept.changes(name, mix)), name, colours, pictures);
+  std::vector<std::pair<std::string, std::unique_ptr<LayeredPicture>>> states;
+  states.emplace_back("as rendered", relit_picture(picture, {}));
+  if (!moods.empty()) {
+    const view::Moods kept(moods);
+    const LightMix mix = read_light_mix(picture);
+    for (const std::string& name : kept.names()) {
+      states.emplace_back(name, relit_picture(picture, kept.changes(name, mix)));
+    }
   }
+  // One exposure and one scale, so that moods can be compared.
+  const Image first = states.front().second->root();
+  const Image* const rendered = &first;
+  const ToneMapping shown = with_one_exposure({}, std::span(&rendered, 1));
+  report::FalseColour scaled = colours;
+  if (!(scaled.scale > 0) && knows_illuminance(*states.front().second)) {
+    for (const auto& [name, state] : states) {
+      scaled.scale = std::max(scaled.scale, report::automatic_top(report::illuminance_of(*state)));
+    }
+    scaled.scale = report::rounded_top(scaled.scale, scaled.steps);
+  }
+  std::vector<report::ReportPicture> pictures;
+  for (const auto& [name, state] : states) add_pictures(*state, name, shown, scaled, pictures);
   return pictures;
 }
 

@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
+#include "report/luminaires.hpp"
 #include "report/report.hpp"
 
 namespace photile::app {
@@ -15,6 +17,25 @@ namespace photile::app {
 /// Lamps with their numbers on the plans, kinds, photometric files, positions in the scene file's
 /// world and powers. Lights of the sky have no position.
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
+
+/// lm of each of the scene's lights.
+std::vector<double> lumens_of(const Scene& scene, const LightMix& mix);
+
+/// The least Ra of all luminaires; 0 where a file states none.
+double least_rendering(const std::vector<report::Part>& parts);
+
+/// Luminaires by their photometric files, with totals.
+report::ReportTable list_of_parts(const std::vector<report::Part>& parts);
+std::vector<report::DataSheet> data_sheets(const std::vector<report::Part>& parts);
+
+/// Name and value: power, watts by square metre, also by 100 lux, and LENI of EN 15193, where they
+/// are known.
+///   area             m2; 0 = not known
+///   mean             lux of the task
+///   kilowatt_hours   a year; 0 = not known
+std::vector<std::pair<std::string, std::string>> energy_of(const std::vector<report::Part>& parts,
+                                                           double area, double mean,
+                                                           double kilowatt_hours);
 
 /// A row for each opaque material that a triangle has, with its luminous reflectance in percent.
 report::ReportTable reflectances(const Scene& scene);

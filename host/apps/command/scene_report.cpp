@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command/terminal_progress.hpp"
+#include "loading/surroundings.hpp"
+#include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
@@ -169,6 +171,20 @@ Extents extents_of(const Scene& scene) {
   return extents;
 }
 
+std::vector<std::string> sky_summary(const LightMix& mix) {
+  const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(mix);
+  double power = 0;
+  std::size_t patches = 0;
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    if (patch_of[i] == none) continue;
+    patches = std::max<std::size_t>(patches, patch_of[i]);
+    power += mix.lights[i].power;
+  }
+  if (patches == 0) return {};
+  return {fmt::format("sky: {} patches and the ground, a light each: {}", patches,
+                      format_power_in_both(power, mix.lights.front().unit, mix.lumen_per_watt))};
+}
+
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
   const Extents extents = extents_of(scene);
   const glm::dvec3 size = extents.size();
@@ -182,14 +198,18 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
                   size.x, size.y, size.z, extents.lowest.x, extents.lowest.y, extents.lowest.z,
                   extents.highest.x, extents.highest.y, extents.highest.z)};
   const std::vector<double> powers = powers_of(scene, mix);
+  const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(mix);
+  const LightGroups groups = light_groups_of(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
+    if (patch_of[groups.group_of[i]] != none) continue;
     const std::string source = source_of(scene, light);
     lines.push_back(fmt::format("light: {}: {}, {}{}{}", light.name, kind_name(light),
                                 format_power_in_both(powers[i], scene.unit, mix.lumen_per_watt),
                                 light.group.empty() ? "" : ", of group " + light.group,
                                 source.empty() ? "" : ", from " + source));
   }
+  for (const std::string& line : sky_summary(mix)) lines.push_back(line);
   for (const MixedLight& group : mix.lights) {
     if (group.members.empty()) continue;
     lines.push_back(fmt::format("group: {}: {}, {}", group.name,
@@ -301,6 +321,7 @@ json scene_json(const Scene& scene, const LightMix& mix) {
               {"lights", json::array()},
               {"groups", json::array()},
               {"cameras", json::array()},
+              {"rooms", json::array()},
               {"warnings", info_warnings(scene, mix)}};
   const std::vector<std::size_t> triangles = triangles_of_materials(scene);
   for (const ImportedMesh& mesh : scene.report.meshes) {
@@ -316,6 +337,13 @@ json scene_json(const Scene& scene, const LightMix& mix) {
   }
   for (const MixedLight& group : mix.lights) {
     if (!group.members.empty()) result["groups"].push_back(group_json(group, mix.lumen_per_watt));
+  }
+  for (const auto& [camera, room] : measuring::rooms_of_cameras(scene)) {
+    result["rooms"].push_back({{"camera", scene.cameras[camera].name},
+                               {"area", room.area},
+                               {"sides", {room.sides.x, room.sides.y}},
+                               {"height", room.height},
+                               {"floor", room.floor}});
   }
   for (const Camera& camera : scene.cameras) {
     result["cameras"].push_back(camera_json(in_world(scene, camera)));

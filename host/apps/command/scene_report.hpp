@@ -24,6 +24,9 @@ const char* kind_name(const Light& light);
 /// Power of each light in the mix; lights of a group change together.
 std::vector<double> powers_of(const Scene& scene, const LightMix& mix);
 
+/// One line for all patches of a sky; none where the mix has no whole sky of patches.
+std::vector<std::string> sky_summary(const LightMix& mix);
+
 /// The counts, every light and every group of lights with its power in `mix`, a line each.
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 

@@ -45,20 +45,6 @@ constexpr int lowest_kelvin = 1500, highest_kelvin = 10'000, kelvin_step = 100;
 
 json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-/// The number of the patch that a layer is, or none; the ground has the last.
-std::vector<std::uint32_t> patch_of_layers(const LightMix& mix) {
-  std::vector<std::uint32_t> patch_of(mix.lights.size(), none);
-  const std::size_t count = loading::patches_of(mix).size();
-  for (std::size_t patch = 0; count > 0 && patch <= count; ++patch) {
-    for (std::size_t i = 0; i < mix.lights.size(); ++i) {
-      if (mix.lights[i].name == loading::sky_light_name(patch, count)) {
-        patch_of[i] = static_cast<std::uint32_t>(patch);
-      }
-    }
-  }
-  return patch_of;
-}
-
 json kelvins() {
   json table;
   for (int kelvin = lowest_kelvin; kelvin <= highest_kelvin; kelvin += kelvin_step) {
@@ -116,7 +102,7 @@ class PageWriter {
 
  private:
   void add_lights() {
-    const std::vector<std::uint32_t> patch_of = patch_of_layers(room_.mix);
+    const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(room_.mix);
     const LightGroups groups = light_groups_of(scene_);
     for (std::size_t i = 0; i < room_.mix.lights.size(); ++i) {
       const MixedLight& light = room_.mix.lights[i];

@@ -306,6 +306,19 @@ std::vector<weather::SkyPatch> patches_of(const LightMix& mix) {
   return {};
 }
 
+std::vector<std::uint32_t> patch_of_layers(const LightMix& mix) {
+  std::vector<std::uint32_t> patch_of(mix.lights.size(), none);
+  const std::size_t count = patches_of(mix).size();
+  for (std::size_t patch = 0; count > 0 && patch <= count; ++patch) {
+    for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+      if (mix.lights[i].name == sky_light_name(patch, count)) {
+        patch_of[i] = static_cast<std::uint32_t>(patch);
+      }
+    }
+  }
+  return patch_of;
+}
+
 std::string sky_light_name(std::size_t light, std::size_t patches) {
   return light < patches ? weather::patch_name(light) : "ground";
 }

@@ -55,6 +55,9 @@ void add_surroundings(Scene& scene, const SceneLoadOptions& options);
 /// The patches that lights of a mix are; none where they are no whole sky.
 std::vector<weather::SkyPatch> patches_of(const LightMix& mix);
 
+/// For each light of a mix the number of the patch that it is, or none; the ground has the last.
+std::vector<std::uint32_t> patch_of_layers(const LightMix& mix);
+
 /// The name of a light of sky_luminances: a patch, or the ground.
 std::string sky_light_name(std::size_t light, std::size_t patches);
 

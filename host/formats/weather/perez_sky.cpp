@@ -9,6 +9,13 @@
 
 namespace photile::weather {
 
+std::string_view compass_point(double degrees) {
+  constexpr std::array<std::string_view, 8> points{"north", "northeast", "east", "southeast",
+                                                   "south", "southwest", "west", "northwest"};
+  const double turns = degrees / 360 - std::floor(degrees / 360);
+  return points[static_cast<std::size_t>(std::lround(8 * turns)) % points.size()];
+}
+
 namespace {
 
 using std::numbers::pi;

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "photile/light_options.hpp"
 
 namespace photile::weather {
+
+/// "north", "northeast", ...: the nearest of eight, clockwise from north.
+std::string_view compass_point(double degrees);
 
 /// True angles, without refraction.
 struct SunPosition {

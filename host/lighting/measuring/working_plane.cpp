@@ -15,6 +15,7 @@
 #include "photile/limits.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
+#include "weather/perez_sky.hpp"
 
 namespace photile::measuring {
 
@@ -195,6 +196,57 @@ double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const t
 
 }  // namespace
 
+namespace {
+
+std::optional<RoomSize> size_of(const RayScene& rays, const trace::PlanAxes& axes,
+                                const trace::Room& room) {
+  const Floor floor = find_floor(rays, axes, &room);
+  if (floor.triangles.empty()) return std::nullopt;
+  const double in_world = floor.height + glm::dot(rays.scene().origin, axes.up);
+  // Cells of which a part lies in the room are not counted: only their share of the rectangle is.
+  const std::vector<glm::dvec3> cells = room.positions();
+  glm::dvec2 low = axes.plan(cells.front()), high = low;
+  for (const glm::dvec3& cell : cells) {
+    low = glm::min(low, axes.plan(cell));
+    high = glm::max(high, axes.plan(cell));
+  }
+  const glm::dvec2 counts = glm::round((high - low) / std::sqrt(room.cell_area())) + 1.0;
+  const double share = static_cast<double>(cells.size()) / (counts.x * counts.y);
+  const glm::dvec2 sides = room.high() - room.low();
+  return RoomSize{share * sides.x * sides.y, ceiling_height(rays, axes, room) - floor.height,
+                  in_world, sides};
+}
+
+}  // namespace
+
+std::optional<RoomSize> room_size(const Scene& scene, const std::optional<glm::dvec3>& inside) {
+  const trace::PlanAxes axes;
+  const RayScene rays(scene);
+  const auto room = trace::Room::meant(rays, axes, inside);
+  return room ? size_of(rays, axes, *room) : std::nullopt;
+}
+
+std::vector<std::pair<std::size_t, RoomSize>> rooms_of_cameras(const Scene& scene) {
+  constexpr std::size_t most_cameras = 16;
+  std::vector<std::pair<std::size_t, RoomSize>> sizes;
+  if (scene.triangle_count() == 0 || scene.cameras.empty()) return sizes;
+  const trace::PlanAxes axes;
+  const RayScene rays(scene);
+  std::vector<trace::Room> rooms;
+  for (std::size_t i = 0; i < std::min(scene.cameras.size(), most_cameras); ++i) {
+    auto room = trace::Room::of_camera(rays, axes, scene.cameras[i]);
+    const auto is_same = [&](const trace::Room& other) {
+      return glm::distance(other.low(), room->low()) + glm::distance(other.high(), room->high()) +
+                 std::abs(other.cut_height() - room->cut_height()) <
+             0.5;  // metres
+    };
+    if (!room || std::any_of(rooms.begin(), rooms.end(), is_same)) continue;
+    if (const auto size = size_of(rays, axes, *room)) sizes.emplace_back(i, *size);
+    rooms.push_back(*std::move(room));
+  }
+  return sizes;
+}
+
 std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane) {
   const trace::PlanAxes axes;
   const RayScene rays(scene);
@@ -213,7 +265,7 @@ std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane
     const glm::dvec2 width = 2.0 * half * along;
     const auto in_space = [&](const glm::dvec2& p) { return p.x * axes.right + p.y * axes.ahead; };
     SensorGrid grid = on_surface(
-        rays, fmt::format("wall at {} degrees", 90 * side),
+        rays, fmt::format("{} wall", weather::compass_point(90 * side - plane.north)),
         layout_of(in_space(corner) + floor * axes.up, in_space(width), height, plane), "no wall");
     grid.role = GridRole::wall;
     if (!grid.sensors.empty()) grids.push_back(std::move(grid));
@@ -251,7 +303,8 @@ std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const Working
   for (int side = 0; side < sides; ++side) {
     const double turn = glm::half_pi<double>() * side;
     SensorGrid grid = over_floor;
-    grid.name = fmt::format("semi-cylindrical at {} degrees", 90 * side);
+    grid.name =
+        fmt::format("semi-cylindrical to the {}", weather::compass_point(90 * side - plane.north));
     grid.role = GridRole::other;
     for (Sensor& sensor : grid.sensors) {
       sensor.response = SensorResponse::semi_cylindrical;

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "measuring/sensor_grid.hpp"
@@ -17,9 +18,23 @@ struct WorkingPlane {
   double height = 0;        ///< metres
   double wall_band = 0;     ///< metres that are left out along the floor's border
   double spacing = 0;       ///< metres; 0 = that of EN 12464-1
+  double north = 0;         ///< degrees of north clockwise from straight ahead (-z), for names
   /// A point in the room, metres in the file's world; none = the first camera tells the room.
   std::optional<glm::dvec3> inside;
 };
+
+/// The room that grids are laid in, as planners describe it.
+struct RoomSize {
+  double area = 0;        ///< m2 of its plan, just below its ceiling
+  double height = 0;      ///< metres from its floor to most of its ceiling
+  double floor = 0;       ///< height of its floor in the file's world
+  glm::dvec2 sides{0.0};  ///< metres of the upright rectangle around its plan
+};
+/// Of the room around `inside`, or of the first camera's; none where the scene has no such room.
+/// Errors: UsageError where the point is in none.
+std::optional<RoomSize> room_size(const Scene& scene, const std::optional<glm::dvec3>& inside);
+/// Those of the first 16 cameras, each once, with the camera's index.
+std::vector<std::pair<std::size_t, RoomSize>> rooms_of_cameras(const Scene& scene);
 
 /// "floor+0.75", "floor", or "1.2": a height in the file's world. Errors: UsageError.
 WorkingPlane parse_working_plane(const std::string& text);
@@ -38,8 +53,8 @@ WorkingPlane parse_working_plane(const std::string& text);
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
 
 /// A grid on each of four walls, at the sides of the upright rectangle around the room's plan, from
-/// the floor to the ceiling, facing into the room; names say the direction in which the wall lies,
-/// clockwise from straight ahead as seen from above. Points with no wall there, or glass, are
+/// the floor to the ceiling, facing into the room; names say by the compass where the wall lies:
+/// "north wall". Points with no wall there, or glass, are
 /// blank. Spacing as in working_plane_grid. Errors: InputError where the scene has no room with a
 /// ceiling; UsageError where the given point is in none.
 std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane);

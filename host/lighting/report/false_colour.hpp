@@ -35,6 +35,10 @@ struct FalseColour {
 /// positive. NaN and infinities do not count.
 double automatic_top(std::span<const float> values);
 
+/// The least number that is not below and whose steps have round middles: 10, 30, 50 ..., or 60,
+/// 180, 300 ...
+double rounded_top(double top, int steps);
+
 /// A FalseColour whose automatic scale ends at `automatic`.
 class ColourScale {
  public:

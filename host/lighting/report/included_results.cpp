@@ -96,6 +96,9 @@ IncludedResults included_results(std::span<const std::filesystem::path> files,
     try {
       if (content.is_array()) {
         results.tables.push_back(daylight_table(content));
+        for (const json& lamp : content.empty() ? json() : content[0].value("lamps", json())) {
+          results.kilowatt_hours += lamp.at("kilowatt_hours").get<double>();
+        }
         continue;
       }
       const json& observers = content.at("observers");

@@ -15,6 +15,8 @@ struct IncludedResults {
   std::vector<ReportTable> tables;
   /// The highest UGR of all observers, where one is required.
   std::optional<measuring::Judgement> glare = std::nullopt;
+  /// A year of the lamps, dimmed to what daylight lacks at the first grid; 0 = not said.
+  double kilowatt_hours = 0;
 };
 
 /// Reads what `photile glare -o FILE.json` and `photile daylight -o FILE.json` have written. Of

@@ -191,20 +191,6 @@ double automatic_scale(const std::vector<double>& all, const Image& b) {
   return rounded_up(*at);
 }
 
-/// Both pictures under one exposure: a above b.
-Image tone_mapped(const Image& a, const Image& b, const ToneMapping& parameters) {
-  Image both;
-  both.width = a.width;
-  both.height = a.height + b.height;
-  for (const char* channel : {"R", "G", "B"}) {
-    std::vector<float> plane = plane_of(a, channel);
-    const std::vector<float>& other = plane_of(b, channel);
-    plane.insert(plane.end(), other.begin(), other.end());
-    both.add(channel) = std::move(plane);
-  }
-  return tone_map(both, parameters);
-}
-
 void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& palette) {
   for (int y = 0; y < height; ++y) {
     const double share = 1 - (y + 0.5) / height;
@@ -232,7 +218,9 @@ Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& o
   }
   const double scale = options.scale > 0 ? options.scale : automatic_scale(differences, b);
   const Palette palette("blue-red");
-  const Image both = tone_mapped(a, b, options.tone_mapping);
+  const std::array pictures{&a, &b};
+  const ToneMapping shared = with_one_exposure(options.tone_mapping, pictures);
+  const std::array displayed{tone_map(a, shared), tone_map(b, shared)};
 
   const int step = a.width + gap;
   Sheet sheet(3 * step + legend_width, title_height + a.height + gap);
@@ -241,9 +229,9 @@ Image draw_comparison(const Image& a, const Image& b, const ComparisonDrawing& o
       const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
                          static_cast<std::size_t>(x);
       for (int panel = 0; panel < 2; ++panel) {
-        const std::size_t at = pixel + (panel == 0 ? 0 : a.pixels());
+        const auto& rgb = displayed[static_cast<std::size_t>(panel)].channels;
         sheet.set(panel * step + x, title_height + y,
-                  std::array{both.channels[0][at], both.channels[1][at], both.channels[2][at]});
+                  std::array{rgb[0][pixel], rgb[1][pixel], rgb[2][pixel]});
       }
       sheet.set(2 * step + x, title_height + y, palette.at(0.5 + 0.5 * differences[pixel] / scale));
     }

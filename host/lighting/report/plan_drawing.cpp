@@ -19,8 +19,24 @@ namespace {
 struct Sizes {
   double longer_side, legend_width, bar_width, least_height;
 };
-constexpr Sizes whole_sizes{560, 130, 22, 200}, small_sizes{190, 75, 14, 130};
+constexpr Sizes whole_sizes{0, 110, 22, 200}, small_sizes{190, 75, 14, 130};
 constexpr double margin = 20, title_height = 48, foot_height = 40;
+/// Beside and below a whole plan: two lines of dimensions.
+constexpr double dimension_step = 16, dimensions_room = 2 * dimension_step + 6;
+/// A whole plan has a scale of draughtsmen, the largest at which it fits on a page of A4 beside its
+/// legend and below its figures.
+constexpr double pixels_per_millimetre = 4, widest = 130, highest = 160;  // millimetres
+
+/// N of 1:N for a drawing of so many metres.
+double drawing_scale(double width, double height) {
+  for (double decade = 1;; decade *= 10) {
+    for (const double step : {1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5}) {
+      const double millimetres = 1000 / (step * decade);
+      if (width * millimetres <= widest && height * millimetres <= highest) return step * decade;
+    }
+  }
+}
+
 constexpr double title_baseline = 20, title_size = 14;
 /// The width of a mean letter in ems, from which the fonts of screens differ little.
 constexpr double letter_width = 0.6;
@@ -44,33 +60,40 @@ class Plan {
         sizes_(small_ ? small_sizes : whole_sizes),
         values_(static_cast<std::size_t>(layout_.columns) * static_cast<std::size_t>(layout_.rows),
                 std::numeric_limits<double>::quiet_NaN()),
-        scale_(options, automatic_top(illuminances(light))) {
+        scale_(options, rounded_top(automatic_top(illuminances(light)), options.steps)) {
     for (std::size_t i = 0; i < layout_.cells.size(); ++i) {
       values_[layout_.cells[i]] = light.sensors[i].value;
     }
     const double around = 2 * surroundings.reach;
     const double u = glm::length(layout_.u) + around, v = glm::length(layout_.v) + around;
-    per_metre_ = sizes_.longer_side / std::max(u, v);
+    drawn_at_ = small_ ? 0 : drawing_scale(u, v);
+    per_metre_ =
+        small_ ? sizes_.longer_side / std::max(u, v) : 1000 * pixels_per_millimetre / drawn_at_;
+    left_ = small_ ? margin : margin + dimensions_room;
     numbered_ = !small_ && values_.size() <= most_numbered_cells;
     width_ = u * per_metre_;
     height_ = v * per_metre_;
     title_ = light.light.empty() ? values.grid.name
              : small_            ? light.light
                                  : values.grid.name + ": " + light.light;
+    if (!small_) title_ += fmt::format(", 1:{:g}", drawn_at_);
   }
 
   std::string draw() {
     const double legend_height = std::max(height_, sizes_.least_height);
     const double title_width = letter_width * title_size * static_cast<double>(title_.size());
     const double width =
-        margin + std::max(width_ + margin + sizes_.legend_width, title_width + margin);
-    const double height = title_height + legend_height + foot_height;
+        left_ + std::max(width_ + margin + sizes_.legend_width, title_width + margin);
+    const double height =
+        title_height + legend_height + foot_height + (small_ ? 0 : dimensions_room);
+    const double in_page = small_ ? 1 : 1 / pixels_per_millimetre;
     add("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-        "width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
+        "width=\"{6:.10g}{7}\" "
+        "height=\"{8:.10g}{7}\" font-family=\"sans-serif\" font-size=\"12\">\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         "<text x=\"{2}\" y=\"{3}\" font-size=\"{4}\">{5}</text>\n",
-        width, height, margin, title_baseline, title_size, escaped_xml(title_));
+        width, height, margin, title_baseline, title_size, escaped_xml(title_),
+        in_page * std::round(width), small_ ? "" : "mm", in_page * std::round(height));
     for (std::size_t cell = 0; cell < values_.size() && numbered_; ++cell) {
       if (!std::isnan(values_[cell])) numbers_.push_back(at(middle_of_cell(cell)));
     }
@@ -82,9 +105,13 @@ class Plan {
     add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" "
         "stroke=\"#000000\"/>\n",
         low.x, high.y, high.x - low.x, low.y - high.y);
-    if (!small_) add_coordinates();
-    add_ruler();
-    add_legend(margin + width_ + margin, legend_height);
+    if (!small_) {
+      add_coordinates();
+      add_dimensions({0, 0}, {layout_.columns, layout_.rows}, 1);
+      if (const auto& room = surroundings_.room) add_dimensions((*room)[0], (*room)[1], 2);
+    }
+    add_ruler(title_height + legend_height + 14 + (small_ ? 0 : dimensions_room));
+    add_legend(left_ + width_ + margin, legend_height);
     add("</svg>\n");
     return std::move(text_);
   }
@@ -99,7 +126,7 @@ class Plan {
   glm::dvec2 at(const glm::dvec2& cells) const {
     const glm::dvec2 metres(cells.x / layout_.columns * glm::length(layout_.u),
                             cells.y / layout_.rows * glm::length(layout_.v));
-    return {margin + (metres.x + surroundings_.reach) * per_metre_,
+    return {left_ + (metres.x + surroundings_.reach) * per_metre_,
             title_height + height_ - (metres.y + surroundings_.reach) * per_metre_};
   }
 
@@ -213,8 +240,12 @@ class Plan {
   }
 
   void add_isolines() {
+    const FineValues fine = refined(values_, layout_.columns, layout_.rows);
     for (const double level : isoline_levels()) {
-      const auto segments = isoline(values_, layout_.columns, layout_.rows, level);
+      auto segments = isoline(fine.values, fine.columns, fine.rows, level);
+      for (auto& segment : segments) {
+        for (glm::dvec2& end : segment) end = fine.in_cells(end);
+      }
       if (segments.empty()) continue;
       const std::string colour =
           options_.contours == Contours::lines ? scale_.hex(level) : "#000000";
@@ -262,15 +293,34 @@ class Plan {
           layout_.origin + layout_.u + layout_.v);
   }
 
+  /// Metres between two corners, below the plan and left of it, in the row `row` from it on.
+  void add_dimensions(const glm::dvec2& low, const glm::dvec2& high, int row) {
+    const glm::dvec2 a = at(low), b = at(high);
+    constexpr double tick = 3;
+    const double y = title_height + height_ + row * dimension_step;
+    const double x = left_ - row * dimension_step;
+    const double right = left_ + width_, top = title_height, bottom = title_height + height_;
+    if (a.x < left_ - 1 || b.x > right + 1 || b.y < top - 1 || a.y > bottom + 1) return;  // beyond
+    add("<path stroke=\"#000000\" stroke-width=\"0.7\" fill=\"none\" d=\""
+        "M{0:.2f} {2:.2f}H{1:.2f}M{0:.2f} {3:.2f}v{4}M{1:.2f} {3:.2f}v{4}"
+        "M{5:.2f} {6:.2f}V{7:.2f}M{8:.2f} {6:.2f}h{4}M{8:.2f} {7:.2f}h{4}\"/>\n",
+        a.x, b.x, y, y - tick, 2 * tick, x, a.y, b.y, x - tick);
+    add("<text x=\"{:.2f}\" y=\"{:.2f}\" font-size=\"10\" text-anchor=\"middle\">{:.2f}</text>\n",
+        0.5 * (a.x + b.x), y - 2, (b.x - a.x) / per_metre_);
+    add("<text x=\"{0:.2f}\" y=\"{1:.2f}\" font-size=\"10\" text-anchor=\"middle\" "
+        "transform=\"rotate(-90 {0:.2f} {1:.2f})\">{2:.2f}</text>\n",
+        x - 2, 0.5 * (a.y + b.y), (a.y - b.y) / per_metre_);
+  }
+
   /// 1, 2 or 5 times a power of ten, a quarter of the plan's width at most.
-  void add_ruler() {
+  void add_ruler(double y) {
     const double most = width_ / per_metre_ / 4;
     const double power = std::pow(10, std::floor(std::log10(most)));
     const double metres = most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
-    const double y = title_height + height_ + 14, end = margin + metres * per_metre_;
+    const double end = left_ + metres * per_metre_;
     add("<path stroke=\"#000000\" stroke-width=\"2\" d=\"M{0:.2f} {2:.2f}H{1:.2f}\"/>\n"
         "<text x=\"{3:.2f}\" y=\"{4:.2f}\">{5:g} m</text>\n",
-        margin, end, y, end + 6, y + 4, metres);
+        left_, end, y, end + 6, y + 4, metres);
   }
 
   void add_legend(double x, double height) {
@@ -295,9 +345,10 @@ class Plan {
   std::vector<double> values_;  ///< per cell; NaN without a sensor
   ColourScale scale_;
   std::string title_, text_;
-  double per_metre_ = 0, width_ = 0, height_ = 0;  ///< pixels
-  bool numbered_ = false;                          ///< whether cells have their values
-  std::vector<glm::dvec2> numbers_;                ///< positions of them, and of levels
+  double per_metre_ = 0, width_ = 0, height_ = 0, left_ = 0;  ///< pixels
+  double drawn_at_ = 0;                                       ///< N of 1:N; 0 of a small plan
+  bool numbered_ = false;                                     ///< whether cells have their values
+  std::vector<glm::dvec2> numbers_;                           ///< positions of them, and of levels
 };
 
 }  // namespace

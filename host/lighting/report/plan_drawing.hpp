@@ -16,8 +16,9 @@ enum class PlanSize {
 
 /// SVG of a plane seen against the direction that it faces, `u` to the right: cells in the colours
 /// of their values, isolines at the steps of EN 12464-1, a legend, a scale in metres, coordinates
-/// of two corners, and what surrounds the plane. `light` is one of values.lights. Needs
-/// values.grid.layout.
+/// of two corners, and what surrounds the plane. A whole one has a scale, such as 1:50, at which it
+/// fits on a page of A4, and the metres of the plane and of the room. `light` is one of
+/// values.lights. Needs values.grid.layout.
 std::string plan_svg(const measuring::GridValues& values, const measuring::LightValues& light,
                      const FalseColour& options, PlanSize size = PlanSize::whole,
                      const PlanSurroundings& surroundings = {});

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "trace/ray_query.hpp"
+#include "trace/room.hpp"
 
 namespace photile::report {
 
@@ -92,6 +93,47 @@ std::vector<Segment> isoline(std::span<const double> values, int columns, int ro
   for_each_square(values, columns, rows,
                   [&](const Square& square) { add_segments(square, level, segments); });
   return segments;
+}
+
+namespace {
+
+/// Between b and c, at a fraction of the way.
+double catmull_rom(double a, double b, double c, double d, double t) {
+  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+}  // namespace
+
+FineValues refined(std::span<const double> values, int columns, int rows) {
+  constexpr int most_per_cell = 8, most_columns = 2000;
+  FineValues fine;
+  fine.per_cell = std::clamp(most_columns / std::max(columns, rows), 1, most_per_cell);
+  fine.columns = (columns - 1) * fine.per_cell + 1;
+  fine.rows = (rows - 1) * fine.per_cell + 1;
+  // Beyond the border, and beside cells without a value, values go on linearly.
+  const auto at = [&](int x, int y) {
+    const bool there = x >= 0 && y >= 0 && x < columns && y < rows;
+    return there ? values[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                          static_cast<std::size_t>(x)]
+                 : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto between = [](double a, double b, double c, double d, double t) {
+    if (t == 0) return b;
+    return catmull_rom(std::isnan(a) ? 2 * b - c : a, b, c, std::isnan(d) ? 2 * c - b : d, t);
+  };
+  const auto along_row = [&](int cell, double t, int y) {
+    return between(at(cell - 1, y), at(cell, y), at(cell + 1, y), at(cell + 2, y), t);
+  };
+  for (int row = 0; row < fine.rows; ++row) {
+    for (int column = 0; column < fine.columns; ++column) {
+      const int x = column / fine.per_cell, y = row / fine.per_cell;
+      const double u = static_cast<double>(column % fine.per_cell) / fine.per_cell;
+      const double v = static_cast<double>(row % fine.per_cell) / fine.per_cell;
+      fine.values.push_back(between(along_row(x, u, y - 1), along_row(x, u, y),
+                                    along_row(x, u, y + 1), along_row(x, u, y + 2), v));
+    }
+  }
+  return fine;
 }
 
 std::vector<Polygon> isoband(std::span<const double> values, int columns, int rows, double low,
@@ -281,6 +323,14 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
     const auto place = place_of(scene, scene.lights[light]);
     if (!place || !frame.shows(frame.cells_of(*place))) continue;
     around.lamps.push_back({light + 1, frame.cells_of(*place)});
+  }
+  const trace::PlanAxes axes;
+  const glm::dvec3 middle = layout.origin + 0.5 * (layout.u + layout.v);
+  if (const auto room = trace::Room::around(rays, axes, middle)) {
+    const auto cells = [&](const glm::dvec2& plan) {
+      return frame.cells_of(plan.x * axes.right + plan.y * axes.ahead);
+    };
+    around.room = Segment{cells(room->low()), cells(room->high())};
   }
   return around;
 }

@@ -25,6 +25,19 @@ using Segment = std::array<glm::dvec2, 2>;
 ///   returns  positions in cells: (0.5, 0.5) is the middle of the first
 std::vector<Segment> isoline(std::span<const double> values, int columns, int rows, double level);
 
+/// Values between the middles of cells by bicubic interpolation (Catmull and Rom, 1974), so that
+/// isolines are smooth: it keeps given values and follows linear ones exactly.
+struct FineValues {
+  std::vector<double> values;  ///< columns x rows, row by row; NaN beside a cell without a value
+  int columns = 0, rows = 0;
+  int per_cell = 1;  ///< steps from one middle to the next
+  /// In cells, of a position among the values as isoline gives it.
+  glm::dvec2 in_cells(const glm::dvec2& position) const {
+    return (position - 0.5) / static_cast<double>(per_cell) + 0.5;
+  }
+};
+FineValues refined(std::span<const double> values, int columns, int rows);
+
 /// Convex polygons that together cover where values lie between two levels. Each square of middles
 /// is four triangles around its middle, whose value is the mean, with linear interpolation in each.
 /// Arguments and positions as above.
@@ -59,6 +72,8 @@ struct PlanSurroundings {
   std::vector<Segment> walls;      ///< where the plane cuts surfaces
   std::vector<Segment> furniture;  ///< outlines of what stands below the plane
   std::vector<LampMark> lamps;     ///< lights with a position, above or below
+  /// Two corners of the upright rectangle around the room, if the plane's middle is in one.
+  std::optional<Segment> room = std::nullopt;
 };
 
 /// The middle of a lamp's surface, or where it is, in the scene's coordinates; nothing of the sky.

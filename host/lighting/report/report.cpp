@@ -18,6 +18,7 @@
 #include "photile/errors.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/tables.hpp"
+#include "report/words.hpp"
 
 namespace photile::report {
 
@@ -27,180 +28,292 @@ constexpr std::size_t most_light_plans = 6;  ///< more do not fit on a page
 
 constexpr const char* style = R"(<style>
 body { font-family: sans-serif; font-size: 10pt; margin: 2em auto; max-width: 60em; color: #222; }
-h1 { font-size: 16pt; } h2 { font-size: 12pt; margin-bottom: 0.3em; }
+h1 { font-size: 18pt; } h2 { font-size: 12pt; margin-bottom: 0.3em; }
+h3 { font-size: 10pt; margin: 0 0 0.3em 0; }
 table { border-collapse: collapse; } th, td { padding: 0.15em 0.7em; text-align: right; }
 th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-align: left; }
-.error { color: #777; font-size: 85%; } .plan svg { max-width: 100%; height: auto; }
+.error { color: #777; font-size: 85%; } .plan svg { max-width: 100%; }
 figure { display: inline-block; width: 48%; margin: 0 1% 0.8em 0; vertical-align: top; }
 img { max-width: 100%; } figcaption { color: #777; }
+.title figure { float: right; width: 52%; margin: 0 0 1em 1em; } .title h2 { clear: none; }
+.about { width: 45%; } .about dt { width: 11em; } .about dd { margin-left: 11em; }
+.end { clear: both; }
 .texts th, .texts td { text-align: left; } .target td { white-space: nowrap; }
-.sign { margin-top: 2.5em; width: 100%; break-inside: avoid; }
-.sign td { text-align: left; width: 33%; padding-right: 3em; padding-top: 2em; }
+.sign { margin-top: 1.5em; width: 100%; break-inside: avoid; }
+.sign td { text-align: left; width: 33%; padding-right: 3em; padding-top: 1.6em; }
 .sign .line { border-top: 1px solid #222; color: #777; padding-top: 0.15em; }
 .lights .plan { display: inline-block; width: 32%; }
-dt { float: left; clear: left; width: 11em; color: #777; } dd { margin: 0 0 0.2em 11em; }
-@page { size: A4; margin: 15mm; }
+.sheet { display: inline-block; width: 48%; margin: 0 1% 1em 0; vertical-align: top; }
+dl { margin: 0.3em 0; }
+dt { float: left; clear: left; width: 13em; color: #777; } dd { margin: 0 0 0.2em 13em; }
+.sheet dt { width: 9em; } .sheet dd { margin-left: 9em; }
 @media print {
   body { margin: 0; max-width: none; font-size: 8.5pt; }
-  h2 { break-after: avoid; } .plan, tr, figure { break-inside: avoid; }
-  .plan svg { width: auto; height: 75mm; } .lights svg { height: 36mm; }
+  h2 { break-after: avoid; } .plan, tr, figure, .sheet { break-inside: avoid; }
+  .grid, .title + section { break-before: page; }
+  .plan svg { max-width: none; } .lights svg { height: 36mm; width: auto; }
 }
-</style>
 )";
 
-std::string cell(const std::string& value, const Measured& measured) {
-  return fmt::format("<td>{} <span class=\"error\">&#177; {}</span></td>", value,
-                     number_text(measured.standard_error, 2));
-}
+/// A report under way, in its language.
+class Page {
+ public:
+  explicit Page(const ReportText& report) : report_(report) {}
 
-std::string lux_cell(const Measured& lux) { return cell(number_text(lux.value, 4), lux); }
+  std::string said(std::string_view english) const { return translated(english, report_.language); }
 
-std::string ratio_cell(const Measured& ratio) {
-  return cell(fmt::format("{:.3f}", ratio.value), ratio);
-}
+  template <class... T>
+  std::string with(std::string_view english, const T&... values) const {
+    return fmt::format(fmt::runtime(said(english)), values...);
+  }
 
-std::string table_row(const measuring::LightValues& light) {
-  const measuring::GridStatistics& s = light.statistics;
-  return fmt::format("<tr><td>{}</td>{}{}{}{}{}</tr>\n",
-                     light.light.empty() ? "all lights" : escaped_xml(light.light),
-                     lux_cell(s.mean), lux_cell(s.minimum), lux_cell(s.maximum),
-                     ratio_cell(s.uniformity), ratio_cell(s.diversity));
-}
+  std::string styles() const {
+    return style +
+           fmt::format(
+               "@page {{ size: A4; margin: 15mm 15mm 18mm 15mm;\n"
+               "  @bottom-left {{ content: \"{}\"; font: 8pt sans-serif; color: #777; }}\n"
+               "  @bottom-right {{ content: \"{} \" counter(page) \" {} \" counter(pages);\n"
+               "    font: 8pt sans-serif; color: #777; }} }}\n</style>\n",
+               css_text(report_.project.name.empty() ? report_.title : report_.project.name),
+               said("page"), said("of"));
+  }
 
-std::string grid_heading(const measuring::SensorGrid& grid) {
-  std::string text = fmt::format("{}: {} points", escaped_xml(grid.name), grid.sensors.size());
-  if (!grid.layout) return text;
-  const measuring::PlaneLayout& layout = *grid.layout;
-  return text + fmt::format(", {:.2f} x {:.2f} m, {:.2f} m apart", glm::length(layout.u),
-                            glm::length(layout.v), layout.spacing());
-}
-
-std::string judgement_row(const measuring::Judgement& judgement) {
-  const bool lux = judgement.figure == "Em";
-  const std::string value = lux ? lux_cell(judgement.measured)
-                            : judgement.figure == "Uo"
-                                ? ratio_cell(judgement.measured)
-                                : fmt::format("<td>{:.1f}</td>", judgement.measured.value);
-  return fmt::format("<tr><td>{}</td><td>{}</td><td>{} {:g}</td>{}<td>{}</td></tr>\n",
-                     escaped_xml(judgement.grid), judgement.figure,
-                     judgement.at_most ? "at most" : "at least", judgement.required, value,
-                     judgement.met() ? "met" : "<b>not met</b>");
-}
-
-/// What is required, and whether it is met.
-std::string target_section(const measuring::Measurement& measurement,
-                           const measuring::Requirement& requirement,
-                           const std::optional<measuring::Judgement>& glare) {
-  std::string text = fmt::format(
-      "<h2>Target: {}</h2>\n<p>{}</p>\n<table class=\"target\">\n<tr><th></th><th></th>"
-      "<th>required</th><th>measured</th><th></th></tr>\n",
-      escaped_xml(requirement.name),
-      escaped_xml(requirement.reference.empty() ? ""
-                                                : requirement.reference + ", " + requirement.what));
-  for (const measuring::GridValues& values : measurement) {
-    for (const measuring::Judgement& judgement : measuring::judge(values, requirement)) {
-      text += judgement_row(judgement);
+  std::string title(const measuring::Measurement& measurement) const {
+    const bool named = !report_.project.name.empty();
+    std::string text = fmt::format(
+        "<section class=\"title\">\n<h1>{}</h1>\n",
+        escaped_xml(named ? report_.project.name : said("Illuminance") + ": " + report_.title));
+    std::vector<std::pair<std::string, std::string>> about;
+    if (report_.project.said()) {
+      about = {{"project", report_.project.name},
+               {"client", report_.project.client},
+               {"designer", report_.project.designer},
+               {"scene", report_.title}};
+      for (const auto& fact : report_.facts) {
+        if (fact.first == "date") about.push_back(fact);
+      }
     }
+    if (!report_.pictures.empty()) text += figure(report_.pictures.front());
+    text += "<div class=\"about\">\n" + list(about, "project");
+    if (!report_.room.empty()) text += heading("Room") + list(report_.room);
+    if (!report_.energy.empty()) text += heading("Energy") + list(report_.energy);
+    text += "</div>\n<div class=\"end\"></div>\n";
+    text += report_.requirement ? target(measurement, *report_.requirement) : summary(measurement);
+    if (report_.project.said()) text += sign();
+    return text + "</section>\n";
   }
-  const auto add_unjudged = [&](const char* figure, const char* limit, double required,
-                                const char* where) {
-    if (!(required > 0)) return;
-    text += fmt::format("<tr><td></td><td>{}</td><td>{} {:g}</td><td>{}</td><td></td></tr>\n",
-                        figure, limit, required, where);
-  };
-  if (glare) {
-    text += judgement_row(*glare);
-  } else {
-    add_unjudged("UGR", "at most", requirement.glare, "see photile glare");
-  }
-  add_unjudged("Ra", "at least", requirement.rendering, "see the lamps' data sheets");
-  return text + "</table>\n";
-}
 
-/// The project, and the date among the facts.
-std::string project_section(const ReportText& report) {
-  const ReportProject& project = report.project;
-  if (!project.said()) return {};
-  std::string text = "<dl class=\"project\">\n";
-  for (const auto& [name, value] :
-       {std::pair("project", project.name), std::pair("client", project.client),
-        std::pair("designer", project.designer)}) {
-    if (value.empty()) continue;
-    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escaped_xml(value));
+  std::string pictures() const {
+    if (report_.pictures.size() < 2) return {};
+    std::string text = "<section class=\"pictures\">\n" + heading("Pictures");
+    for (const ReportPicture& picture : report_.pictures) text += figure(picture);
+    return text + "</section>\n";
   }
-  for (const auto& [name, value] : report.facts) {
-    if (name == "date") text += fmt::format("<dt>date</dt><dd>{}</dd>\n", escaped_xml(value));
-  }
-  return text + "</dl>\n";
-}
 
-/// A line for the designer, and one for the client.
-std::string sign_section(const ReportProject& project) {
-  std::string text = "<table class=\"sign\">\n";
-  for (const auto& [role, name] : {std::pair("designed by", project.designer),
-                                   std::pair("accepted for the client by", project.client)}) {
-    text += fmt::format(
-        "<tr><td>{}</td><td></td><td></td></tr>\n"
-        "<tr><td class=\"line\">{}</td><td class=\"line\">date</td>"
-        "<td class=\"line\">signature</td></tr>\n",
-        name.empty() ? "&#160;" : escaped_xml(name), role);
+  std::string grid(const measuring::GridValues& values, const FalseColour& colours,
+                   const PlanSurroundings& surroundings) const {
+    std::string text = fmt::format(
+        "<section class=\"grid\">\n<h2>{}</h2>\n<table>\n<tr><th></th><th>E<sub>m</sub> {}</th>"
+        "<th>E<sub>min</sub></th><th>E<sub>max</sub></th><th>U<sub>o</sub></th>"
+        "<th>U<sub>d</sub></th></tr>\n",
+        grid_heading(values.grid), said("lux"));
+    for (const measuring::LightValues& light : values.lights) text += light_row(light);
+    const measuring::GridStatistics& s = values.total().statistics;
+    text += "</table>\n";
+    const std::string least = number_text(s.minimum.value, 4),
+                      most = number_text(s.minimum_at_most, 4);
+    if (s.minimum_at_most - s.minimum.value > s.minimum.standard_error) {
+      text += fmt::format(
+          "<p class=\"error\">{}</p>\n",
+          with(
+              "Of many noisy values the least is too low: the true E<sub>min</sub> lies between {} "
+              "and {} lux.",
+              least, most));
+    }
+    if (!values.grid.layout) return text + "</section>\n";
+    text += "<div class=\"plan\">\n" +
+            plan_svg(values, values.total(), colours, PlanSize::whole, surroundings) + "</div>\n";
+    if (values.lights.size() == 1 || values.lights.size() > most_light_plans + 1) {
+      return text + "</section>\n";
+    }
+    text += "<div class=\"lights\">\n";
+    FalseColour each = colours;
+    each.scale = 0;  // its own: a weak lamp would show nothing on the scale of all
+    for (std::size_t i = 1; i < values.lights.size(); ++i) {
+      text += "<div class=\"plan\">\n" +
+              plan_svg(values, values.lights[i], each, PlanSize::small, surroundings) + "</div>\n";
+    }
+    return text + "</div>\n</section>\n";
   }
-  return text + "</table>\n";
-}
 
-std::string picture_section(const std::vector<ReportPicture>& pictures) {
-  if (pictures.empty()) return {};
-  std::string text = "<h2>Pictures</h2>\n<div class=\"pictures\">\n";
-  for (const ReportPicture& picture : pictures) {
-    text += fmt::format(
+  std::string table(const ReportTable& table) const {
+    if (table.rows.empty()) return {};
+    std::string text = heading(table.heading) + "<table class=\"texts\">\n<tr>";
+    for (const std::string& column : table.columns) {
+      text += fmt::format("<th>{}</th>", escaped_xml(said(column)));
+    }
+    text += "</tr>\n";
+    for (const auto& row : table.rows) {
+      text += "<tr>";
+      for (const std::string& value : row) {
+        text += fmt::format("<td>{}</td>", escaped_xml(said(value)));
+      }
+      text += "</tr>\n";
+    }
+    return text + "</table>\n";
+  }
+
+  std::string sheets() const {
+    std::string text;
+    for (const DataSheet& sheet : report_.sheets) {
+      text += fmt::format("<div class=\"sheet\">\n<h3>{}</h3>\n{}{}</div>\n",
+                          escaped_xml(sheet.heading), sheet.drawing, list(sheet.rows));
+    }
+    return text;
+  }
+
+  std::string heading(std::string_view english) const {
+    return fmt::format("<h2>{}</h2>\n", escaped_xml(said(english)));
+  }
+
+  std::string list(const std::vector<std::pair<std::string, std::string>>& pairs,
+                   std::string_view kind = "facts") const {
+    std::string text;
+    for (const auto& [name, value] : pairs) {
+      if (value.empty()) continue;
+      text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped_xml(said(name)),
+                          escaped_xml(said(value)));
+    }
+    return text.empty() ? text : fmt::format("<dl class=\"{}\">\n{}</dl>\n", kind, text);
+  }
+
+ private:
+  /// Within a string of a style sheet within a page.
+  static std::string css_text(const std::string& text) {
+    std::string safe;
+    for (const char c : utf8_of(text)) {
+      const auto byte = static_cast<unsigned char>(c);
+      const bool plain = byte >= 0x20 && std::string_view("\"\\<>&").find(c) == std::string::npos;
+      safe += plain ? std::string(1, c) : fmt::format("\\{:x} ", byte);
+    }
+    return safe;
+  }
+
+  static std::string cell(const std::string& value, const Measured& measured) {
+    return fmt::format("<td>{} <span class=\"error\">&#177; {}</span></td>", value,
+                       number_text(measured.standard_error, 2));
+  }
+  static std::string lux_cell(const Measured& lux) { return cell(number_text(lux.value, 4), lux); }
+  static std::string ratio_cell(const Measured& ratio) {
+    return cell(fmt::format("{:.3f}", ratio.value), ratio);
+  }
+
+  std::string light_row(const measuring::LightValues& light) const {
+    const measuring::GridStatistics& s = light.statistics;
+    return fmt::format("<tr><td>{}</td>{}{}{}{}{}</tr>\n",
+                       escaped_xml(light.light.empty() ? said("all lights") : light.light),
+                       lux_cell(s.mean), lux_cell(s.minimum), lux_cell(s.maximum),
+                       ratio_cell(s.uniformity), ratio_cell(s.diversity));
+  }
+
+  std::string grid_heading(const measuring::SensorGrid& grid) const {
+    std::string text = with("{}: {} points", said(grid.name), grid.sensors.size());
+    if (grid.layout) {
+      const measuring::PlaneLayout& layout = *grid.layout;
+      text += with(", {:.2f} x {:.2f} m, {:.2f} m apart", glm::length(layout.u),
+                   glm::length(layout.v), layout.spacing());
+    }
+    return escaped_xml(text);
+  }
+
+  std::string judgement_row(const measuring::Judgement& judgement) const {
+    const std::string value = judgement.figure == "Em" ? lux_cell(judgement.measured)
+                              : judgement.figure == "Uo"
+                                  ? ratio_cell(judgement.measured)
+                                  : fmt::format("<td>{:.1f}</td>", judgement.measured.value);
+    return fmt::format("<tr><td>{}</td><td>{}</td><td>{} {:g}</td>{}<td>{}</td></tr>\n",
+                       escaped_xml(said(judgement.grid)), judgement.figure,
+                       said(judgement.at_most ? "at most" : "at least"), judgement.required, value,
+                       met(judgement.met()));
+  }
+
+  std::string met(bool is) const { return is ? said("met") : "<b>" + said("not met") + "</b>"; }
+
+  /// What is required, and whether it is met.
+  std::string target(const measuring::Measurement& measurement,
+                     const measuring::Requirement& requirement) const {
+    std::string text = fmt::format(
+        "<h2>{}: {}</h2>\n<p>{}</p>\n<table class=\"target\">\n<tr><th></th><th></th><th>{}</th>"
+        "<th>{}</th><th></th></tr>\n",
+        said("Key figures"), escaped_xml(requirement.name),
+        escaped_xml(
+            requirement.reference.empty() ? "" : requirement.reference + ", " + requirement.what),
+        said("required"), said("measured"));
+    for (const measuring::GridValues& values : measurement) {
+      for (const measuring::Judgement& judgement : measuring::judge(values, requirement)) {
+        text += judgement_row(judgement);
+      }
+    }
+    const auto add = [&](const char* figure, const char* limit, double required,
+                         const std::string& value, const std::string& verdict) {
+      if (!(required > 0)) return;
+      text += fmt::format("<tr><td></td><td>{}</td><td>{} {:g}</td><td>{}</td><td>{}</td></tr>\n",
+                          figure, said(limit), required, value, verdict);
+    };
+    if (report_.glare) {
+      text += judgement_row(*report_.glare);
+    } else {
+      add("UGR", "at most", requirement.glare, said("see photile glare"), "");
+    }
+    const double ra = report_.rendering;
+    add("Ra", "at least", requirement.rendering,
+        ra > 0 ? fmt::format("{:g}, {}", ra, said("by the luminaires' data sheets"))
+               : said("see the luminaires' data sheets"),
+        ra > 0 ? met(ra >= requirement.rendering) : "");
+    return text + "</table>\n";
+  }
+
+  /// The figures of all grids, where nothing is required.
+  std::string summary(const measuring::Measurement& measurement) const {
+    std::string text = heading("Key figures") +
+                       fmt::format(
+                           "<table class=\"target\">\n<tr><th></th><th>E<sub>m</sub> {}</th>"
+                           "<th>U<sub>o</sub></th></tr>\n",
+                           said("lux"));
+    for (const measuring::GridValues& values : measurement) {
+      const measuring::GridStatistics& s = values.total().statistics;
+      text += fmt::format("<tr><td>{}</td>{}{}</tr>\n", escaped_xml(said(values.grid.name)),
+                          lux_cell(s.mean), ratio_cell(s.uniformity));
+    }
+    return text + "</table>\n";
+  }
+
+  /// A line for the designer, and one for the client.
+  std::string sign() const {
+    std::string text = "<table class=\"sign\">\n";
+    for (const auto& [role, name] :
+         {std::pair("designed by", report_.project.designer),
+          std::pair("accepted for the client by", report_.project.client)}) {
+      text += fmt::format(
+          "<tr><td>{}</td><td></td><td></td></tr>\n"
+          "<tr><td class=\"line\">{}</td><td class=\"line\">{}</td>"
+          "<td class=\"line\">{}</td></tr>\n",
+          name.empty() ? "&#160;" : escaped_xml(name), said(role), said("date"), said("signature"));
+    }
+    return text + "</table>\n";
+  }
+
+  std::string figure(const ReportPicture& picture) const {
+    return fmt::format(
         "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"/>"
         "<figcaption>{0}</figcaption></figure>\n",
-        escaped_xml(picture.caption), base64(picture.png));
+        escaped_xml(said(picture.caption) +
+                    (picture.values.empty() ? "" : ": " + said(picture.values))),
+        base64(picture.png));
   }
-  return text + "</div>\n";
-}
 
-std::string table_section(const ReportTable& table) {
-  if (table.rows.empty()) return {};
-  std::string text =
-      fmt::format("<h2>{}</h2>\n<table class=\"texts\">\n<tr>", escaped_xml(table.heading));
-  for (const std::string& column : table.columns) {
-    text += fmt::format("<th>{}</th>", escaped_xml(column));
-  }
-  text += "</tr>\n";
-  for (const auto& row : table.rows) {
-    text += "<tr>";
-    for (const std::string& value : row) text += fmt::format("<td>{}</td>", escaped_xml(value));
-    text += "</tr>\n";
-  }
-  return text + "</table>\n";
-}
-
-std::string section(const measuring::GridValues& values, const FalseColour& colours,
-                    const PlanSurroundings& surroundings) {
-  std::string text = fmt::format(
-      "<h2>{}</h2>\n<table>\n<tr><th></th><th>E<sub>m</sub> lux</th><th>E<sub>min</sub></th>"
-      "<th>E<sub>max</sub></th><th>U<sub>o</sub></th><th>U<sub>d</sub></th></tr>\n",
-      grid_heading(values.grid));
-  for (const measuring::LightValues& light : values.lights) text += table_row(light);
-  const measuring::GridStatistics& s = values.total().statistics;
-  text += fmt::format(
-      "</table>\n<p class=\"error\">Noise pulls the least value down: the true E<sub>min</sub> is "
-      "expected between {} and {} lux, up to the errors above.</p>\n",
-      number_text(s.minimum.value, 4), number_text(s.minimum_at_most, 4));
-  if (!values.grid.layout) return text;
-  text += "<div class=\"plan\">\n" +
-          plan_svg(values, values.total(), colours, PlanSize::whole, surroundings) + "</div>\n";
-  if (values.lights.size() == 1 || values.lights.size() > most_light_plans + 1) return text;
-  text += "<div class=\"lights\">\n";
-  FalseColour each = colours;
-  each.scale = 0;  // its own: a weak lamp would show nothing on the scale of all
-  for (std::size_t i = 1; i < values.lights.size(); ++i) {
-    text += "<div class=\"plan\">\n" +
-            plan_svg(values, values.lights[i], each, PlanSize::small, surroundings) + "</div>\n";
-  }
-  return text + "</div>\n";
-}
+  const ReportText& report_;
+};
 
 }  // namespace
 
@@ -223,24 +336,19 @@ std::string base64(std::string_view bytes) {
 std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,
                         const std::vector<PlanSurroundings>& surroundings) {
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{0}</title>\n"
-      "{1}</head>\n<body>\n<h1>Illuminance: {0}</h1>\n",
-      escaped_xml(text.title), style);
-  page += project_section(text);
-  if (text.requirement) page += target_section(measurement, *text.requirement, text.glare);
-  page += picture_section(text.pictures);
+  const Page page(text);
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"{2}\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<title>{0}</title>\n{1}</head>\n<body>\n",
+      escaped_xml(text.title), page.styles(), text.language);
+  html += page.title(measurement) + page.pictures();
   for (std::size_t grid = 0; grid < measurement.size(); ++grid) {
-    page += section(measurement[grid], colours, surroundings[grid]);
+    html += page.grid(measurement[grid], colours, surroundings[grid]);
   }
-  for (const ReportTable& table : text.tables) page += table_section(table);
-  page += "<h2>How it was measured</h2>\n<dl>\n";
-  for (const auto& [name, value] : text.facts) {
-    page += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped_xml(name), escaped_xml(value));
-  }
-  page += "</dl>\n";
-  if (text.project.said()) page += sign_section(text.project);
-  return page + "</body>\n</html>\n";
+  html += "<section class=\"grid\">\n";
+  for (const ReportTable& table : text.tables) html += page.table(table);
+  html += page.sheets() + page.heading("How it was measured") + page.list(text.facts);
+  return html + "</section>\n</body>\n</html>\n";
 }
 
 namespace {

@@ -1,4 +1,4 @@
-// A measurement on one page, for people who plan light, and HTML pages as PDF.
+// A measurement as pages for people who plan light, and HTML pages as PDF.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,15 @@ struct ReportTable {
 /// A picture with what it shows.
 struct ReportPicture {
   std::string caption;
-  std::string png;  ///< bytes of the file
+  std::string png;          ///< bytes of the file
+  std::string values = {};  ///< that its colours stand for; "" = a picture as it looks
+};
+
+/// A luminaire as its photometric file describes it.
+struct DataSheet {
+  std::string heading;
+  std::vector<std::pair<std::string, std::string>> rows;  ///< name and value
+  std::string drawing;                                    ///< SVG
 };
 
 /// What a report is for, and who answers for it; "" = not said.
@@ -44,12 +52,18 @@ struct ReportText {
       std::nullopt;  ///< the highest UGR, beside the requirement
   ReportProject project = {};
   std::vector<ReportPicture> pictures = {};
+  std::vector<std::pair<std::string, std::string>> room = {};    ///< name and value
+  std::vector<std::pair<std::string, std::string>> energy = {};  ///< name and value
+  std::vector<DataSheet> sheets = {};
+  double rendering = 0;  ///< the least Ra that all luminaires' files state; 0 = some states none
+  std::string language = "en";
 };
 
-/// An HTML page that needs no other file: the project, what is required and whether it is met, the
-/// pictures, the figures of each grid with their errors, false-colour plans of all lights together
-/// and of each, the tables, the facts and, where a project is named, lines to sign on. Well-formed
-/// XML; prints on A4.
+/// An HTML page that needs no other file and prints on numbered pages of A4: a title page with the
+/// project, a picture, what is required and whether it is met, the room, its energy and, where a
+/// project is named, lines to sign on; the pictures; a page for each grid with its figures, their
+/// errors and false-colour plans of all lights together and of each; the tables, the data sheets,
+/// the facts. Well-formed XML.
 ///   surroundings   of each grid's plane, in the order of the grids
 std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,

@@ -48,6 +48,13 @@ Json sensor_json(const measuring::GridValues& values, std::size_t sensor) {
   return entry;
 }
 
+/// Of UTF-8.
+std::size_t letters_in(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
+  }));
+}
+
 std::string lux_with_error(const Measured& measured) {
   return fmt::format("{:>9} +-{:<8}", number_text(measured.value, 4),
                      number_text(measured.standard_error, 2));
@@ -58,6 +65,36 @@ std::string ratio_with_error(const Measured& measured) {
 }
 
 }  // namespace
+
+std::string grouped(double value, int digits) {
+  std::string text = number_text(value, digits);
+  const std::size_t sign = text.starts_with('-') ? 1 : 0;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", sign), text.size());
+  constexpr std::size_t most_ungrouped = 4;
+  if (end - sign <= most_ungrouped) return text;
+  for (std::size_t place = end; place > sign + 3;) text.insert(place -= 3, 1, ',');
+  return text;
+}
+
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], letters_in(row[i]));
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& row : rows) {
+    std::string& line = lines.emplace_back();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string blanks(widths[i] - letters_in(row[i]), ' ');
+      line += i == 0 ? row[i] + blanks : "  " + blanks + row[i];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+  }
+  return lines;
+}
 
 std::string measurement_csv(const measuring::Measurement& measurement, const std::string& unit) {
   std::string text = fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));

@@ -41,6 +41,9 @@ inline std::string number_text(double value, int digits) {
   return fmt::format("{:.{}g}", value, digits);
 }
 
+/// The same with groups of three from 10,000 on: "0.5857", "6000", "11,990".
+std::string grouped(double value, int digits);
+
 /// A value with so many digits as its standard error leaves meaning, which is given with one:
 /// "230 +-30". Without an error, four digits.
 inline std::string text_with_error(double value, double error) {
@@ -56,6 +59,10 @@ inline nlohmann::ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.
 inline nlohmann::ordered_json measured_json(const Measured& measured) {
   return {{"value", measured.value}, {"standard_error", measured.standard_error}};
 }
+
+/// Rows in columns that are as wide as their widest text, two blanks apart; the first is aligned to
+/// the left, all others to the right.
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows);
 
 /// A line for each sensor, with a heading: grid, point (from 0), x, y, z, dx, dy, dz, lux,
 /// standard_error; with several lights also `lux <light>` and `standard_error <light>` of each.
