@@ -80,16 +80,23 @@ std::string_view name_of(DisplayView view);
 inline constexpr std::array all_display_views = {DisplayView::neutral, DisplayView::standard};
 
 struct ToneMapping {
-  bool automatic_exposure = true;  ///< scale so that the log-average luminance becomes mid grey
+  bool automatic_exposure = true;        ///< scale so that the log-average luminance becomes 0.36
   double exposure = defaults::exposure;  ///< stops on top
   DisplayView view = DisplayView::neutral;
+  /// Linear Rec.709 of light that is shown as white, each above 0; luminance 1.
+  std::array<float, 3> white = {1, 1, 1};
 };
 
-/// Factor that brings the log-average luminance of R, G, B to mid grey, over pixels of finite
+/// Factor that brings the log-average luminance of R, G, B to 0.36 of white, over pixels of finite
 /// positive luminance within a factor of 20 of their median (Reinhard et al., "Photographic tone
 /// reproduction for digital images", 2002, without the outliers: lights and black backgrounds). 1
 /// where no pixel has any. Errors: InputError where there is no R, G or B.
 double automatic_exposure(const Image& scene_referred);
+/// The same of several pictures together.
+double automatic_exposure(std::span<const Image* const> scene_referred);
+
+/// With the automatic exposure of several pictures together as stops, so that they can be compared.
+ToneMapping with_one_exposure(ToneMapping parameters, std::span<const Image* const> scene_referred);
 
 /// Root R, G, B to display-referred values in [0,1], still linear; `write_png` applies the sRGB
 /// curve. Every pixel keeps its hue. NaN and negative values count as 0.

@@ -156,11 +156,28 @@ std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
 /// The whole picture: root and all layers.
 Image to_image(const LayeredPicture& picture);
 
+/// How layers of lights are kept in a file.
+enum class LayerPrecision {
+  whole,  ///< every bit
+  /// 11 significant bits, as half floats have, with the range of floats: within 0.05% of each
+  /// value, and half the size, for the bits that are 0 are packed.
+  half,
+  /// OpenEXR's lossy DWAA of the whole file, root and illuminance included, for looking at: values
+  /// end at 65504. Pictures of several parts have `half`.
+  dwaa
+};
+inline constexpr std::array all_layer_precisions = {LayerPrecision::whole, LayerPrecision::half,
+                                                    LayerPrecision::dwaa};
+/// "float", "half", "dwaa".
+std::string_view name_of(LayerPrecision precision);
+
 /// Writes a scan-line EXR of 32-bit floats: a single part with up to limits::max_single_part_lights
 /// lights; with more, a part for the root and one for each light. Row by row, through a temporary
 /// name and a rename. Errors: OutputError naming the file; an existing file is kept then. Those of
 /// `read`.
-void write_exr(const std::filesystem::path& file, const LayeredPicture& picture);
+///   precision   of the layers; the root is never rounded
+void write_exr(const std::filesystem::path& file, const LayeredPicture& picture,
+               LayerPrecision precision = LayerPrecision::whole);
 
 /// The view as Radiance's pictures tell it ("-vta -vp 0 0 1.2 -vd 0 1 0 -vu 0 0 1 -vh 180 -vv
 /// 180"), for a film of width x height pixels. Empty where Radiance has no such view: a whole

@@ -153,7 +153,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         exposure : float
             Stops, on top of the automatic exposure.
         automatic : bool
-            Scale so that the log-average luminance becomes mid grey; else 1 cd/m2 is white.
+            Scale so that the log-average luminance becomes 0.36 of white; else 1 cd/m2 is white.
         view : {"neutral", "standard"}
             Khronos PBR Neutral, or the sRGB curve alone.
 

@@ -103,6 +103,38 @@ TEST_CASE("render projects as it is told, black beyond the circle of a fisheye")
   CHECK((folder.read("a.hdr").find("VIEW=") == std::string::npos) == sphere);
 }
 
+TEST_CASE("a camera may be a view of Radiance: that of a picture shows the same again") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto render = [&](const std::string& name, const std::vector<std::string>& more) {
+    succeed(typed("render", scene, "-o", folder / name,
+                  "--photons 10k --size 24x24 --quality draft", more));
+    return read_image(folder / name);
+  };
+  for (const std::string projection : {"perspective", "fisheye", "angular", "orthographic"}) {
+    INFO(projection);
+    const Image first = render("a.exr", {"--eye", "0.3,0.2,0.5", "--look-at", "0,-0.4,-1",
+                                         "--projection", projection, "--field-of-view", "1.5"});
+    const std::string view =
+        folder.write("a.vf", "rvu " + first.attributes.at("photile.view") + "\n");
+    const Image second = render("b.exr", {"--camera", view});
+    for (std::size_t i = 0; i < first.pixels(); ++i) {
+      REQUIRE((*second.find("G"))[i] == Approx((*first.find("G"))[i]).epsilon(1e-3));
+    }
+  }
+  const auto refusal = [&](const std::string& text) {
+    return only_error(run_photile({"render", scene, "-q", "-o", folder / "c.exr", "--camera",
+                                   folder.write("c.vf", text)}),
+                      3);
+  };
+  CHECK_THAT(refusal("hello\n"), Contains("c.vf: is no view"));
+  CHECK_THAT(refusal("-vtc\n"), Contains("-vtc"));
+  CHECK_THAT(refusal("-vp 1 2\n"), Contains("-vp has no number"));
+  CHECK_THAT(refusal("-vs 0.5\n"), Contains("shifted"));
+  CHECK_THAT(refusal("-vd 0 0 1\n"), Contains("-vd and -vu"));
+  CHECK_THAT(refusal("-vv 200\n"), Contains("at most 179"));
+}
+
 TEST_CASE("a field of view has to fit its projection") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

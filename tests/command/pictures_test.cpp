@@ -11,6 +11,7 @@
 #include "box_scene.hpp"
 #include "child_process.hpp"
 #include "file_folder.hpp"
+#include "image/display.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "report/palette.hpp"
@@ -143,6 +144,102 @@ TEST_CASE("two moods of a picture are compared by their levels") {
   CHECK_THAT(only_error(run_photile({"compare", picture, "--mood", "bright", "--mood", "dim"}), 2),
              Contains("'dim'") && Contains("'half'"));
   CHECK_THAT(only_error(run_photile({"compare", picture}), 2), Contains("second picture"));
+}
+
+TEST_CASE("moods are put on one sheet with one exposure") {
+  const FileFolder folder;
+  const std::string picture = render_box(folder, "a.exr", {}, "128x128");
+  folder.write("a.moods.json", R"({"photile_moods": 1, "moods": {
+      "bright": {"left": {"power": 20, "unit": "W"}, "right": {"on": false}},
+      "dim": {"left": {"power": 5, "unit": "W"}, "right": {"on": false}}}})");
+  succeed({"relight", picture, "--sheet", folder / "all.png", "--view", "standard", "--exposure",
+           "-2"});
+  const Image sheet = read_image(folder / "all.png");
+  const Image one = read_image(picture);
+  CHECK(sheet.width > 2 * one.width);
+  CHECK(sheet.height < 2 * one.height);
+  // Walls of both, away from their names: as bright as their powers.
+  const auto& shown = *sheet.find("R");
+  const int gap = (sheet.width - 2 * one.width) / 3;
+  int compared = 0;
+  for (int y = 10; y < 90; ++y) {
+    for (int x = 10; x < one.width; ++x) {
+      const auto at = static_cast<std::size_t>(y * sheet.width + x);
+      const auto beside = at + static_cast<std::size_t>(one.width + gap);
+      const double bright = image::linear_from_srgb(static_cast<double>(shown[at]));
+      const double dim = image::linear_from_srgb(static_cast<double>(shown[beside]));
+      if (bright > 0.9 || bright < 0.1) continue;
+      CHECK(bright == Approx(4 * dim).epsilon(0.05));  // of 8 bits
+      ++compared;
+    }
+  }
+  CHECK(compared > 100);
+  succeed({"relight", picture, "--mood", "dim", "--mood", "bright", "--mood", "dim", "--sheet",
+           folder / "three.png"});
+  CHECK(read_image(folder / "three.png").height > 2 * one.height);
+  CHECK_THAT(only_error(run_photile({"relight", picture, "--mood", "dim", "--mood", "bright", "-o",
+                                     folder / "x.png"}),
+                        2),
+             Contains("--sheet"));
+}
+
+TEST_CASE("white balance makes the light of all lamps white in PNGs, and changes no EXR") {
+  const FileFolder folder;
+  const std::string picture = render_box(folder, "a.exr");
+  const std::vector<std::string> warm{"relight", picture,       "--light", "left=2700K",
+                                      "--light", "right=2700K", "-o"};
+  const auto write = [&](std::vector<std::string> words, const std::string& name,
+                         const std::string& balance) {
+    words.insert(words.end(), {folder / name, "--set", "white_balance=" + balance});
+    succeed(words);
+    return read_image(folder / name);
+  };
+  const auto blue_over_red = [](const Image& image) {
+    double red = 0, blue = 0;
+    for (const float value : *image.find("R")) red += value;
+    for (const float value : *image.find("B")) blue += value;
+    return blue / red;
+  };
+  succeed({"relight", picture, "--light", "left=6504K", "--light", "right=6504K", "-o",
+           folder / "white.png"});
+  const double plain = blue_over_red(read_image(folder / "white.png"));
+  CHECK(blue_over_red(write(warm, "off.png", "off")) < 0.6 * plain);
+  CHECK(blue_over_red(write(warm, "on.png", "on")) == Approx(plain).epsilon(0.05));
+  CHECK(write(warm, "off.exr", "off").channels == write(warm, "on.exr", "on").channels);
+}
+
+TEST_CASE("layers of 11 bits are near to those of 24, in less room, and lossy ones in less still") {
+  const FileFolder folder;
+  const std::string whole = render_box(folder, "a.exr");
+  const auto written = [&](const std::string& how) {
+    succeed({"relight", whole, "--set", "exr=" + how, "-o", folder / (how + ".exr")});
+    return read_image(folder / (how + ".exr"));
+  };
+  const Image exact = read_image(whole);
+  CHECK(written("float").channels == exact.channels);
+  const Image half = written("half");
+  CHECK(*half.find("G") == *exact.find("G"));  // the root keeps all
+  const std::vector<float>&a = *exact.find("Combined_left.G"), &b = *half.find("Combined_left.G");
+  CHECK(a != b);
+  for (std::size_t i = 0; i < a.size(); ++i) REQUIRE(b[i] == Approx(a[i]).epsilon(1.0 / 2048));
+  const Image lossy = written("dwaa");
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    REQUIRE((*lossy.find("Combined_left.G"))[i] == Approx(a[i]).epsilon(0.2).margin(1));
+  }
+  const auto size = [&](const char* name) {
+    return static_cast<double>(std::filesystem::file_size(folder / name));
+  };
+  CHECK(size("half.exr") < 0.8 * size("float.exr"));
+  CHECK(size("dwaa.exr") < size("half.exr"));
+}
+
+TEST_CASE("a sky of patches is one line of the lights") {
+  const FileFolder folder;
+  const std::string picture = render_box(folder, "a.exr", {"--sky", "patches=145"});
+  const std::string listed = succeed({"relight", picture}).output;
+  CHECK_THAT(listed, Contains("sky: 145 patches and the ground, a light each") &&
+                         Contains("light: left") && !Contains("light: sky"));
+  CHECK(std::count(listed.begin(), listed.end(), '\n') == 3);
 }
 
 TEST_CASE("a mood is the same in render, relight and measure as its powers by --light") {

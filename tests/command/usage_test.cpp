@@ -14,6 +14,7 @@
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "photile/renderer.hpp"
+#include "report/tables.hpp"
 #include "source_folder.hpp"
 
 namespace photile::test {
@@ -32,6 +33,17 @@ Outcome render_with(const FileFolder& folder, const std::string& option, const s
 TEST_CASE("an unknown option is a usage error of one line that names it") {
   const std::string line = only_error(run_photile({"render", "a.obj", "--fast"}), usage);
   CHECK_THAT(line, Contains("--fast") && Contains("photile render --help"));
+}
+
+TEST_CASE("an option that is given twice is told so in words") {
+  CHECK_THAT(only_error(run_photile({"render", "a.obj", "--mood", "x", "--mood", "y"}), usage),
+             Contains("--mood is given 2 times; give it once"));
+}
+
+TEST_CASE("columns are as wide as their widest text") {
+  CHECK(report::aligned({{"", "first"}, {"a lamp of a long name", "2 lm"}, {"\u00e9", "10 lm"}}) ==
+        std::vector<std::string>{"                       first", "a lamp of a long name   2 lm",
+                                 "\u00e9                      10 lm"});
 }
 
 TEST_CASE("an empty value is refused, and takes no other word in its place") {
@@ -426,13 +438,13 @@ TEST_CASE("seconds turn into minutes and hours") {
 }
 
 TEST_CASE("numbers of five digits and more are grouped, not powers of ten") {
-  CHECK(format_number(0.58571, 4) == "0.5857");
-  CHECK(format_number(9999, 4) == "9999");
-  CHECK(format_number(11'990, 4) == "11,990");
-  CHECK(format_number(-702'234.4, 4) == "-702,234");
-  CHECK(format_number(1'000'000, 4) == "1,000,000");
-  CHECK(format_number(1e12, 4) == "1e+12");
-  CHECK(format_number(-1234.5, 4) == "-1234");
+  CHECK(report::grouped(0.58571, 4) == "0.5857");
+  CHECK(report::grouped(9999, 4) == "9999");
+  CHECK(report::grouped(11'990, 4) == "11,990");
+  CHECK(report::grouped(-702'234.4, 4) == "-702,234");
+  CHECK(report::grouped(1'000'000, 4) == "1,000,000");
+  CHECK(report::grouped(1e12, 4) == "1e+12");
+  CHECK(report::grouped(-1234.5, 4) == "-1234");
 }
 
 TEST_CASE("a power is given in its own unit first") {

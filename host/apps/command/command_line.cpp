@@ -96,6 +96,15 @@ void refuse_empty_values(std::span<const char* const> arguments) {
   }
 }
 
+/// CLI11 speaks of "At Most 1 required but received 2" where an option is repeated.
+std::string words_of(const CLI::ArgumentMismatch& error) {
+  const std::string text = error.what();
+  const std::size_t at = text.find(": At Most 1 required but received ");
+  if (at == std::string::npos) return text;
+  return fmt::format("{} is given {} times; give it once", text.substr(0, at),
+                     text.substr(text.rfind(' ') + 1));
+}
+
 ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const* arguments) {
   refuse_empty_values({arguments + 1, static_cast<std::size_t>(std::max(argument_count, 1) - 1)});
   try {
@@ -111,6 +120,8 @@ ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const*
     throw UsageError(fmt::format("{} not expected: {}; see {}",
                                  extra.size() > 1 ? "these arguments were" : "this argument was",
                                  fmt::join(extra, " "), help_command(photile)));
+  } catch (const CLI::ArgumentMismatch& error) {
+    throw UsageError(fmt::format("{}; see {}", words_of(error), help_command(photile)));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) {
       throw UsageError(std::string(error.what()) + "; see " + help_command(photile));

@@ -21,6 +21,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "report/picture_comparison.hpp"
+#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {
@@ -35,15 +36,16 @@ struct CompareOptions {
   ToneMapping tone_mapping;
 };
 
-std::string words_of(const PictureError& error) {
-  const std::string psnr = std::isinf(error.psnr) ? "equal" : fmt::format("{:.1f} dB", error.psnr);
-  std::string line = fmt::format("{:>10.3g}%{:>10.4f}{:>11}{:>9.2f}%", 100 * error.relative_error(),
-                                 error.mean_ratio, psnr, 100 * error.worst_region);
+/// After the name of what is compared.
+std::vector<std::string> words_of(const PictureError& error) {
   const auto& area = error.worst_area;
-  if (area.width > 0) {
-    line += fmt::format("  {}x{} at {},{}", area.width, area.height, area.x, area.y);
-  }
-  return line;
+  return {
+      "",
+      fmt::format("{:.3g}%", 100 * error.relative_error()),
+      fmt::format("{:.4f}", error.mean_ratio),
+      std::isinf(error.psnr) ? "equal" : fmt::format("{:.1f} dB", error.psnr),
+      fmt::format("{:.2f}%", 100 * error.worst_region),
+      area.width > 0 ? fmt::format("{}x{} at {},{}", area.width, area.height, area.x, area.y) : ""};
 }
 
 void print_missing(const report::PictureComparison& comparison) {
@@ -52,12 +54,14 @@ void print_missing(const report::PictureComparison& comparison) {
 }
 
 void print(const report::PictureComparison& comparison) {
-  std::cout << fmt::format("{:<24}{:>11}{:>10}{:>11}{:>10}\n", "", "error", "mean", "PSNR",
-                           "worst");
+  std::vector<std::vector<std::string>> rows{{"", "error", "mean", "PSNR", "worst"}};
   for (const auto& part : comparison.parts) {
-    std::cout << fmt::format("{:<24}{}\n", part.light.empty() ? "picture" : part.light,
-                             part.error ? words_of(*part.error) : "  the second is black");
+    rows.push_back(part.error
+                       ? words_of(*part.error)
+                       : std::vector<std::string>{"", "-", "-", "-", "-", "the second is black"});
+    rows.back()[0] = part.light.empty() ? "picture" : part.light;
   }
+  for (const std::string& line : report::aligned(rows)) std::cout << line << '\n';
   print_missing(comparison);
 }
 
@@ -140,17 +144,16 @@ std::string ratio_text(double a, double b) {
 }
 
 void print(const report::LevelComparison& comparison, const std::string& a, const std::string& b) {
-  std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", "", a, b, "ratio");
+  std::vector<std::vector<std::string>> rows{{"", a, b, "ratio"}};
   for (const auto& level : comparison.levels) {
-    std::cout << fmt::format(
-        "{:<24}{:>16}{:>16}{:>10}\n", level.what, fmt::format("{:.4g} {}", level.a, level.unit),
-        fmt::format("{:.4g} {}", level.b, level.unit), ratio_text(level.a, level.b));
+    rows.push_back({level.what, fmt::format("{:.4g} {}", level.a, level.unit),
+                    fmt::format("{:.4g} {}", level.b, level.unit), ratio_text(level.a, level.b)});
   }
   for (const auto& power : comparison.powers) {
-    std::cout << fmt::format("{:<24}{:>16}{:>16}{:>10}\n", power.light,
-                             format_power(power.a, power.unit), format_power(power.b, power.unit),
-                             ratio_text(power.a, power.b));
+    rows.push_back({power.light, format_power(power.a, power.unit),
+                    format_power(power.b, power.unit), ratio_text(power.a, power.b)});
   }
+  for (const std::string& line : report::aligned(rows)) std::cout << line << '\n';
 }
 
 nlohmann::ordered_json levels_json(const report::LevelComparison& comparison) {
@@ -247,10 +250,7 @@ void add_compare_command(CLI::App& photile) {
                    "give two: the first picture in both, as the window kept them")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command
-      ->add_option("--moods", options->moods_file,
-                   "file of moods; default: beside the picture, by the scene's name or its own")
-      ->type_name("FILE");
+  add_moods_file_option(*command, options->moods_file, "Options");
   command->add_option("-o,--output", options->picture, "both and their difference in false colour")
       ->type_name("FILE.png")
       ->check(file_ending_in({".png"}));

@@ -9,6 +9,7 @@
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
+#include "image/layer_set.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "report/false_colour.hpp"
@@ -23,6 +24,7 @@ void note_inputs_of(const RenderOptions& options) {
   note_input(options.load.situation.weather);
   note_input(options.load.luminaires);
   note_input(options.load_maps);
+  if (ends_in(options.camera, ".vf")) note_input(options.camera);
 }
 
 void check_outputs(std::span<const std::filesystem::path> outputs) {
@@ -156,10 +158,34 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   add_drawing("--luminance", options.luminance, "cd/m2, in false colour with a legend");
 }
 
+std::array<float, 3> colour_of_light(const LayeredPicture& picture) {
+  const LightMix mix = image::read_light_records(picture.header()).mix;
+  const int height = picture.header().height;
+  glm::dvec3 sum(0.0);
+  for (std::size_t light = 0; light < picture.lights(); ++light) {
+    const LightRows rows = picture.read(light, 0, height);
+    const glm::dvec3 own(mix.lights[light].color * mix.lights[light].tint);
+    const auto add = [&](double lux) {
+      if (std::isfinite(lux) && lux > 0) sum += lux * own;
+    };
+    for (const float lux : rows.illuminance) add(static_cast<double>(lux));
+    if (!rows.illuminance.empty()) continue;
+    for (std::size_t i = 0; i < rows.rgb[0].size(); ++i) {
+      add(luminance(glm::dvec3(rows.rgb[0][i], rows.rgb[1][i], rows.rgb[2][i])));
+    }
+  }
+  if (!(luminance(sum) > 0)) return {1, 1, 1};
+  constexpr double least = 0.05;
+  const glm::vec3 white(glm::max(sum / luminance(sum), least));
+  return {white.r, white.g, white.b};
+}
+
 PictureOutputs::PictureOutputs(const PictureOptions& options)
     : illuminance_(options.illuminance),
       luminance_(options.luminance),
       tone_mapping_(options.tone_mapping),
+      white_balance_(options.white_balance),
+      precision_(options.precision),
       false_colour_(options.false_colour) {
   for (const std::string& file : options.outputs) {
     const bool exr = ends_in(file, ".exr"), hdr = ends_in(file, ".hdr");
@@ -186,14 +212,20 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
   Image root, displayed;
   if (exr_.size() < files().size()) {
     root = picture.root();
-    displayed = tone_map(root, tone_mapping_);
+    ToneMapping shown = tone_mapping_;
+    if (white_balance_) {
+      shown.white = colour_of_light(picture);
+      notes.note(fmt::format("white balance: light of {:.3f}, {:.3f}, {:.3f} (R, G, B) is white",
+                             shown.white[0], shown.white[1], shown.white[2]));
+    }
+    displayed = tone_map(root, shown);
   }
   about_file(source, [&] {
     if (!illuminance_.empty()) lux = report::illuminance_of(picture);
     if (!luminance_.empty()) candela = report::luminance_of(root);
   });
 
-  for (const auto& file : exr_) write_exr(file, picture);
+  for (const auto& file : exr_) write_exr(file, picture, precision_);
   for (const auto& file : png_) write_png(file, displayed);
   for (const auto& file : hdr_) write_hdr(file, root);
   const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,

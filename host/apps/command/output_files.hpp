@@ -65,7 +65,15 @@ struct PictureOptions {
   std::string luminance;             ///< the same
   FalseColourOptions false_colour;   ///< of both
   ToneMapping tone_mapping;
+  bool white_balance = false;
+  LayerPrecision precision = LayerPrecision::whole;  ///< of EXRs
 };
+
+/// Linear Rec.709, at luminance 1, of the light of all lamps together on the surfaces that are
+/// seen: their own colours by their illuminance there, or where the picture has none by their
+/// luminance. No primary is below a twentieth, so that dividing by it leaves noise in bounds. White
+/// where nothing is lit.
+std::array<float, 3> colour_of_light(const LayeredPicture& picture);
 
 /// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
@@ -92,6 +100,8 @@ class PictureOutputs {
   std::vector<std::filesystem::path> exr_, png_, hdr_;
   std::filesystem::path illuminance_, luminance_;  ///< empty: none
   ToneMapping tone_mapping_;
+  bool white_balance_;
+  LayerPrecision precision_;
   FalseColourOptions false_colour_;
 };
 

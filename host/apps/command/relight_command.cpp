@@ -9,12 +9,17 @@
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
+#include "command/scene_report.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
+#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
+#include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
+#include "view/moods.hpp"
+#include "walk/frames.hpp"
 
 namespace photile::app {
 namespace {
@@ -22,7 +27,9 @@ namespace {
 struct RelightOptions {
   std::string input;
   std::vector<std::string> lights;
-  MoodOptions mood;
+  std::vector<std::string> moods;
+  std::string moods_file;  ///< "" = beside the picture
+  std::string sheet;       ///< .png, "" = none
   SkySituation situation;
   std::optional<Sky> sky;
 
@@ -33,10 +40,41 @@ struct RelightOptions {
 };
 
 void print_lights(const LightMix& mix) {
-  for (const MixedLight& light : mix.lights) {
+  const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(mix);
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    const MixedLight& light = mix.lights[i];
+    if (patch_of[i] != none) continue;
     std::cout << fmt::format("{}: {}: {}\n", light.members.empty() ? "light" : "group", light.name,
                              format_power_in_both(light.power, light.unit, mix.lumen_per_watt));
   }
+  for (const std::string& line : sky_summary(mix)) std::cout << line << '\n';
+}
+
+/// The picture in each mood, all with one exposure. Errors: those of mood_of_picture.
+void write_sheet(const RelightOptions& options, const std::vector<LightChange>& changes) {
+  const std::filesystem::path file = moods_of_picture(options.moods_file, options.input);
+  const std::vector<std::string> names =
+      options.moods.empty() ? view::Moods(file).names() : options.moods;
+  if (names.empty()) throw UsageError(file.string() + ": there are no moods for a contact sheet");
+  std::vector<Image> pictures;
+  std::vector<std::array<float, 3>> whites;
+  for (const std::string& mood : names) {
+    const auto asked = mood_of_picture({mood, file.string()}, options.input);
+    const auto picture = relit_picture(options.input, joined(asked, changes));
+    pictures.push_back(picture->root());
+    whites.push_back(options.pictures.white_balance ? colour_of_light(*picture)
+                                                    : std::array<float, 3>{1, 1, 1});
+    throw_if_stop_requested();
+  }
+  std::vector<const Image*> all;
+  for (const Image& picture : pictures) all.push_back(&picture);
+  ToneMapping shared = with_one_exposure(options.pictures.tone_mapping, all);
+  walk::ContactSheet sheet(static_cast<int>(names.size()), pictures[0].width, pictures[0].height);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    shared.white = whites[i];
+    sheet.add(static_cast<int>(i), tone_map(pictures[i], shared), names[i]);
+  }
+  write_png(options.sheet, sheet.image());
 }
 
 void run_relight(const RelightOptions& options) {
@@ -46,18 +84,29 @@ void run_relight(const RelightOptions& options) {
     changes = loading::sky_changes(read_light_mix(options.input), options.situation, options.sky);
   for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
   const PictureOutputs outputs(options.pictures);
-  if (outputs.empty() && (!changes.empty() || options.mood.asked())) {
+  const bool to_sheet = !options.sheet.empty();
+  if (outputs.empty() && !to_sheet && (!changes.empty() || !options.moods.empty())) {
     throw UsageError("no output; give -o FILE.exr or -o FILE.png");
   }
-  note_input(options.input);
-  check_outputs(outputs.files());
-
-  if (outputs.empty()) {
-    print_lights(read_light_mix(options.input));
-    return;
+  if (options.moods.size() > 1 && (!to_sheet || !outputs.empty())) {
+    throw UsageError(fmt::format(
+        "--mood: a picture has one mood, and {} are given; give one, or --sheet FILE.png for a "
+        "contact sheet of all, without other outputs",
+        options.moods.size()));
   }
+  note_input(options.input);
+  std::vector<std::filesystem::path> files = outputs.files();
+  if (to_sheet) files.emplace_back(options.sheet);
+  check_outputs(files);
+
+  if (to_sheet) write_sheet(options, changes);
+  if (files.empty()) {
+    print_lights(read_light_mix(options.input));
+  }
+  if (outputs.empty()) return;
+  const MoodOptions mood{options.moods.empty() ? "" : options.moods[0], options.moods_file};
   const std::unique_ptr<LayeredPicture> picture =
-      relit_picture(options.input, joined(mood_of_picture(options.mood, options.input), changes));
+      relit_picture(options.input, joined(mood_of_picture(mood, options.input), changes));
   throw_if_stop_requested();
   TerminalProgress notes(false);
   outputs.write(*picture, notes, options.input);
@@ -77,7 +126,18 @@ void add_relight_command(CLI::App& photile) {
                    "power in the light's unit, a factor (x2), a colour or off; repeatable")
       ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
       ->allow_extra_args(false);
-  add_mood_options(*command, options->mood, "Options");
+  command
+      ->add_option("--mood", options->moods,
+                   "lamps as the window kept them under this name; --light changes them further; "
+                   "repeatable with --sheet")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  add_moods_file_option(*command, options->moods_file, "Options");
+  command
+      ->add_option("--sheet", options->sheet,
+                   "the given moods, or all of the file, on one PNG with one exposure")
+      ->type_name("FILE.png")
+      ->check(file_ending_in({".png"}));
   add_situation_options(*command, options->situation, "Sky of patches");
   command
       ->add_option_function<std::string>(
@@ -87,7 +147,7 @@ void add_relight_command(CLI::App& photile) {
       ->group("Sky of patches");
   add_picture_options(*command, options->pictures);
   add_false_colour_options(*command, options->pictures.false_colour);
-  add_set_option(*command, {display_settings(options->pictures.tone_mapping)});
+  add_set_option(*command, {display_settings(options->pictures)});
   command->callback([options] { run_relight(*options); });
 }
 

@@ -13,8 +13,10 @@
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/validators.hpp"
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "reading/camera_path.hpp"
 
 namespace photile::app {
 namespace {
@@ -22,8 +24,10 @@ namespace {
 constexpr std::array integrators{"photon-map", "path"};  // as Integrator has them
 
 void add_view_group(CLI::App& command, RenderOptions& options) {
-  command.add_option("--camera", options.camera, "name or index; default: the first")
-      ->type_name("NAME|INDEX")
+  command
+      .add_option("--camera", options.camera,
+                  "name or index, or a view of Radiance (.vf); default: the first")
+      ->type_name("NAME|INDEX|FILE.vf")
       ->group("Picture");
   const auto add_point = [&](const char* name, std::vector<double>& point, const char* help) {
     command.add_option(name, point, help)
@@ -134,7 +138,7 @@ void add_projection_options(CLI::App& command, RenderOptions& options) {
           "of the camera: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl")
       ->type_name("perspective|fisheye|angular|equirectangular|orthographic")
       ->transform(within(Words{names}))
-      ->default_str(std::string(name_of(options.projection)))
+      ->default_str(std::string(name_of(Projection::perspective)))
       ->group("Picture");
   command
       .add_option("--field-of-view", options.field_of_view,
@@ -151,7 +155,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_scale_option(command, options.pictures.false_colour, "Output");
   set_quality(options.quality_options(), Quality::good);
   add_goal_options(command, options.goal);
-  NamedSettings more = display_settings(options.pictures.tone_mapping);
+  NamedSettings more = display_settings(options.pictures);
   for (NamedSetting& setting : glare_settings(options.glare_limit)) more.push_back(setting);
   add_picture_settings(command, options, more);
   add_projection_options(command, options);
@@ -257,7 +261,9 @@ const Camera& choose_camera(const Scene& scene, const std::string& selector) {
 }
 
 Camera camera_of(const Scene& scene, const RenderOptions& options) {
-  const Camera& chosen = choose_camera(scene, options.camera);
+  const Camera chosen = ends_in(options.camera, ".vf")
+                            ? in_scene(scene, reading::read_radiance_view(options.camera))
+                            : choose_camera(scene, options.camera);
   if (options.eye.empty() && options.look_at.empty()) return chosen;
   const Camera from = in_world(scene, chosen);
   const auto point = [](const std::vector<double>& given, const glm::dvec3& otherwise) {
@@ -278,12 +284,13 @@ Camera camera_of(const Scene& scene, const RenderOptions& options) {
 }
 
 Camera projected(Camera camera, const RenderOptions& options) {
-  camera.projection = options.projection;
-  const bool round =
-      options.projection == Projection::fisheye || options.projection == Projection::angular;
+  if (options.projection) camera.projection = *options.projection;
+  const Projection projection = camera.projection;
+  const bool round = options.projection &&
+                     (projection == Projection::fisheye || projection == Projection::angular);
   if (round) camera.aspect_ratio = 1;
-  if (options.projection == Projection::equirectangular) camera.aspect_ratio = 2;
-  if (options.projection == Projection::orthographic) {
+  if (projection == Projection::equirectangular) camera.aspect_ratio = 2;
+  if (projection == Projection::orthographic) {
     if (options.field_of_view > limits::max_coordinate) {
       throw UsageError(fmt::format("--field-of-view {:g}: is more than {:g} m",
                                    options.field_of_view, limits::max_coordinate));
@@ -294,12 +301,12 @@ Camera projected(Camera camera, const RenderOptions& options) {
   double degrees = options.field_of_view;
   if (!(degrees > 0) && round) degrees = defaults::fisheye_field_of_view;
   if (!(degrees > 0)) return camera;
-  const double most = options.projection == Projection::angular       ? 360.0
-                      : options.projection == Projection::perspective ? 179.0
-                                                                      : 180.0;
+  const double most = projection == Projection::angular       ? 360.0
+                      : projection == Projection::perspective ? 179.0
+                                                              : 180.0;
   if (degrees > most) {
     throw UsageError(fmt::format("--field-of-view {:g}: is more than the {:g} degrees of a {} view",
-                                 degrees, most, name_of(options.projection)));
+                                 degrees, most, name_of(projection)));
   }
   camera.vertical_field_of_view = glm::radians(degrees);
   return camera;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,12 +39,12 @@ struct RenderOptions {
   Quality quality = Quality::draft;  ///< the settings are its own but for those given
   RefinementGoal goal;               ///< pictures are made until it is met
   std::string camera;
-  std::vector<double> eye, look_at;  ///< points in the file's world; empty = by the camera
-  std::string size;                  ///< "" = by the camera
-  Projection projection = Projection::perspective;
-  double field_of_view = 0;         ///< degrees, or metres of parallel rays; 0 = by the camera
-  std::vector<LightChange> lights;  ///< what --light asks for
-  MoodOptions mood;                 ///< before them
+  std::vector<double> eye, look_at;      ///< points in the file's world; empty = by the camera
+  std::string size;                      ///< "" = by the camera
+  std::optional<Projection> projection;  ///< none = the camera's
+  double field_of_view = 0;              ///< degrees, or metres of parallel rays; 0 = by the camera
+  std::vector<LightChange> lights;       ///< what --light asks for
+  MoodOptions mood;                      ///< before them
   DeviceOptions device;
   SceneLoadOptions load;
   int threads = 0;

@@ -115,9 +115,11 @@ void add_mood_options(CLI::App& command, MoodOptions& options, const std::string
                   "lamps as the window kept them under this name; --light changes them further")
       ->type_name("NAME")
       ->group(group);
-  command
-      .add_option("--moods", options.file,
-                  "file of moods; default: SCENE's, such as room.moods.json")
+  add_moods_file_option(command, options.file, group);
+}
+
+void add_moods_file_option(CLI::App& command, std::string& file, const std::string& group) {
+  command.add_option("--moods", file, "file of moods; default: SCENE's, such as room.moods.json")
       ->type_name("FILE")
       ->group(group);
 }
@@ -138,24 +140,29 @@ std::filesystem::path moods_file(const std::string& given, const std::filesystem
 }
 
 std::vector<LightChange> changes_of(const MoodOptions& options, const LightMix& mix,
-                                    const std::filesystem::path& scene,
-                                    const std::filesystem::path& picture) {
+                                    const std::filesystem::path& scene) {
   if (!options.asked()) return {};
-  const std::filesystem::path file = moods_file(options.file, scene, picture);
+  const std::filesystem::path file = moods_file(options.file, scene);
   if (!options.edited) note_input(file);
   const view::Moods moods(file);
   return moods.changes(options.mood, mix);
 }
 
-std::vector<LightChange> mood_of_picture(const MoodOptions& options,
-                                         const std::filesystem::path& picture) {
-  if (!options.asked()) return {};
+std::filesystem::path moods_of_picture(const std::string& given,
+                                       const std::filesystem::path& picture) {
   const PictureHeader header = read_header(picture);
   std::filesystem::path scene;
   if (const auto name = header.attributes.find("photile.scene"); name != header.attributes.end()) {
     scene = picture.parent_path() / std::filesystem::path(name->second).filename();
   }
-  return changes_of(options, read_light_mix(header), scene, picture);
+  return moods_file(given, scene, picture);
+}
+
+std::vector<LightChange> mood_of_picture(const MoodOptions& options,
+                                         const std::filesystem::path& picture) {
+  if (!options.asked()) return {};
+  const std::string file = moods_of_picture(options.file, picture).string();
+  return changes_of({options.mood, file}, read_light_mix(picture), {});
 }
 
 std::vector<LightChange> joined(std::vector<LightChange> mood,

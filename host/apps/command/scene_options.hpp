@@ -34,6 +34,8 @@ struct MoodOptions {
 
 /// Adds --mood and --moods.
 void add_mood_options(CLI::App& command, MoodOptions& options, const std::string& group);
+/// Adds --moods alone.
+void add_moods_file_option(CLI::App& command, std::string& file, const std::string& group);
 
 /// The file of moods: the one that is given, else the first that exists of those beside `scene` and
 /// `picture` (either may be empty). Errors: UsageError where there is none.
@@ -44,8 +46,11 @@ std::filesystem::path moods_file(const std::string& given, const std::filesystem
 /// their settings. Errors: UsageError where there is no such mood (the message lists those there
 /// are), those of moods_file and note_input; InputError for a damaged file.
 std::vector<LightChange> changes_of(const MoodOptions& options, const LightMix& mix,
-                                    const std::filesystem::path& scene,
-                                    const std::filesystem::path& picture = {});
+                                    const std::filesystem::path& scene);
+
+/// The file of moods of a picture. Errors: as moods_file; those of read_header.
+std::filesystem::path moods_of_picture(const std::string& given,
+                                       const std::filesystem::path& picture);
 
 /// The changes that a mood makes to the lights of a picture. Without --moods the file beside the
 /// picture's scene, if it lies in the same folder, or beside the picture. Errors: as above; those

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "command/output_files.hpp"
 #include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "loading/load_scene.hpp"
@@ -89,13 +90,13 @@ class AllSettings {
   RenderParameters parameters_;
   SceneLoadOptions load_;
   DeviceOptions device_;
-  ToneMapping tone_mapping_;
+  PictureOptions pictures_;
   double glare_limit_ = defaults::glare_limit;
   NamedSettings list_ = [this] {
     NamedSettings all;
     for (const NamedSettings& some :
          {rendering_settings(parameters_), scene_settings(load_), device_settings(device_),
-          display_settings(tone_mapping_), glare_settings(glare_limit_)}) {
+          display_settings(pictures_), glare_settings(glare_limit_)}) {
       all.insert(all.end(), some.begin(), some.end());
     }
     return all;
@@ -262,9 +263,23 @@ NamedSettings device_settings(DeviceOptions& options) {
   };
 }
 
-NamedSettings display_settings(ToneMapping& tone_mapping) {
-  return {bound_switch("auto_exposure", "Display", tone_mapping.automatic_exposure,
-                       "off: 1 cd/m2 or 1 W/(m2 sr) becomes white, before --exposure")};
+NamedSettings display_settings(PictureOptions& options) {
+  return {bound_switch("auto_exposure", "Display", options.tone_mapping.automatic_exposure,
+                       "on: the log-average luminance becomes 0.36 of white; off: 1 cd/m2 or "
+                       "1 W/(m2 sr) becomes white; before --exposure"),
+          bound_switch("white_balance", "Display", options.white_balance,
+                       "the mean colour of the light on the surfaces that are seen becomes white, "
+                       "in PNGs"),
+          {.name = "exr",
+           .group = "Display",
+           .range = Words{{"float", "half", "dwaa"}},
+           .help = "layers of EXRs: every bit, 11 significant bits in half the room, or lossy",
+           .initial = "float",
+           .set = [&options](const SettingValue& value) {
+             for (const LayerPrecision one : all_layer_precisions) {
+               if (name_of(one) == std::get<std::string_view>(value)) options.precision = one;
+             }
+           }}};
 }
 
 NamedSettings glare_settings(double& limit) {

@@ -21,6 +21,8 @@ class App;
 
 namespace photile::app {
 
+struct PictureOptions;
+
 /// What --set reaches, bound to where a command keeps its value.
 struct NamedSetting {
   std::string_view name, group;
@@ -39,7 +41,7 @@ NamedSettings rendering_settings(RenderParameters& parameters,
                                  std::initializer_list<std::string_view> without = {});
 NamedSettings scene_settings(SceneLoadOptions& options);
 NamedSettings device_settings(DeviceOptions& options);
-NamedSettings display_settings(ToneMapping& tone_mapping);
+NamedSettings display_settings(PictureOptions& options);
 NamedSettings glare_settings(double& limit);
 
 /// Sets what "NAME=VALUE" names. Errors: UsageError of one line, with a remedy, for a name that is

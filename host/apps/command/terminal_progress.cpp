@@ -229,18 +229,8 @@ std::string format_seconds(double seconds) {
 
 std::string unit_symbol(PowerUnit unit) { return unit == PowerUnit::lumen ? "lm" : "W"; }
 
-std::string format_number(double value, int digits) {
-  std::string text = report::number_text(value, digits);
-  const std::size_t sign = text.starts_with('-') ? 1 : 0;
-  const std::size_t end = std::min(text.find_first_not_of("0123456789", sign), text.size());
-  constexpr std::size_t most_ungrouped = 4;
-  if (end - sign <= most_ungrouped) return text;
-  for (std::size_t place = end; place > sign + 3;) text.insert(place -= 3, 1, ',');
-  return text;
-}
-
 std::string format_power(double power, PowerUnit unit) {
-  return format_number(power, 4) + " " + unit_symbol(unit);
+  return report::grouped(power, 4) + " " + unit_symbol(unit);
 }
 
 std::string format_power_in_both(double power, PowerUnit unit, double lumen_per_watt) {

@@ -92,9 +92,6 @@ std::string format_bytes(std::uint64_t bytes);
 /// "0.12 s", "12.3 s", "2 min 05 s", "1 h 02 min"
 std::string format_seconds(double seconds);
 
-/// So many digits, with groups of three from 10,000 on: "0.5857", "6000", "11,990".
-std::string format_number(double value, int digits);
-
 /// "800 lm" or "5 W"
 std::string format_power(double power, PowerUnit unit);
 

@@ -89,7 +89,8 @@ Image root_of(const Frame& frame, const LightMix& mix) {
 DisplayedFrame tone_mapped(const Frame& frame, const LightMix& mix,
                            const DisplaySettings& settings) {
   const auto texels = [&](std::span<const glm::vec3> rgb) {
-    return image::tone_mapped_texels(rgb, settings.exposure, settings.view);
+    return image::tone_mapped_texels(rgb, settings.automatic_stops + settings.exposure,
+                                     settings.view);
   };
   return {frame.layers.width, frame.layers.height,
           frame.mixed.empty() ? texels(mixed(frame.layers, mix)) : texels(frame.mixed)};

@@ -60,7 +60,8 @@ enum class DisplayMode {
 
 struct DisplaySettings {
   DisplayMode mode = DisplayMode::picture;
-  double exposure = 0;  ///< stops that the picture is scaled by
+  double exposure = 0;         ///< stops on top of
+  double automatic_stops = 0;  ///< what a frame was scaled by of its own accord
   /// The exposure follows a sky that is moved: from noon to dusk it loses a thousandfold.
   bool adapts = true;
   DisplayView view = ToneMapping{}.view;  ///< of the picture

@@ -9,6 +9,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "report/tables.hpp"
 #include "view/panels.hpp"
 
 namespace photile::view {
@@ -92,7 +93,7 @@ bool draw_light(LightControl& control) {
   // The slider of a lamp that is off in the scene still has to reach somewhere.
   const double most = control.scene_power > 0 ? 4 * control.scene_power : 1000;
   const double least = 0;
-  const std::string format = fmt::format("%.4g {}", word_of(control.unit));
+  const std::string format = report::grouped(control.power, 4) + " " + word_of(control.unit);
   constexpr float temperature_width = 70;
   ImGui::SetNextItemWidth(-temperature_width - ImGui::GetStyle().ItemSpacing.x);
   changed |= ImGui::SliderScalar("##power", ImGuiDataType_Double, &control.power, &least, &most,
@@ -168,19 +169,20 @@ bool draw_daylight(PanelState& state) {
   LightBoard::Daylight& daylight = state.lights.daylight();
   bool changed = ImGui::Checkbox("##sky", &daylight.on);
   ImGui::SameLine();
-  ImGui::TextUnformatted(text_of(daylight.moment).c_str());
+  ImGui::TextUnformatted("daylight");
   ImGui::SameLine();
   ImGui::Checkbox("adapt", &state.display.adapts);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the exposure follows the hour");
   constexpr double first = 0, last = 24 - 1.0 / 60;
   double hour = daylight.moment.hour;
-  if (ImGui::SliderScalar("hour", ImGuiDataType_Double, &hour, &first, &last, "%.2f",
-                          ImGuiSliderFlags_AlwaysClamp)) {
+  if (ImGui::SliderScalar("hour", ImGuiDataType_Double, &hour, &first, &last,
+                          hour_text(daylight.moment).c_str(), ImGuiSliderFlags_AlwaysClamp)) {
     daylight.moment.hour = hour;
     changed = true;
   }
   int day = daylight.moment.day;
-  if (ImGui::SliderInt("day", &day, 1, 365, "%d", ImGuiSliderFlags_AlwaysClamp)) {
+  if (ImGui::SliderInt("day", &day, 1, 365, day_text(daylight.moment).c_str(),
+                       ImGuiSliderFlags_AlwaysClamp)) {
     daylight.moment.day = day;
     changed = true;
   }

@@ -48,14 +48,17 @@ void SkyMoment::add_days(int days) {
   day = ((day - 1 + days) % days_in_year + days_in_year) % days_in_year + 1;
 }
 
-std::string text_of(const SkyMoment& moment) {
+std::string day_text(const SkyMoment& moment) {
   constexpr std::array months{"January",   "February", "March",    "April",
                               "May",       "June",     "July",     "August",
                               "September", "October",  "November", "December"};
   const LocalTime time = moment.time();
-  const int minutes = std::min(24 * 60 - 1, static_cast<int>(std::lround(60 * time.hour)));
-  return fmt::format("{} {}, {:02}:{:02}", time.day,
-                     months[static_cast<std::size_t>(time.month - 1)], minutes / 60, minutes % 60);
+  return fmt::format("{} {}", time.day, months[static_cast<std::size_t>(time.month - 1)]);
+}
+
+std::string hour_text(const SkyMoment& moment) {
+  const int minutes = std::min(24 * 60 - 1, static_cast<int>(std::lround(60 * moment.hour)));
+  return fmt::format("{:02}:{:02}", minutes / 60, minutes % 60);
 }
 
 SkySituation take_moving_sky(SceneLoadOptions& options) {
@@ -106,17 +109,15 @@ std::vector<double> MovingSky::powers(const SkyMoment& moment) const {
 }
 
 std::string MovingSky::text(const SkyMoment& moment) const {
-  constexpr std::array winds{"north", "northeast", "east", "southeast",
-                             "south", "southwest", "west", "northwest"};
   const weather::SunPosition place = sun(moment);
   const double height = degrees * place.elevation;
   if (!(height > 0)) {
     return fmt::format("night: the sun is {:.0f} degrees below the horizon", -height);
   }
-  const auto octant = static_cast<std::size_t>(std::lround(degrees * place.azimuth / 45)) % 8;
   const weather::SkyIrradiance light = irradiance(moment);
   return fmt::format("the sun is {:.0f} degrees high in the {}; direct {:.0f}, diffuse {:.0f} W/m2",
-                     height, winds[octant], light.direct_normal, light.diffuse_horizontal);
+                     height, weather::compass_point(degrees * place.azimuth), light.direct_normal,
+                     light.diffuse_horizontal);
 }
 
 }  // namespace photile::view

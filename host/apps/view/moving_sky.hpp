@@ -30,8 +30,9 @@ struct SkyMoment {
   bool operator==(const SkyMoment&) const = default;
 };
 
-/// "21 March, 12:00".
-std::string text_of(const SkyMoment& moment);
+/// "21 March", and "12:00".
+std::string day_text(const SkyMoment& moment);
+std::string hour_text(const SkyMoment& moment);
 
 /// Where options give a place or a weather file, or ask for patches, and for no other sky or sun:
 /// puts patches into the scene that is to be loaded, and returns the place and the time that move

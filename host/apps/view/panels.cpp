@@ -236,7 +236,7 @@ void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents&
   if (display.mode != DisplayMode::illuminance) {
     auto exposure = static_cast<float>(display.exposure);
     ImGui::SetNextItemWidth(-room_for_stops);
-    if (ImGui::SliderFloat("stops", &exposure, -15, 15, "%.1f")) {
+    if (ImGui::SliderFloat("stops", &exposure, -8, 8, "%+.1f")) {
       display.exposure = static_cast<double>(exposure);
       events.display_changed = true;
     }

@@ -88,7 +88,10 @@ class Viewer {
       events.lights_changed |= std::exchange(lights_restored_, false);
       const bool sky_moved = lights_.sky() && !(lights_.daylight().moment == shown_moment_);
       if (sky_moved) move_sky();
-      if (events.expose && frame_) set_exposure();
+      if (events.expose && frame_) {
+        display_.exposure = 0;
+        set_exposure();
+      }
       if (frame_ && (new_frame || events.lights_changed || events.display_changed ||
                      events.expose || picked_)) {
         DisplayedFrame shown = display(*frame_, lights_.shown_mix(), display_);
@@ -286,7 +289,7 @@ class Viewer {
     return true;
   }
 
-  void set_exposure() { display_.exposure = automatic_stops(*frame_, lights_.shown_mix()); }
+  void set_exposure() { display_.automatic_stops = automatic_stops(*frame_, lights_.shown_mix()); }
 
   /// Before there is a picture an error ends the walkthrough; later ones are told.
   void take_errors() {

@@ -10,6 +10,7 @@
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "report/sheet.hpp"
 
 namespace photile::walk {
 
@@ -148,7 +149,7 @@ ContactSheet::ContactSheet(int frames, int width, int height)
   for (const char* channel : {"R", "G", "B"}) image_.add(channel).assign(image_.pixels(), paper);
 }
 
-void ContactSheet::add(int index, const Image& displayed) {
+void ContactSheet::add(int index, const Image& displayed, const std::string& name) {
   const int left = gap + index % columns_ * (width_ + gap);
   const int top = gap + index / columns_ * (height_ + gap);
   for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -165,6 +166,29 @@ void ContactSheet::add(int index, const Image& displayed) {
             mean(plane, displayed.width, x0, x1, y0, y1);
       }
     }
+  }
+  if (!name.empty()) write(left, top + height_, name);
+}
+
+void ContactSheet::write(int left, int bottom, const std::string& name) {
+  constexpr int margin = 6, line = report::Sheet::font_size + 2 * margin;
+  report::Font& font = report::Font::dejavu(report::Sheet::font_size);
+  const int end = std::min(font.width_of(name) + 2 * margin, width_);
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(bottom + y) * static_cast<std::size_t>(image_.width) +
+           static_cast<std::size_t>(left + x);
+  };
+  for (std::vector<float>& plane : image_.channels) {
+    for (int y = -std::min(line, height_); y < 0; ++y) {
+      for (int x = 0; x < end; ++x) plane[at(x, y)] *= 0.2f;  // white letters show on it
+    }
+    font.draw(name, [&](int x, int y, float ink) {
+      x += margin;
+      y -= margin + 3;  // what hangs below the line
+      if (x < 0 || x >= end || y < -height_ || y >= 0) return;
+      float& value = plane[at(x, y)];
+      value += ink * (1 - value);
+    });
   }
 }
 

@@ -50,12 +50,15 @@ class ContactSheet {
   /// be.
   ContactSheet(int frames, int width, int height);
 
-  /// Frame `index`, from 0: display-referred R, G, B of the size that was announced.
-  void add(int index, const Image& displayed);
+  /// Frame `index`, from 0: display-referred R, G, B of the size that was announced. `name` is
+  /// written in its lower left corner.
+  void add(int index, const Image& displayed, const std::string& name = {});
 
   const Image& image() const { return image_; }
 
  private:
+  void write(int left, int bottom, const std::string& name);
+
   int columns_, width_, height_;  ///< frames, pixels of a small picture
   Image image_;
 };

@@ -4,11 +4,17 @@
 
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/ascii_text.hpp"
+#include "common/files.hpp"
+#include "common/foreign_text.hpp"
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::reading {
 
@@ -22,6 +28,93 @@ glm::dvec3 velocity(std::span<const double> times, std::span<const glm::dvec3> v
 }
 
 }  // namespace
+
+Camera read_radiance_view(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError(
+        fmt::format("{}: {}; write it by rvu or rpict of Radiance, such as "
+                    "-vtv -vp 1 2 1.6 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 40",
+                    file.string(), reason));
+  };
+  std::string view;
+  const std::string text = read_input_text(file);
+  for (const std::string_view line : lines_of(text)) {
+    if (const std::size_t at = (" " + std::string(line)).find(" -v"); at != std::string::npos) {
+      view = line.substr(at);
+    }
+  }
+  if (view.empty()) refuse("is no view");
+  std::istringstream words(view);
+  Camera camera;
+  camera.name = file.filename().string();
+  char type = 'v';
+  double across = 45, high = 45;
+  glm::dvec3 direction(0, 1, 0), up(0, 0, 1);
+  for (std::string word; words >> word;) {
+    const auto number = [&] {
+      std::string next;
+      words >> next;
+      const auto value = parse_signed(next);
+      if (!value || std::abs(*value) > limits::max_coordinate) {
+        refuse(word + " has no number where it needs one");
+      }
+      return *value;
+    };
+    const auto vector = [&] {
+      const double x = number(), y = number(), z = number();
+      return glm::dvec3(x, y, z);
+    };
+    if (word.size() == 4 && word.starts_with("-vt")) {
+      type = word[3];
+    } else if (word == "-vp") {
+      camera.position = vector();
+    } else if (word == "-vd") {
+      direction = vector();
+    } else if (word == "-vu") {
+      up = vector();
+    } else if (word == "-vh") {
+      across = number();
+    } else if (word == "-vv") {
+      high = number();
+    } else if (word == "-vs" || word == "-vl" || word == "-vo" || word == "-va") {
+      if (number() != 0) refuse(word + ": shifted and clipped views are not known");
+    } else {
+      refuse(shortened(word, 20) + " is no part of a view");
+    }
+  }
+  if (!(glm::length(direction) > 0) || !(glm::length(glm::cross(direction, up)) > 0)) {
+    refuse("-vd and -vu do not span a picture");
+  }
+  const double most = type == 'v' ? 179 : type == 'h' ? 180 : type == 'a' ? 360 : 1e9;
+  if (!(across > 0 && high > 0 && across <= most && high <= most)) {
+    refuse(fmt::format("-vh {:g} -vv {:g} are not above 0 and at most {:g}", across, high, most));
+  }
+  const double half_across = glm::radians(across / 2), half_high = glm::radians(high / 2);
+  const std::string name = camera.name;
+  camera = Camera::look_at(camera.position, camera.position + glm::normalize(direction), up,
+                           glm::radians(std::min(high, 360.0)));
+  camera.name = name;
+  camera.aspect_ratio = across / high;
+  switch (type) {
+    case 'v':
+      camera.aspect_ratio = std::tan(half_across) / std::tan(half_high);
+      break;
+    case 'h':
+      camera.projection = Projection::fisheye;
+      camera.aspect_ratio = std::sin(half_across) / std::sin(half_high);
+      break;
+    case 'a':
+      camera.projection = Projection::angular;
+      break;
+    case 'l':
+      camera.projection = Projection::orthographic;
+      camera.orthographic_height = high;
+      break;
+    default:
+      refuse(fmt::format("-vt{}: is none of -vtv, -vth, -vta and -vtl", type));
+  }
+  return camera;
+}
 
 Between between(std::span<const double> times, double time) {
   if (times.size() < 2 || !(time > times.front())) return {0, 0};

@@ -1,4 +1,4 @@
-// How a camera moves, files that say so, and values between keyframes.
+// How a camera stands or moves, files that say so, and values between keyframes.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +29,11 @@ struct CameraMotion {
 /// quaternion curves", 1985).
 /// Errors: InputError naming the file, the keyframe and the key.
 CameraMotion read_camera_path(const std::filesystem::path& file, const Camera& base);
+
+/// Reads a view of Radiance (`rpict -vf FILE`): the last line with one counts. Types -vtv, -vth,
+/// -vta and -vtl; what is not given is Radiance's default. In the scene file's world. Errors:
+/// InputError naming the file and the option, such as those of shifted or clipped views.
+Camera read_radiance_view(const std::filesystem::path& file);
 
 /// Keyframes `index` and index + 1 around a time, and how far it lies between them.
 struct Between {

@@ -94,7 +94,10 @@ namespace photile {
 
 namespace {
 
-constexpr double mid_grey = 0.18;  ///< reflectance of a photographer's grey card
+/// What the log-average luminance becomes: the key of bright rooms, twice a photographer's grey
+/// card (Reinhard et al. have 0.18 for most pictures and up to 0.72 for light ones). Walls and
+/// ceilings reflect more than half, and the neutral view takes 0.04 off all.
+constexpr double key = 0.36;
 
 /// Luminances farther than this factor from the median say nothing about the room: a light seen
 /// directly, a black background.
@@ -167,11 +170,18 @@ std::vector<std::uint8_t> image::tone_mapped_texels(std::span<const glm::vec3> r
 std::string_view name_of(DisplayView view) { return name_in({"neutral", "standard"}, view); }
 
 double automatic_exposure(const Image& scene_referred) {
-  const RootPlanes root = root_of(scene_referred);
+  const Image* const one = &scene_referred;
+  return automatic_exposure(std::span(&one, 1));
+}
+
+double automatic_exposure(std::span<const Image* const> scene_referred) {
   std::vector<double> luminances;
-  for (std::size_t pixel = 0; pixel < root.r.size(); ++pixel) {
-    const double value = luminance(root[pixel]);
-    if (value > 0.0 && std::isfinite(value)) luminances.push_back(value);
+  for (const Image* const picture : scene_referred) {
+    const RootPlanes root = root_of(*picture);
+    for (std::size_t pixel = 0; pixel < root.r.size(); ++pixel) {
+      const double value = luminance(root[pixel]);
+      if (value > 0.0 && std::isfinite(value)) luminances.push_back(value);
+    }
   }
   if (luminances.empty()) return 1.0;
   const auto middle = luminances.begin() + static_cast<std::ptrdiff_t>(luminances.size() / 2);
@@ -185,7 +195,16 @@ double automatic_exposure(const Image& scene_referred) {
     sum_of_logs += std::log(value);
     ++count;
   }
-  return mid_grey / std::exp(sum_of_logs / static_cast<double>(count));
+  return key / std::exp(sum_of_logs / static_cast<double>(count));
+}
+
+ToneMapping with_one_exposure(ToneMapping parameters,
+                              std::span<const Image* const> scene_referred) {
+  if (parameters.automatic_exposure) {
+    parameters.exposure += std::log2(automatic_exposure(scene_referred));
+  }
+  parameters.automatic_exposure = false;
+  return parameters;
 }
 
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
@@ -198,8 +217,10 @@ Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
   display.width = scene_referred.width;
   display.height = scene_referred.height;
   for (const char* channel : {"R", "G", "B"}) display.add(channel);
+  const glm::dvec3 to_white =
+      scale / glm::dvec3(parameters.white[0], parameters.white[1], parameters.white[2]);
   image::for_each_pixel(root.r.size(), [&](std::size_t pixel) {
-    const glm::dvec3 rgb = displayed(scale * root[pixel], parameters.view);
+    const glm::dvec3 rgb = displayed(to_white * root[pixel], parameters.view);
     for (int channel = 0; channel < 3; ++channel) {
       display.channels[static_cast<std::size_t>(channel)][pixel] = static_cast<float>(rgb[channel]);
     }

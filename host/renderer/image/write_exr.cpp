@@ -13,12 +13,16 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "image/exr_input.hpp"
 #include "photile/image.hpp"
@@ -157,25 +161,45 @@ void add_planes(const Image& picture, int first, std::vector<const float*>& plan
   }
 }
 
+/// To 11 significant bits, ties to even; what is not finite stays.
+void round_to_half(std::vector<float>& plane) {
+  constexpr std::uint32_t dropped = 13, mask = (1u << dropped) - 1;
+  for (float& value : plane) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::uint32_t rounded = (bits + (mask >> 1) + (bits >> dropped & 1u)) & ~mask;
+    if (const auto near = std::bit_cast<float>(rounded); std::isfinite(near)) value = near;
+  }
+}
+
+LightRows rounded(LightRows rows, LayerPrecision precision) {
+  if (precision != LayerPrecision::half) return rows;
+  for (std::vector<float>& plane : rows.rgb) round_to_half(plane);
+  round_to_half(rows.illuminance);
+  return rows;
+}
+
 void add_planes(const LightRows& rows, std::vector<const float*>& planes) {
   for (const std::vector<float>& plane : rows.rgb) planes.push_back(plane.data());
   if (!rows.illuminance.empty()) planes.push_back(rows.illuminance.data());
 }
 
 /// All channels in one part, which every program reads.
-void write_single_part(OutputFile& output, const LayeredPicture& picture) {
+void write_single_part(OutputFile& output, const LayeredPicture& picture,
+                       LayerPrecision precision) {
   std::vector<std::string> names = root_channels;
   for (std::size_t light = 0; light < picture.lights(); ++light) {
     for (std::string& name : picture.channel_names(light)) names.push_back(std::move(name));
   }
-  Imf::Header header = exr_header(picture.header(), names, Imf::ZIP_COMPRESSION);
+  const bool lossy = precision == LayerPrecision::dwaa;
+  Imf::Header header =
+      exr_header(picture.header(), names, lossy ? Imf::DWAA_COMPRESSION : Imf::ZIP_COMPRESSION);
   add_attributes(picture.header(), header);
   ExrOutput file(output, {header});
   for_rows(picture.header().height, [&](int first, int end) {
     const Image root = picture.root(first, end);
     std::vector<LightRows> rows;
     for (std::size_t light = 0; light < picture.lights(); ++light) {
-      rows.push_back(picture.read(light, first, end));
+      rows.push_back(rounded(picture.read(light, first, end), precision));
     }
     std::vector<const float*> planes;
     add_planes(root, 0, planes);
@@ -188,7 +212,8 @@ void write_single_part(OutputFile& output, const LayeredPicture& picture) {
 /// The root as the first part, which has the picture's attributes, and each light as a part that
 /// bears the name of its layer. Beside the root, which is little beside so many lights, no more
 /// than a few rows of one light are in memory.
-void write_parts(OutputFile& output, const LayeredPicture& picture) {
+void write_parts(OutputFile& output, const LayeredPicture& picture, LayerPrecision precision) {
+  if (precision == LayerPrecision::dwaa) precision = LayerPrecision::half;
   // A row a block. OpenEXR keeps two blocks of each part for each thread until the file is closed:
   // the 16 rows of ZIP would add up to the picture.
   std::vector<std::vector<std::string>> names{root_channels};
@@ -211,7 +236,7 @@ void write_parts(OutputFile& output, const LayeredPicture& picture) {
       if (part == 0) {
         add_planes(root, first, planes);
       } else {
-        rows = picture.read(part - 1, first, end);
+        rows = rounded(picture.read(part - 1, first, end), precision);
         add_planes(rows, planes);
       }
       file.write(part, end - first, names[part], planes);
@@ -235,11 +260,16 @@ void write_exr(const std::filesystem::path& file, const Image& image) {
   writer.close();
 }
 
-void write_exr(const std::filesystem::path& file, const LayeredPicture& picture) {
+std::string_view name_of(LayerPrecision precision) {
+  return name_in({"float", "half", "dwaa"}, precision);
+}
+
+void write_exr(const std::filesystem::path& file, const LayeredPicture& picture,
+               LayerPrecision precision) {
   OutputFile output(file);
   check_pixels(output, picture.header());
   const bool single = picture.lights() <= limits::max_single_part_lights;
-  single ? write_single_part(output, picture) : write_parts(output, picture);
+  single ? write_single_part(output, picture, precision) : write_parts(output, picture, precision);
 }
 
 }  // namespace photile
