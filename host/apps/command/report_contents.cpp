@@ -140,7 +140,7 @@ std::vector<std::pair<std::string, std::string>> energy_of(const std::vector<rep
     return part.watts > 0;
   });
   if (known && watts > 0) {
-    rows.emplace_back("power of the luminaires", report::grouped(watts, 4) + " W");
+    rows.emplace_back("installed power", report::grouped(watts, 4) + " W");
     if (area > 0) {
       rows.emplace_back(
           "power density",
