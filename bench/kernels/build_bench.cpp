@@ -55,8 +55,10 @@ void run_case(const Workload& workload, std::uint64_t photon_count, const BenchO
   nlohmann::json row = map_times(c, product_maps, true, options.repeats, device);
   const Photons& photons = c.photons;
   const NormalFilter filter(*workload.scene, defaults::group_angle_degrees);
-  const SearchInput input{photons, filter, workload.scene->lights.size()};
-  row["nanoflann"] = to_json(measure(options.repeats, [&] { make_nanoflann_index(photons); }));
+  const SearchInput input{photons, &filter, workload.scene->lights.size()};
+  constexpr std::size_t leaf_size = 10;
+  const Nanoflann nanoflann = nanoflann_of_system();
+  row["nanoflann"] = to_json(measure(options.repeats, [&] { nanoflann.make(input, leaf_size); }));
   row["embree"] = to_json(measure(options.repeats, [&] { make_embree_search(input); }));
   record.add(std::move(row));
   row = map_times(c, paper_maps, false, options.repeats, device);
@@ -75,7 +77,7 @@ bool run(BenchOptions& options, std::vector<std::uint64_t> counts) {
   BenchRecord record("build", options);
   Device device({.selector = options.device});
   record.set_device(device.info());
-  record.set_version("nanoflann", nanoflann_version());
+  record.set_version("nanoflann", nanoflann_of_system().version);
   record.set_version("embree", embree_version());
   record.set("k", defaults::neighbours);
   const Workload plane = plane_workload(1);

@@ -1,6 +1,7 @@
-// The estimate from k nearest photons against their number (figure 6 of Graglia et al. 2012): every
-// structure of photile on the OpenCL device, nanoflann and Embree on the host, all hardware
-// threads. Each result is checked against a search in double precision.
+// The estimate from k nearest photons against their number (figure 6 of Graglia et al. 2012), and
+// lists of these: every structure of photile on the OpenCL device, nanoflann and Embree on the
+// host, all hardware threads, in turns. Each result is checked against a search in double
+// precision.
 //
 // Slow cases answer fewer queries, so that a case keeps to --seconds-per-case.
 //
@@ -9,7 +10,8 @@
 
 #include <algorithm>
 #include <iostream>
-#include <numeric>
+#include <memory>
+#include <type_traits>
 
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
@@ -19,10 +21,10 @@
 #include "support/bench_record.hpp"
 #include "support/estimate_check.hpp"
 #include "support/hit_sample.hpp"
-#include "support/host_search.hpp"
-#include "support/least_work.hpp"
 #include "support/morton_order.hpp"
 #include "support/point_bench.hpp"
+#include "support/rivals.hpp"
+#include "support/turns.hpp"
 #include "support/workload.hpp"
 
 namespace {
@@ -65,28 +67,29 @@ struct Plan {
 
 const std::vector<Plan>& plans() {
   static const std::vector<std::uint64_t> powers{1'000, 10'000, 100'000, 1'000'000, 10'000'000};
-  static const std::vector<int> neighbours{16, 50, 100, 200, 500, 1000};
+  static const std::vector<int> neighbours{16, 50, 200, 1000};
   static const std::vector<Plan> all{{"plane", powers, neighbours},
                                      {"living-room", powers, neighbours},
-                                     {"fine-mesh", powers, {16, 50, 200, 1000}},
+                                     {"fine-mesh", powers, neighbours},
                                      {"classroom", {1'000'000}, {50, 200}}};
   return all;
 }
 
-/// Left out are brute force where it would take minutes, and the trees over millions of photons at
-/// every k but one: their builds would take most of the run.
-bool worth_running(const structures::Structure& structure, std::size_t photons, int k) {
-  constexpr std::size_t most_for_brute_force = 15'000, most_for_every_k = 3'000'000;
-  if (structure.name == "brute-force") return photons <= most_for_brute_force;
-  if (structure.is_grid()) return true;
-  return photons <= most_for_every_k || k == defaults::neighbours;
+/// Left out are millions of photons at every k but one: building over them would take most of the
+/// run.
+bool affordable(std::size_t photons, int k) {
+  return photons <= 3'000'000 || k == defaults::neighbours;
+}
+
+/// Brute force would take minutes.
+bool worth_running(const structures::Structure& structure, std::size_t photons) {
+  return structure.name != "brute-force" || photons <= 15'000;
 }
 
 /// Photons and k of one column of the figure.
 struct Case {
   const Workload& workload;
   const Photons& photons;
-  const NormalFilter& filter;
   int k;
   double radius;
   NeighbourGroups groups;
@@ -114,6 +117,11 @@ HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
   return block_sample(hits, stride);
 }
 
+/// Lists are as many bytes as the device may have: k and photons of those that are timed.
+bool worth_listing(std::size_t photons, int k) {
+  return k <= 200 && photons > 500'000 && photons < 2'000'000;
+}
+
 class KnnBench {
  public:
   explicit KnnBench(const Settings& settings)
@@ -121,7 +129,7 @@ class KnnBench {
         structures_(settings.structures),
         photons_per_cell_(settings.photons_per_cell),
         record_("knn", settings.common),
-        device_({.selector = settings.common.device}) {
+        device_({.selector = settings.common.device, .profile = true}) {
     for (const EstimateStrategy strategy : all_estimate_strategies) {
       if (name_of(strategy) != settings.strategy) continue;
       tuning_ = shipped_tuning(device_.info(), strategy);
@@ -129,8 +137,7 @@ class KnnBench {
     record_.set("photons per cell", photons_per_cell_);
     record_.set("strategy", settings.strategy.empty() ? "of the device" : settings.strategy);
     record_.set_device(device_.info());
-    record_.set_version("nanoflann", nanoflann_version());
-    record_.set_version("embree", embree_version());
+    for (const auto& [library, version] : rival_versions()) record_.set_version(library, version);
   }
 
   void run(const Workload& workload, const Plan& plan) {
@@ -140,29 +147,18 @@ class KnnBench {
       const reference::DensityOracle oracle(*workload.scene, photons,
                                             reference::PhotonFilter::grouped,
                                             defaults::group_angle_degrees);
-      const SearchInput input{photons, filter, workload.scene->lights.size()};
-      const auto index = make_nanoflann_index(photons);
-      const auto list = make_nanoflann_search(input, index, Candidates::sorted_list);
-      const auto heap = make_nanoflann_search(input, index, Candidates::heap);
-      const auto embree = make_embree_search(input);
+      Rivals rivals(photons, filter, workload.hits.oriented_face, workload.scene->lights.size());
       for (const int k : plan.neighbours) {
         if (static_cast<std::size_t>(k) >= photons.size()) continue;  // no k-th to find
+        if (!affordable(photons.size(), k)) continue;
         const double radius = automatic_radius(photons, k);
         NeighbourGroups groups = default_groups(*workload.scene, photons, radius);
         PrimaryHits hits = in_map_order(workload.hits, groups);
         EstimateCheck check(oracle, photons.size(), {k, radius}, hits,
                             block_sample(hits, most_stride).index);
-        const Case c{workload, photons,           filter,          k,
-                     radius,   std::move(groups), std::move(hits), std::move(check)};
-        run_host(c, "nanoflann", *list, given_order);
-        run_host(c, "nanoflann-heap", *heap, given_order);
-        // Rivals differ little in how much their order matters: once is enough.
-        if (k == defaults::neighbours) run_host(c, "nanoflann-morton", *list, morton_order);
-        run_host(c, "embree", *embree, given_order);
-        for (const structures::Structure& structure : structures::all()) {
-          if (!requested(structure) || !worth_running(structure, photons.size(), k)) continue;
-          run_device(c, structure);
-        }
+        const Case c{workload,        photons,         k, radius, std::move(groups),
+                     std::move(hits), std::move(check)};
+        run_case(c, rivals);
       }
     }
   }
@@ -174,24 +170,36 @@ class KnnBench {
   }
 
  private:
-  using Order = std::vector<std::uint32_t> (*)(std::span<const glm::vec3>);
-
-  static std::vector<std::uint32_t> given_order(std::span<const glm::vec3> positions) {
-    std::vector<std::uint32_t> order(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    return order;
-  }
-
   bool requested(const structures::Structure& structure) const {
     return structures_.empty() ||
            std::find(structures_.begin(), structures_.end(), structure.name) != structures_.end();
   }
 
-  /// The times of a row, and how near they come to what no search can do without.
-  static void set_seconds(nlohmann::json& row, const Case& c, const HitSample& asked,
-                          const Timing& timing) {
-    row["seconds"] = to_json(timing);
-    LeastWork(asked.index.size(), c.k).add_to(row, timing.median());
+  void run_case(const Case& c, Rivals& rivals) {
+    const bool lists = worth_listing(c.photons.size(), c.k);
+    const SearchParameters parameters{static_cast<std::size_t>(c.k), static_cast<float>(c.radius)};
+    std::vector<Contestant> contestants;
+    const PrimaryHits trial = block_sample(c.hits, most_stride).hits;
+    for (const Rivals::Library& library : rivals.at_their_best(trial, parameters)) {
+      contestants.push_back(rival<DensityAnswers>(c, library, parameters));
+      if (lists) contestants.push_back(rival<ListAnswers>(c, library, parameters));
+    }
+    for (const structures::Structure& structure : structures::all()) {
+      if (!requested(structure) || !worth_running(structure, c.photons.size())) continue;
+      try {
+        const auto searched = std::make_shared<Searched>(structure, *this, c);
+        contestants.push_back(estimate_by(c, structure, searched));
+        if (lists && structure.name == "uniform-grid") {
+          contestants.push_back(list_by(c, structure, searched));
+        }
+      } catch (const DeviceError& error) {  // out of memory: a result too
+        nlohmann::json row = row_of(c, structure.name, {});
+        row["failure"] = error.what();
+        record_.add(std::move(row));
+      }
+    }
+    faults_ += take_turns(contestants, repeats_);
+    for (Contestant& one : contestants) record_.add(std::move(one.row));
   }
 
   nlohmann::json row_of(const Case& c, const std::string& structure, const HitSample& asked) const {
@@ -200,68 +208,114 @@ class KnnBench {
             {"radius", c.radius},          {"queries", asked.index.size()}};
   }
 
-  void run_host(const Case& c, const std::string& name, const HostSearch& search, Order order_of) {
-    const SearchParameters parameters{static_cast<std::size_t>(c.k), static_cast<float>(c.radius)};
-    DensityAnswers answers;
-    std::vector<std::uint32_t> order;
-    const auto estimate = [&](const PrimaryHits& hits) {
-      if (order.size() != hits.size()) order = order_of(hits.position);
-      search.estimate(hits, order, parameters, answers);
-    };
-    const HitSample asked = affordable_hits(c.hits, repeats_, estimate);
-    order.clear();
-    const Timing timing = measure(repeats_, [&] { estimate(asked.hits); });
-    nlohmann::json row = row_of(c, name, asked);
-    set_seconds(row, c, asked, timing);
-    add(c, std::move(row), answers.irradiance, asked,
-        c.check.radii_that_differ(answers.squared_radius, asked.index));
-  }
-
-  void run_device(const Case& c, const structures::Structure& structure) {
-    const std::string& name = structure.name;
-    try {
-      const PhotonMaps maps =
-          structures::build(structure, device_, *c.workload.scene, c.photons, c.groups,
-                            {.radius = c.radius, .photons_per_cell = photons_per_cell_});
-      Estimator estimator(
-          maps, *c.workload.scene,
-          {.neighbours = c.k, .radius = c.radius, .tuning = tuning_, .area = AreaMode::disc});
-      Estimates estimates;
-      const auto estimate = [&](const PrimaryHits& hits) { estimates = estimator.estimate(hits); };
-      const HitSample asked = affordable_hits(c.hits, repeats_, estimate);
-      nlohmann::json row = row_of(c, name, asked);
-      set_seconds(row, c, asked, measure(repeats_, [&] { estimate(asked.hits); }));
-      row["references"] = maps.statistics().references;
-      if (!structure.is_grid()) {
-        constexpr std::size_t most_hits = 4096;
-        const HitSample some = thinned(block_sample(c.hits, most_stride), most_hits);
-        const structures::Visits visits = structures::count_visits(maps, some.hits, c.k);
-        row["nodes visited"] = visits.nodes;
-        row["photons visited"] = visits.photons;
-      }
-      const PrimaryHits checked = hits_at(c.hits, c.check.index()).hits;
-      add(c, std::move(row), estimates.irradiance, asked,
-          c.check.radii_that_differ(estimator.nearest(checked).squared_radius, c.check.index()));
-    } catch (const DeviceError& error) {
-      nlohmann::json row = row_of(c, name, {});
-      row["failure"] = error.what();  // out of memory: a result too
-      record_.add(std::move(row));
-    }
-  }
-
-  void add(const Case& c, nlohmann::json row, std::span<const glm::vec3> irradiance,
-           const HitSample& asked, std::uint64_t radii_that_differ) {
-    const std::uint64_t irradiances = c.check.irradiances_that_differ(irradiance, asked.index);
-    row["radii that differ"] = radii_that_differ;
+  /// The answers that differ from the oracle's, which the row tells.
+  static std::uint64_t differences(nlohmann::json& row, std::uint64_t radii,
+                                   std::uint64_t irradiances) {
+    row["radii that differ"] = radii;
     row["irradiances that differ"] = irradiances;
-    if (radii_that_differ + irradiances > 0) {
-      print_fault(fmt::format("{}: {} photons, k = {}, {}", c.workload.name, c.photons.size(), c.k,
-                              row["structure"].get<std::string>()),
-                  radii_that_differ + irradiances);
-    }
-    faults_ += radii_that_differ + irradiances;
-    record_.add(std::move(row));
+    return radii + irradiances;
   }
+
+  /// A library at its best: of estimates, or of lists.
+  template <class Answers>
+  Contestant rival(const Case& c, const Rivals::Library& library,
+                   const SearchParameters& parameters) {
+    constexpr bool lists = std::is_same_v<Answers, ListAnswers>;
+    struct State {
+      HitSample asked;
+      std::vector<std::uint32_t> order;
+      Answers answers;
+    };
+    const auto state = std::make_shared<State>();
+    const auto ask = [state, parameters, search = library.best().search](const PrimaryHits& hits) {
+      if (state->order.size() != hits.size()) state->order = morton_order(hits.position);
+      if constexpr (lists) {
+        search->nearest(hits, state->order, parameters, state->answers);
+      } else {
+        search->estimate(hits, state->order, parameters, state->answers);
+      }
+    };
+    state->asked = affordable_hits(c.hits, repeats_, ask);
+    state->order.clear();
+    Contestant one{row_of(c, library.name + (lists ? list_rows : ""), state->asked),
+                   [ask, state] { ask(state->asked.hits); },
+                   [&c, state](nlohmann::json& row) {
+                     const auto& of = state->asked.index;
+                     std::uint64_t irradiances = 0;
+                     if constexpr (!lists) {
+                       irradiances = c.check.irradiances_that_differ(state->answers.irradiance, of);
+                     }
+                     return differences(
+                         row, c.check.radii_that_differ(state->answers.squared_radius, of),
+                         irradiances);
+                   }};
+    library.add_to(one.row);
+    return one;
+  }
+
+  /// Photons in a structure, with who asks it.
+  struct Searched {
+    Searched(const structures::Structure& structure, KnnBench& bench, const Case& c)
+        : maps(
+              structures::build(structure, bench.device_, *c.workload.scene, c.photons, c.groups,
+                                {.radius = c.radius, .photons_per_cell = bench.photons_per_cell_})),
+          estimator(maps, *c.workload.scene,
+                    {.neighbours = c.k,
+                     .radius = c.radius,
+                     .tuning = bench.tuning_,
+                     .area = AreaMode::disc}) {}
+    PhotonMaps maps;
+    Estimator estimator;
+    HitSample asked = {};  ///< of estimates
+    Estimates estimates = {};
+  };
+
+  Contestant estimate_by(const Case& c, const structures::Structure& structure,
+                         std::shared_ptr<Searched> searched) {
+    const auto estimate = [searched](const PrimaryHits& hits) {
+      searched->estimates = searched->estimator.estimate(hits);
+    };
+    searched->asked = affordable_hits(c.hits, repeats_, estimate);
+    return {row_of(c, structure.name, searched->asked),
+            [estimate, searched] { estimate(searched->asked.hits); },
+            [&c, &structure, searched](nlohmann::json& row) {
+              row["references"] = searched->maps.statistics().references;
+              if (!structure.is_grid()) add_visits(row, c, searched->maps);
+              const PrimaryHits checked = hits_at(c.hits, c.check.index()).hits;
+              return differences(
+                  row,
+                  c.check.radii_that_differ(searched->estimator.nearest(checked).squared_radius,
+                                            c.check.index()),
+                  c.check.irradiances_that_differ(searched->estimates.irradiance,
+                                                  searched->asked.index));
+            },
+            &device_};
+  }
+
+  Contestant list_by(const Case& c, const structures::Structure& structure,
+                     std::shared_ptr<Searched> searched) {
+    const auto found = std::make_shared<NeighbourLists>();
+    const auto list = [searched, found](const PrimaryHits& hits) {
+      *found = searched->estimator.nearest(hits);
+    };
+    const auto asked = std::make_shared<HitSample>(affordable_hits(c.hits, repeats_, list));
+    return {row_of(c, structure.name + list_rows, *asked), [list, asked] { list(asked->hits); },
+            [&c, found, asked](nlohmann::json& row) {
+              return differences(row,
+                                 c.check.radii_that_differ(found->squared_radius, asked->index), 0);
+            },
+            &device_};
+  }
+
+  static void add_visits(nlohmann::json& row, const Case& c, const PhotonMaps& maps) {
+    constexpr std::size_t most_hits = 4096;
+    const HitSample some = thinned(block_sample(c.hits, most_stride), most_hits);
+    const structures::Visits visits = structures::count_visits(maps, some.hits, c.k);
+    row["nodes visited"] = visits.nodes;
+    row["photons visited"] = visits.photons;
+  }
+
+  static constexpr const char* list_rows = ", lists";
 
   Repeats repeats_;
   std::vector<std::string> structures_;

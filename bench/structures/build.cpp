@@ -96,10 +96,15 @@ std::vector<T> read_all(device::Context& context, const device::Buffer<T>& buffe
 /// The photons of each map of a page of grids.
 PhotonLists lists_of(const MapPage& page, device::Context& context, const Photons& photons,
                      float radius) {
-  PhotonLists lists{context, photons,
-                    radius,  read_all(context, page.record_photon),
-                    {0},     read_all(context, page.grids)};
-  const std::vector<std::uint32_t> cell_start = read_all(context, page.cell_start);
+  PhotonLists lists{context,
+                    photons,
+                    radius,
+                    read_all(context, page.record_photon),
+                    {0},
+                    read_all(context, page.grids),
+                    read_all(context, page.record_photon),
+                    read_all(context, page.cell_start)};
+  const std::vector<std::uint32_t>& cell_start = lists.cell_start;
   for (const PhotileGrid& grid : lists.planes) {
     const std::uint32_t cells = grid.columns * grid.rows;
     lists.first.push_back(cells > 0 ? cell_start[grid.first_cell + cells] : lists.first.back());
@@ -160,8 +165,7 @@ PhotonMaps build_global(const Structure& structure, std::unique_ptr<MapStore> st
                       photons,
                       static_cast<float>(store->parameters.radius),
                       std::vector<std::uint32_t>(count),
-                      {0, count},
-                      {}};
+                      {0, count}};
     std::iota(lists.members.begin(), lists.members.end(), 0u);
     builder.add(0, static_cast<std::uint32_t>(store->normals.size()), lists, true);
     store->statistics.maps = 1;

@@ -1,6 +1,6 @@
 // kd-trees over the photons of each map, in its plane (kdtree-2d) or in space (kdtree-3d), and one
 // over all photons (kdtree-global), which is the classic photon map: built on the host, searched by
-// kernels/structures/kdtree.cl.
+// kernels/structures/kdtree.cl, and those with "radix" by kdtree_radix.cl.
 #include "structures/kdtree.h"
 
 #include <tbb/parallel_for.h>
@@ -16,8 +16,6 @@ namespace {
 
 static_assert(sizeof(PhotileTreeNode) == 4 * 4, "PhotileTreeNode must have no padding");
 
-constexpr std::size_t leaf_size = 8;
-
 /// Appends the nodes of a tree over points[order[i]] to `nodes` and brings `order` into the order
 /// of the leaves. Leaves hold up to leaf_size points (more where points coincide or the depth is
 /// used up) and refer to records first_record + position in `order`. Splits the longest side of the
@@ -26,6 +24,7 @@ constexpr std::size_t leaf_size = 8;
 struct TreeBuilder {
   std::span<const glm::vec3> points;
   int dimensions;  ///< 2 ignores z
+  std::size_t leaf_size;
   std::uint32_t first_record;
   std::vector<PhotileTreeNode>& nodes;
 
@@ -65,7 +64,7 @@ glm::vec2 project(const glm::vec3& p, const PhotileGrid& grid) {
 
 /// The tree of one list, whose part of `records` it brings into the order of its leaves.
 std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list, int dimensions,
-                                     std::vector<std::uint32_t>& records) {
+                                     std::size_t leaf_size, std::vector<std::uint32_t>& records) {
   const auto members = lists.of(list);
   std::vector<glm::vec3> points(members.size());
   for (std::size_t i = 0; i < members.size(); ++i) {
@@ -75,17 +74,17 @@ std::vector<PhotileTreeNode> tree_of(const PhotonLists& lists, std::size_t list,
   std::vector<std::uint32_t> order(members.size());
   std::iota(order.begin(), order.end(), 0u);
   std::vector<PhotileTreeNode> nodes;
-  TreeBuilder{points, dimensions, lists.first[list], nodes}.build(order, 0, 0);
+  TreeBuilder{points, dimensions, leaf_size, lists.first[list], nodes}.build(order, 0, 0);
   for (std::size_t i = 0; i < order.size(); ++i) records[lists.first[list] + i] = members[order[i]];
   return nodes;
 }
 
-template <int dimensions>
+template <int dimensions, std::size_t leaf_size = 8>
 Index build_trees(const PhotonLists& lists) {
   std::vector<std::uint32_t> records(lists.members.size());
   std::vector<std::vector<PhotileTreeNode>> trees(lists.size());
   tbb::parallel_for(std::size_t{0}, lists.size(), [&](std::size_t list) {
-    if (!lists.of(list).empty()) trees[list] = tree_of(lists, list, dimensions, records);
+    if (!lists.of(list).empty()) trees[list] = tree_of(lists, list, dimensions, leaf_size, records);
   });
   std::vector<std::uint32_t> root(lists.size(), none);
   std::vector<PhotileTreeNode> nodes;
@@ -112,6 +111,22 @@ const Registration kdtree_2d(
 const Registration kdtree_3d({.name = "kdtree-3d", .build = build_trees<3>, .kernel = "kdtree"});
 const Registration kdtree_global(
     {.name = "kdtree-global", .build = build_trees<3>, .global = true, .kernel = "kdtree"});
+
+/// The same tree as kdtree-2d, with leaves of so many and the selection of the grid.
+template <std::size_t leaf_size>
+Structure tree_by_radix() {
+  constexpr std::uint32_t ranges = 128;
+  return {.name = "kdtree-2d-radix-" + std::to_string(leaf_size),
+          .build = build_trees<2, leaf_size>,
+          .kernel = "kdtree_radix",
+          .symbol = "LEAF_SIZE",
+          .symbol_value = leaf_size,
+          .words_per_item = 2 * ranges};
+}
+
+const Registration radix_32(tree_by_radix<32>());
+const Registration radix_64(tree_by_radix<64>());
+const Registration radix_128(tree_by_radix<128>());
 
 }  // namespace
 }  // namespace photile::structures

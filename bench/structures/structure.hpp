@@ -24,8 +24,10 @@ struct PhotonLists {
   float radius;  ///< metres: no search goes farther
   /// Indices of photons, ascending in each list.
   std::vector<std::uint32_t> members;
-  std::vector<std::uint32_t> first;  ///< per list among `members`, and the end of the last
-  std::vector<PhotileGrid> planes;   ///< per list that of its map; empty for one list of all
+  std::vector<std::uint32_t> first;      ///< per list among `members`, and the end of the last
+  std::vector<PhotileGrid> planes = {};  ///< per list that of its map; empty for one list of all
+  /// Of those grids: the members in the order of their cells, and per cell where its first is.
+  std::vector<std::uint32_t> in_cells = {}, cell_start = {};
 
   std::size_t size() const { return first.size() - 1; }
   std::span<const std::uint32_t> of(std::size_t list) const {
@@ -51,8 +53,12 @@ struct Structure {
   Index (*build)(const PhotonLists& lists) = nullptr;
   /// One for all photons, filtered by normal, in place of one for each map.
   bool global = false;
-  std::string kernel = {};     ///< kernels/structures/KERNEL.cl; "": NAME, with _ for -
-  std::string symbol = {};     ///< that the kernel is compiled with
+  std::string kernel = {};  ///< kernels/structures/KERNEL.cl; "": NAME, with _ for -
+  std::string symbol = {};  ///< that the kernel is compiled with
+  long long symbol_value = 1;
+  /// Of kernels that select as the grid's do, by estimate_by_radix: words that a work-item writes
+  /// for itself. 0: estimate_by_list.
+  std::uint32_t words_per_item = 0;
   float photons_per_cell = 0;  ///< of grids; 0: as asked
 
   /// Whether the library's kernels query it.

@@ -4,9 +4,12 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "device/launch.hpp"
 #include "estimate/query.hpp"
+#include "estimate/specialisation.hpp"
+#include "maps/map_page.hpp"
 #include "structures/structure.hpp"
 
 namespace photile::structures {
@@ -32,24 +35,29 @@ class StructureQuery final : public estimate::Query {
                     device::Buffer<float>& squared_radius, device::Buffer<std::uint32_t>& visits);
 
  private:
-  device::Defines page_defines(const maps::MapPage& page) const;
+  /// Bounds the work-items in flight by the memory that each has for itself.
+  void limit_items(std::uint64_t words_per_item);
+  void set_page_defines(device::Defines& defines, const maps::MapPage& page) const;
   void run_nearest(const estimate::PageHits& hits, device::Defines defines,
                    device::Buffer<std::uint32_t>& photons, device::Buffer<float>& squared_radius,
                    const device::Buffer<std::uint32_t>& visits);
   /// With the arguments of the structure.
-  void run(device::Launch& launch, const estimate::PageHits& hits);
+  void run(device::Launch& launch, const estimate::PageHits& hits, int hits_per_item = 1,
+           std::size_t work_group_size = maps::work_group_size);
 
+  const Structure& structure_;
   std::shared_ptr<const Indices> indices_;
   const maps::MapStore& store_;
   device::Context& context_;
   device::LaunchPace pace_;
   estimate::QueryParameters parameters_;
-  std::string file_;
   estimate::LightSums sums_;
-  device::Defines defines_;
   std::uint64_t work_items_ = std::numeric_limits<std::uint32_t>::max();
   device::Buffer<float> list_distance_;
   device::Buffer<std::uint32_t> list_record_;
+  // Where the selection is the grid's:
+  std::optional<estimate::Specialisation> by_radix_;
+  device::Buffer<std::uint32_t> words_;
 };
 
 }  // namespace photile::structures

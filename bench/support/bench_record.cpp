@@ -119,6 +119,7 @@ BenchRecord::BenchRecord(const std::string& bench, const BenchOptions& options)
 
 void BenchRecord::set_device(const DeviceInfo& info) {
   json_["device"] = {{"name", info.name},
+                     {"type", name_of(info.type)},
                      {"platform", info.platform},
                      {"driver", info.driver_version},
                      {"compute units", info.compute_units}};

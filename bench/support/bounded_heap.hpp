@@ -1,6 +1,7 @@
-// The k nearest candidates so far, as a binary heap with the farthest on top.
+// The k nearest candidates so far, as a binary heap with the farthest on top once there are k.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -18,6 +19,7 @@ class BoundedHeap {
 
   void clear() { entries_.clear(); }
   bool full() const { return entries_.size() == capacity_; }
+  /// Of a full heap.
   float farthest() const { return entries_[0].squared_distance; }
   const std::vector<Candidate>& entries() const { return entries_; }
 
@@ -25,24 +27,18 @@ class BoundedHeap {
   void add(const Candidate& candidate) {
     if (full()) {
       sink(candidate);
-    } else {
-      rise(candidate);
+      return;
+    }
+    // In any order until all are there: no one asks for the farthest before.
+    entries_.push_back(candidate);
+    if (full()) {
+      std::make_heap(entries_.begin(), entries_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.squared_distance < b.squared_distance;
+      });
     }
   }
 
  private:
-  void rise(const Candidate& candidate) {
-    std::size_t place = entries_.size();
-    entries_.push_back(candidate);
-    while (place > 0) {
-      const std::size_t parent = (place - 1) / 2;
-      if (entries_[parent].squared_distance >= candidate.squared_distance) break;
-      entries_[place] = entries_[parent];
-      place = parent;
-    }
-    entries_[place] = candidate;
-  }
-
   void sink(const Candidate& candidate) {
     std::size_t place = 0;
     for (std::size_t child = 1; child < entries_.size(); child = 2 * place + 1) {

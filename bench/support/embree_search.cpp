@@ -1,14 +1,12 @@
 // The benches' only file that includes Embree.
 #include <embree3/rtcore.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "support/bounded_heap.hpp"
-#include "support/density_sum.hpp"
-#include "support/host_search.hpp"
+#include "support/neighbour_answers.hpp"
 
 namespace photile::bench {
 namespace {
@@ -36,9 +34,7 @@ bool offer_photon(RTCPointQueryFunctionArguments* arguments) {
   const glm::vec3 d = visit.input.photons.position[photon] - visit.position;
   const float squared_distance = d.x * d.x + d.y * d.y + d.z * d.z;
   if (squared_distance >= visit.squared_radius) return false;
-  if (!visit.input.filter.agree(visit.input.photons.oriented_face[photon], visit.oriented_face)) {
-    return false;
-  }
+  if (!visit.input.counts(photon, visit.oriented_face)) return false;
   visit.heap.add({squared_distance, photon});
   if (!visit.heap.full()) return false;
   visit.squared_radius = visit.heap.farthest();
@@ -48,9 +44,15 @@ bool offer_photon(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
-class EmbreeSearch final : public HostSearch {
+/// What a thread needs between its queries.
+struct EmbreeWorker {
+  BoundedHeap heap;
+  float radius;
+};
+
+class EmbreeSearch final : public HitByHit<EmbreeSearch> {
  public:
-  explicit EmbreeSearch(const SearchInput& input) : input_(input) {
+  explicit EmbreeSearch(const SearchInput& input) : HitByHit(input) {
     device_ = rtcNewDevice(nullptr);
     if (!device_) throw std::runtime_error("Embree gives no device");
     scene_ = rtcNewScene(device_);
@@ -70,36 +72,25 @@ class EmbreeSearch final : public HostSearch {
   EmbreeSearch(const EmbreeSearch&) = delete;
   EmbreeSearch& operator=(const EmbreeSearch&) = delete;
 
-  void estimate(const PrimaryHits& hits, std::span<const std::uint32_t> order,
-                const SearchParameters& parameters, DensityAnswers& answers) const override {
-    resize(answers, hits.size(), input_.light_count);
-    constexpr std::size_t grain = 1024;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size(), grain),
-                      [&](const auto& range) {
-                        BoundedHeap heap(parameters.k);
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          query(hits, order[i], parameters, heap, answers);
-                        }
-                      });
+  EmbreeWorker make_worker(const SearchParameters& parameters) const {
+    return {BoundedHeap(parameters.k), parameters.radius};
   }
-
- private:
-  void query(const PrimaryHits& hits, std::uint32_t hit, const SearchParameters& parameters,
-             BoundedHeap& heap, DensityAnswers& answers) const {
-    heap.clear();
+  template <class Write>
+  void find(EmbreeWorker& worker, const PrimaryHits& hits, std::uint32_t hit, Write write) const {
+    worker.heap.clear();
     const glm::vec3& p = hits.position[hit];
-    Visit visit{input_, heap, p, parameters.radius * parameters.radius, hits.oriented_face[hit]};
-    RTCPointQuery point_query{p.x, p.y, p.z, 0.0f, parameters.radius};
+    Visit visit{input_, worker.heap, p, worker.radius * worker.radius, hits.oriented_face[hit]};
+    RTCPointQuery point_query{p.x, p.y, p.z, 0.0f, worker.radius};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_, &point_query, &context, offer_photon, &visit);
-    const auto& found = heap.entries();
-    sum_density(
-        input_, parameters, hit, found.size(), 0, [&](std::size_t i) { return found[i].photon; },
-        [&](std::size_t i) { return found[i].squared_distance; }, answers);
+    const auto& entries = worker.heap.entries();
+    write(FoundNeighbours{entries.size(), std::size_t{0},
+                          [&](std::size_t i) { return entries[i].photon; },
+                          [&](std::size_t i) { return entries[i].squared_distance; }});
   }
 
-  SearchInput input_;
+ private:
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };

@@ -1,11 +1,14 @@
+// Compiled for each nanoflann: given_nanoflann_search.cpp includes it under other names.
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <nanoflann.hpp>
 
 #include "support/bounded_heap.hpp"
-#include "support/density_sum.hpp"
-#include "support/host_search.hpp"
+#include "support/neighbour_answers.hpp"
+
+#ifndef PHOTILE_NANOFLANN_NAME
+#define PHOTILE_NANOFLANN_NAME "nanoflann"
+#endif
 
 namespace photile::bench {
 namespace {
@@ -26,59 +29,70 @@ struct PointCloud {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointCloud>,
                                                  PointCloud, 3, std::uint32_t>;
 
-}  // namespace
-
-class NanoflannIndex {
+#if NANOFLANN_VERSION < 0x150
+using Parameters = nanoflann::SearchParams;
+/// Has no set that is bounded by a radius: its farthest place takes the bound.
+class ResultSet : public nanoflann::KNNResultSet<float, std::uint32_t> {
  public:
-  explicit NanoflannIndex(const Photons& photons)
-      : cloud_{photons.position}, tree_(3, cloud_, {10}) {
-    tree_.buildIndex();
+  ResultSet(std::size_t k, float squared_radius)
+      : KNNResultSet(k), k_(k), squared_radius_(squared_radius) {}
+  void init(std::uint32_t* indices, float* distances) {
+    KNNResultSet::init(indices, distances);
+    distances[k_ - 1] = squared_radius_;
   }
-  const Tree& tree() const { return tree_; }
 
  private:
-  PointCloud cloud_;
-  Tree tree_;
+  std::size_t k_;
+  float squared_radius_;
 };
+#else
+using Parameters = nanoflann::SearchParameters;
+using ResultSet = nanoflann::RKNNResultSet<float, std::uint32_t>;
+#endif
 
-namespace {
+struct Index {
+  Index(const Photons& photons, std::size_t leaf_size)
+      : cloud{photons.position}, tree(3, cloud, {leaf_size}) {
+    tree.buildIndex();
+  }
+  PointCloud cloud;
+  Tree tree;
+};
 
 /// nanoflann's own result set, bounded by the radius, behind the normal filter.
 class FilteredList {
  public:
   using DistanceType = float;
+  using IndexType = std::uint32_t;
 
   FilteredList(const SearchInput& input, const SearchParameters& parameters)
       : input_(input),
-        parameters_(parameters),
         indices_(parameters.k),
         distances_(parameters.k),
-        list_(parameters.k) {}
+        list_(parameters.k, parameters.radius * parameters.radius) {}
 
   void begin(std::uint32_t oriented_face) {
     oriented_face_ = oriented_face;
     list_.init(indices_.data(), distances_.data());
-    distances_.back() = parameters_.radius * parameters_.radius;
   }
   bool full() const { return list_.full(); }
   float worstDist() const { return list_.worstDist(); }
+  void sort() const {}  // it is
   bool addPoint(float squared_distance, std::uint32_t photon) {
-    if (!input_.filter.agree(input_.photons.oriented_face[photon], oriented_face_)) return true;
+    if (!input_.counts(photon, oriented_face_)) return true;
     return list_.addPoint(squared_distance, photon);
   }
-  void end(std::size_t hit, DensityAnswers& answers) const {
-    const std::size_t found = list_.size();
-    sum_density(
-        input_, parameters_, hit, found, found - 1, [this](std::size_t i) { return indices_[i]; },
-        [this](std::size_t i) { return distances_[i]; }, answers);
+  auto found() const {
+    return FoundNeighbours{list_.size(), list_.size() - 1,
+                           [this](std::size_t i) { return indices_[i]; },
+                           [this](std::size_t i) { return distances_[i]; }};
   }
 
  private:
   const SearchInput& input_;
-  const SearchParameters& parameters_;
   std::vector<std::uint32_t> indices_;
   std::vector<float> distances_;
-  nanoflann::KNNResultSet<float, std::uint32_t> list_;
+  ResultSet list_;
   std::uint32_t oriented_face_ = 0;
 };
 
@@ -86,84 +100,78 @@ class FilteredList {
 class FilteredHeap {
  public:
   using DistanceType = float;
+  using IndexType = std::uint32_t;
 
   FilteredHeap(const SearchInput& input, const SearchParameters& parameters)
-      : input_(input), parameters_(parameters), heap_(parameters.k) {}
+      : input_(input),
+        squared_radius_(parameters.radius * parameters.radius),
+        heap_(parameters.k) {}
 
   void begin(std::uint32_t oriented_face) {
     oriented_face_ = oriented_face;
     heap_.clear();
   }
   bool full() const { return heap_.full(); }
-  float worstDist() const {
-    return heap_.full() ? heap_.farthest() : parameters_.radius * parameters_.radius;
-  }
+  float worstDist() const { return heap_.full() ? heap_.farthest() : squared_radius_; }
+  void sort() const {}
   bool addPoint(float squared_distance, std::uint32_t photon) {
-    // nanoflann looks at worstDist once a leaf; the heap needs it for each point.
+    // Debian's nanoflann looks at worstDist once a leaf; the heap needs it for each point.
     if (squared_distance >= worstDist()) return true;
-    if (!input_.filter.agree(input_.photons.oriented_face[photon], oriented_face_)) return true;
-    heap_.add({squared_distance, photon});
+    if (input_.counts(photon, oriented_face_)) heap_.add({squared_distance, photon});
     return true;
   }
-  void end(std::size_t hit, DensityAnswers& answers) const {
-    const auto& found = heap_.entries();
-    sum_density(
-        input_, parameters_, hit, found.size(), 0, [&](std::size_t i) { return found[i].photon; },
-        [&](std::size_t i) { return found[i].squared_distance; }, answers);
+  auto found() const {
+    const auto& entries = heap_.entries();
+    return FoundNeighbours{entries.size(), std::size_t{0},
+                           [&entries](std::size_t i) { return entries[i].photon; },
+                           [&entries](std::size_t i) { return entries[i].squared_distance; }};
   }
 
  private:
   const SearchInput& input_;
-  const SearchParameters& parameters_;
+  float squared_radius_;
   BoundedHeap heap_;
   std::uint32_t oriented_face_ = 0;
 };
 
-template <class ResultSet>
-class NanoflannSearch final : public HostSearch {
+template <class Candidates>
+class NanoflannSearch final : public HitByHit<NanoflannSearch<Candidates>> {
  public:
-  NanoflannSearch(const SearchInput& input, std::shared_ptr<const NanoflannIndex> index)
-      : input_(input), index_(std::move(index)) {}
+  NanoflannSearch(const SearchInput& input, std::shared_ptr<const Index> index)
+      : HitByHit<NanoflannSearch>(input), index_(std::move(index)) {}
 
-  void estimate(const PrimaryHits& hits, std::span<const std::uint32_t> order,
-                const SearchParameters& parameters, DensityAnswers& answers) const override {
-    resize(answers, hits.size(), input_.light_count);
-    constexpr std::size_t grain = 1024;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, order.size(), grain), [&](const auto& range) {
-          ResultSet results(input_, parameters);
-          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const std::uint32_t hit = order[i];
-            results.begin(hits.oriented_face[hit]);
-            index_->tree().findNeighbors(results, &hits.position[hit].x, nanoflann::SearchParams());
-            results.end(hit, answers);
-          }
-        });
+  Candidates make_worker(const SearchParameters& parameters) const {
+    return {this->input_, parameters};
+  }
+  template <class Write>
+  void find(Candidates& candidates, const PrimaryHits& hits, std::uint32_t hit, Write write) const {
+    candidates.begin(hits.oriented_face[hit]);
+    index_->tree.findNeighbors(candidates, &hits.position[hit].x, Parameters());
+    write(candidates.found());
   }
 
  private:
-  SearchInput input_;
-  std::shared_ptr<const NanoflannIndex> index_;
+  std::shared_ptr<const Index> index_;
 };
 
 }  // namespace
 
-std::shared_ptr<const NanoflannIndex> make_nanoflann_index(const Photons& photons) {
-  return std::make_shared<const NanoflannIndex>(photons);
-}
-
-std::unique_ptr<HostSearch> make_nanoflann_search(const SearchInput& input,
-                                                  std::shared_ptr<const NanoflannIndex> index,
-                                                  Candidates candidates) {
-  if (candidates == Candidates::heap) {
-    return std::make_unique<NanoflannSearch<FilteredHeap>>(input, std::move(index));
-  }
-  return std::make_unique<NanoflannSearch<FilteredList>>(input, std::move(index));
-}
-
-std::string nanoflann_version() {
-  return fmt::format("{:x}.{:x}.{:x}", NANOFLANN_VERSION >> 8, (NANOFLANN_VERSION >> 4) & 0xF,
-                     NANOFLANN_VERSION & 0xF);
+Nanoflann nanoflann_of_system() {
+#if NANOFLANN_VERSION < 0x10000
+  constexpr int digit = 4;
+#else
+  constexpr int digit = 8;
+#endif
+  const auto part = [](int place) {
+    return (NANOFLANN_VERSION >> (place * digit)) & ((1 << digit) - 1);
+  };
+  return {PHOTILE_NANOFLANN_NAME, fmt::format("{}.{}.{}", part(2), part(1), part(0)),
+          [](const SearchInput& input, std::size_t leaf_size) {
+            const auto index = std::make_shared<const Index>(input.photons, leaf_size);
+            return Nanoflann::Searches{
+                std::make_unique<NanoflannSearch<FilteredList>>(input, index),
+                std::make_unique<NanoflannSearch<FilteredHeap>>(input, index)};
+          }};
 }
 
 }  // namespace photile::bench

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -12,10 +13,10 @@
 #include "photile/statistics.hpp"
 #include "structures/structure.hpp"
 #include "support/estimate_check.hpp"
-#include "support/host_search.hpp"
-#include "support/kernel_seconds.hpp"
-#include "support/least_work.hpp"
+#include "support/morton_order.hpp"
 #include "support/point_file.hpp"
+#include "support/rivals.hpp"
+#include "support/turns.hpp"
 
 namespace photile::bench {
 namespace {
@@ -39,6 +40,9 @@ class PointBench {
         photons_(read_points(settings.photons)),
         queries_(read_points(settings.queries)),
         filter_(normals(), defaults::group_angle_degrees),
+        stored_(stored()),
+        hits_(hits()),
+        rivals_(stored_, filter_, hits_.oriented_face, 1),
         oracle_({filter_.normals().begin(), filter_.normals().end()}, 1.0, stored_,
                 defaults::group_angle_degrees) {
     if (photons_.normal.empty() != queries_.normal.empty()) {
@@ -49,30 +53,24 @@ class PointBench {
     record_.set("photons per cell", settings.photons_per_cell);
     record_.set("photons", settings.photons.filename().string());
     record_.set("queries", settings.queries.filename().string());
-    record_.set_version("nanoflann", nanoflann_version());
-    record_.set_version("embree", embree_version());
-    stored_.position = photons_.position;
-    stored_.flux.assign(photons_.position.size(), glm::vec3(1.0f));
-    stored_.oriented_face.resize(photons_.position.size());
-    std::iota(stored_.oriented_face.begin(), stored_.oriented_face.end(), 0u);
-    hits_.position = queries_.position;
-    hits_.oriented_face.resize(queries_.position.size());
-    std::iota(hits_.oriented_face.begin(), hits_.oriented_face.end(),
-              static_cast<std::uint32_t>(stored_.size()));
+    for (const auto& [library, version] : rival_versions()) record_.set_version(library, version);
   }
 
   bool run(std::vector<Device>& devices) {
     for (const int k : settings_.neighbours) {
       const double radius = settings_.radius > 0 ? settings_.radius : automatic_radius(stored_, k);
       check_.emplace(oracle_, stored_.size(), TimedEstimate{k, radius}, hits_);
-      run_host(k, radius);
+      std::vector<Contestant> contestants;
+      add_rivals(contestants, k, radius);
       for (Device& device : devices) {
         for (const Structure& structure : structures::all()) {
           if (!settings_.wants(structure.name) || !worth_running(structure, stored_.size()))
             continue;
-          run_device(device, structure, k, radius);
+          add_structure(contestants, device, structure, k, radius);
         }
       }
+      disagreements_ += take_turns(contestants, repeats_);
+      for (Contestant& one : contestants) record_.add(std::move(one.row));
     }
     record_.write();
     return disagreements_ == 0;
@@ -91,30 +89,42 @@ class PointBench {
     return all;
   }
 
-  void run_host(int k, double radius) {
-    const SearchInput input{stored_, filter_, 1};
+  /// The photons of the file: each of flux 1, on a face of its own.
+  Photons stored() const {
+    Photons photons;
+    photons.position = photons_.position;
+    photons.flux.assign(photons_.position.size(), glm::vec3(1.0f));
+    photons.oriented_face.resize(photons_.position.size());
+    std::iota(photons.oriented_face.begin(), photons.oriented_face.end(), 0u);
+    return photons;
+  }
+
+  PrimaryHits hits() const {
+    PrimaryHits hits;
+    hits.position = queries_.position;
+    hits.oriented_face.resize(queries_.position.size());
+    std::iota(hits.oriented_face.begin(), hits.oriented_face.end(),
+              static_cast<std::uint32_t>(stored_.size()));
+    return hits;
+  }
+
+  /// Each library at its best, with queries in Morton order; the sort is not timed.
+  void add_rivals(std::vector<Contestant>& contestants, int k, double radius) {
     const SearchParameters parameters{static_cast<std::size_t>(k), static_cast<float>(radius)};
-    std::vector<std::uint32_t> order(hits_.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto time = [&](const char* name, const HostSearch& search, double build_seconds) {
-      DensityAnswers answers;
-      const Timing timing =
-          measure(repeats_, [&] { search.estimate(hits_, order, parameters, answers); });
-      nlohmann::json row = row_of(name, "host", "", k, radius, timing);
-      row["build"] = build_seconds;
-      add(std::move(row), answers.irradiance, answers.squared_radius);
-    };
-    const Stopwatch nanoflann_watch;
-    const auto index = make_nanoflann_index(stored_);
-    const double nanoflann_seconds = nanoflann_watch.seconds();
-    time("nanoflann-heap", *make_nanoflann_search(input, index, Candidates::heap),
-         nanoflann_seconds);
-    time("nanoflann", *make_nanoflann_search(input, index, Candidates::sorted_list),
-         nanoflann_seconds);
-    const Stopwatch embree_watch;
-    const auto embree = make_embree_search(input);
-    const double embree_seconds = embree_watch.seconds();
-    time("embree", *embree, embree_seconds);
+    const auto order =
+        std::make_shared<const std::vector<std::uint32_t>>(morton_order(hits_.position));
+    for (const Rivals::Library& library : rivals_.at_their_best(hits_, parameters)) {
+      const auto answers = std::make_shared<DensityAnswers>();
+      contestants.push_back({row_of(library.name, "host", "", k, radius),
+                             [this, answers, order, parameters, search = library.best().search] {
+                               search->estimate(hits_, *order, parameters, *answers);
+                             },
+                             [this, answers](nlohmann::json& row) {
+                               return differences(row, answers->irradiance,
+                                                  answers->squared_radius);
+                             }});
+      library.add_to(contestants.back().row);
+    }
   }
 
   /// Photons in a structure: maps that place points themselves, or that are asked at hits.
@@ -171,60 +181,44 @@ class PointBench {
     return squared_radius;
   }
 
-  void run_device(Device& device, const Structure& structure, int k, double radius) {
-    const DeviceInfo& info = device.info();
+  void add_structure(std::vector<Contestant>& contestants, Device& device,
+                     const Structure& structure, int k, double radius) {
+    nlohmann::json row =
+        row_of(structure.name, device.info().name, device.info().driver_version, k, radius);
     try {
       const Stopwatch build_watch;
-      Subject subject = built(device, structure, radius);
-      const double build_seconds = build_watch.seconds();
-      Estimates estimates;
-      std::vector<double> kernel_seconds;
-      const Timing timing = measure_returned(repeats_, [&] {
-        const Stopwatch watch;
-        kernel_seconds.push_back(
-            kernel_seconds_of(device, [&] { estimates = estimate(subject, k); }));
-        return watch.seconds();
-      });
-      kernel_seconds.erase(kernel_seconds.begin());  // of the call that is not timed
-      nlohmann::json row =
-          row_of(structure.name, info.name, info.driver_version, k, radius, timing);
-      row["kernel seconds"] = Timing{kernel_seconds}.median();
-      row["build"] = build_seconds;
-      row["map bytes"] = subject.statistics().device_bytes;
-      row["references"] = subject.statistics().references;
-      add(std::move(row), estimates.irradiance, squared_radii(subject, k, radius));
+      const auto subject = std::make_shared<Subject>(built(device, structure, radius));
+      row["build"] = build_watch.seconds();
+      row["map bytes"] = subject->statistics().device_bytes;
+      row["references"] = subject->statistics().references;
+      const auto estimates = std::make_shared<Estimates>();
+      *estimates = estimate(*subject, k);  // a device that has no memory for it says so now
+      contestants.push_back(
+          {std::move(row), [this, subject, estimates, k] { *estimates = estimate(*subject, k); },
+           [this, subject, estimates, k, radius](nlohmann::json& done) {
+             return differences(done, estimates->irradiance, squared_radii(*subject, k, radius));
+           },
+           &device});
     } catch (const DeviceError& error) {
-      record_.add({{"structure", structure.name},
-                   {"device", info.name},
-                   {"driver", info.driver_version},
-                   {"k", k},
-                   {"failure", error.what()}});
+      row["failure"] = error.what();
+      record_.add(std::move(row));
     }
   }
 
   nlohmann::json row_of(const std::string& structure, const std::string& device,
-                        const std::string& driver, int k, double radius,
-                        const Timing& timing) const {
-    nlohmann::json row{{"structure", structure},    {"device", device},          {"driver", driver},
-                       {"photons", stored_.size()}, {"queries", hits_.size()},   {"k", k},
-                       {"radius", radius},          {"seconds", to_json(timing)}};
-    LeastWork(hits_.size(), k).add_to(row, timing.median());
-    return row;
+                        const std::string& driver, int k, double radius) const {
+    return {{"structure", structure},    {"device", device},        {"driver", driver},
+            {"photons", stored_.size()}, {"queries", hits_.size()}, {"k", k},
+            {"radius", radius}};
   }
 
-  void add(nlohmann::json row, const std::vector<glm::vec3>& irradiance,
-           const std::vector<float>& squared_radius) {
+  std::uint64_t differences(nlohmann::json& row, const std::vector<glm::vec3>& irradiance,
+                            const std::vector<float>& squared_radius) const {
     const std::uint64_t radii = check_->radii_that_differ(squared_radius);
     const std::uint64_t irradiances = check_->irradiances_that_differ(irradiance);
     row["radii that differ"] = radii;
     row["irradiances that differ"] = irradiances;
-    if (radii + irradiances > 0) {
-      print_fault(
-          fmt::format("k = {}, {}", row["k"].get<int>(), row["structure"].get<std::string>()),
-          radii + irradiances);
-    }
-    disagreements_ += radii + irradiances;
-    record_.add(std::move(row));
+    return radii + irradiances;
   }
 
   Repeats repeats_;
@@ -234,6 +228,7 @@ class PointBench {
   NormalFilter filter_;
   Photons stored_;
   PrimaryHits hits_;
+  Rivals rivals_;
   reference::DensityOracle oracle_;
   std::optional<EstimateCheck> check_;  ///< of the k at hand
   std::uint64_t disagreements_ = 0;

@@ -17,6 +17,17 @@ struct Timing {
   double median() const;
 };
 
+/// What the repeats of a case took, counted apart.
+struct RunTimes {
+  Timing wall;
+  /// Of all threads of this process: other programs disturb it least.
+  Timing processor;
+  Timing system;  ///< the operating system's part of that: above all, memory touched at first
+
+  /// Runs it once.
+  void count(const std::function<void()>& run);
+};
+
 /// How often a case runs.
 struct Repeats {
   int most = 5;

@@ -4,20 +4,26 @@
     bench/tools/compare.py BEFORE.json AFTER.json
 
 Rows belong together where all that was not measured in them is the same: workload, structure, number of
-photons, k. A time has changed where the ranges of its repeats do not overlap; the factor is that of
-the medians. What differs between the runs (machine, device, driver, settings) comes first, since the
-times are then those of other things.
+photons, k. The samples of a time are paired in their order: those of `bench.py pairs` ran side by side. A time
+has changed where so many pairs say so that chance would in one case of 16 at most (the sign test: all of five,
+eight of nine); fewer than five pairs decide nothing. The factor is the median of those of the pairs. Where
+device and host are one processor, its seconds stand for those that a caller waits. What differs between the
+runs (machine, device, driver, settings) comes first, since the times are then those of other things.
 """
 
 import argparse
 import json
+import math
 import pathlib
+import statistics
 import sys
 
 # What is about a run, and may differ without a time being another's.
 ABOUT = ("machine", "device", "versions", "settings", "commit")
 # Results that are neither times nor what was measured.
 COUNTS = ("references", "nodes", "device bytes", "queries")
+LEAST_PAIRS = 5
+CHANCE = 1 / 16
 
 
 def is_time(value):
@@ -40,43 +46,62 @@ def with_range(time):
     return f"{time['median']:.4g} [{time['min']:.4g}, {time['max']:.4g}]"
 
 
-def for_as_many_queries(time, of, requested):
-    """What as many queries as `requested` has would take: slow cases answer fewer."""
-    ratio = requested.get("queries", 1) / (of.get("queries", 1) or 1) if "queries" in of else 1
-    return {part: ratio * time[part] for part in ("median", "min", "max")}
+def samples_a_query(row, name):
+    """The samples of a time: a slow case may have answered fewer queries than its like."""
+    time = row[name]
+    return [sample / (row.get("queries") or 1) for sample in time.get("samples", [time["median"]])]
 
 
-def change(before, after):
-    """1 where the time is longer beyond the noise, -1 where it is shorter, else 0."""
-    if after["min"] > before["max"]:
-        return 1
-    return -1 if after["max"] < before["min"] else 0
+def chance(longer, shorter):
+    """How likely pairs that differ by noise alone are to agree so well, in either direction."""
+    pairs = longer + shorter
+    return min(1, 2 * sum(math.comb(pairs, i) for i in range(min(longer, shorter) + 1)) / 2**pairs)
+
+
+def change(pairs):
+    """1 where the second of the pairs is longer beyond the noise, -1 where it is shorter, else 0."""
+    longer = sum(second > first for first, second in pairs)
+    shorter = sum(second < first for first, second in pairs)
+    if longer + shorter < LEAST_PAIRS or chance(longer, shorter) > CHANCE:
+        return 0
+    return 1 if longer > shorter else -1
+
+
+def times_of(row, one_processor):
+    """The names of the times that count."""
+    names = [name for name, value in row.items() if is_time(value)]
+    if "processor seconds" not in names:
+        return names
+    if one_processor:
+        return ["processor seconds"]
+    return [name for name in names if name not in ("processor seconds", "system seconds")]
 
 
 def compare(before, after):
-    """Lines that say what changed, and the number of times compared."""
-    lines, compared = [], 0
+    """Lines that say what changed, the number of times compared, and of those with too few pairs."""
+    lines, compared, few = [], 0, 0
     rows = {key_of(row): row for row in before["results"]}
+    one_processor = (after.get("device") or {}).get("type") == "cpu"
     for row in after["results"]:
         key = key_of(row)
         old = rows.pop(key, None)
         if old is None:
             lines.append(f"only after: {words_of(key)}")
             continue
-        for name, time in row.items():
-            if not is_time(time) or not is_time(old.get(name)):
+        for name in times_of(row, one_processor):
+            if not is_time(old.get(name)):
                 continue
             compared += 1
-            earlier = for_as_many_queries(old[name], old, row)
-            direction = change(earlier, time)
+            pairs = list(zip(samples_a_query(old, name), samples_a_query(row, name)))
+            few += len(pairs) < LEAST_PAIRS
+            direction = change(pairs)
             if direction != 0:
-                ratio = max(time["median"], earlier["median"]) / min(time["median"],
-                                                                     earlier["median"])
-                lines.append(f"{ratio:.2f} x {'slower' if direction > 0 else 'faster'}: "
-                             f"{words_of(key)}, {name} {with_range(earlier)} -> "
-                             f"{with_range(time)} s")
+                ratio = statistics.median(second / first for first, second in pairs if first > 0)
+                lines.append(f"{max(ratio, 1 / ratio):.2f} x {'slower' if direction > 0 else 'faster'}: "
+                             f"{words_of(key)}, {name} {with_range(old[name])} -> "
+                             f"{with_range(row[name])} s, {len(pairs)} pairs")
     lines += [f"only before: {words_of(key)}" for key in rows]
-    return lines, compared
+    return lines, compared, few
 
 
 def differences(before, after):
@@ -111,11 +136,14 @@ def compare_files(before_file, after_file):
                  f"{after_file} of {after.get('bench')}; compare files of one bench")
     for line in differences(before, after):
         print(f"not the same: {line}")
-    lines, compared = compare(before, after)
+    lines, compared, few = compare(before, after)
     for line in lines:
         print(line)
     changed = sum(" x " in line for line in lines)
     print(f"{changed} of {compared} times changed beyond the noise")
+    if few:
+        print(f"{few} have fewer than {LEAST_PAIRS} pairs, which decide nothing: use --repeats {LEAST_PAIRS} or "
+              "more")
 
 
 def main():

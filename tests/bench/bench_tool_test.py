@@ -72,6 +72,24 @@ class BenchToolTest(unittest.TestCase):
         self.assertEqual(run("compare", "a.json").returncode, 2)
         self.assertEqual(run("list", "--fast").returncode, 2)
 
+    def test_pairs_run_in_turns_and_are_compared(self):
+        """A stand-in whose time is the turn's, and half as much again with the option of the second."""
+        program = self.folder / "photile_bench_knn"
+        program.write_text(f"""#!/usr/bin/python3
+import json, sys
+log = open("{self.folder}/log", "a+"); log.write(" ".join(sys.argv[3:]) + "\\n"); log.seek(0)
+time = (len(log.readlines()) + 1) // 2 + (0.5 if "--cells" in sys.argv else 0)
+row = {{"k": 50, "seconds": {{"median": time, "min": time, "max": time, "samples": [time]}}}}
+json.dump({{"bench": "knn", "results": [row]}}, open(sys.argv[2], "w"))
+""")
+        result = run("pairs", "knn", "--benches", self.folder, "--turns", 6, "-k", 50, "--", "--cells", 8)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("6 pairs", result.stdout)
+        self.assertIn("slower: k 50, seconds", result.stdout)
+        with_cells = ["--cells" in line for line in (self.folder / "log").read_text().splitlines()]
+        self.assertEqual(with_cells, [False, True, True, False] * 3)
+        self.assertEqual(run("pairs", "knn").returncode, 2)  # both would be the same
+
     def test_a_comparison_names_files_that_are_not_there(self):
         result = run("compare", self.folder / "a.json", self.folder / "b.json")
         self.assertNotEqual(result.returncode, 0)
