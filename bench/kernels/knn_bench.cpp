@@ -296,7 +296,7 @@ class KnnBench {
                      std::shared_ptr<Searched> searched) {
     const auto found = std::make_shared<NeighbourLists>();
     const auto list = [searched, found](const PrimaryHits& hits) {
-      *found = searched->estimator.nearest(hits);
+      *found = searched->estimator.nearest(hits, ListOrder::any);
     };
     const auto asked = std::make_shared<HitSample>(affordable_hits(c.hits, repeats_, list));
     return {row_of(c, structure.name + list_rows, *asked), [list, asked] { list(asked->hits); },

@@ -29,20 +29,20 @@ def arguments():
     return parser.parse_args()
 
 
+def load(results):
+    """What is said of other programs, or ""."""
+    average = results["knn"]["machine"]["load average at start"]
+    if average <= BUSY_LOAD:
+        return ""
+    return (f"other programs were running (load average {average:.1f} before the search was timed). Ratios of the search "
+            "are of runs in turns and of the processor's seconds; times that a caller waits are longer than on a "
+            "machine with nothing else to do")
+
+
 def doubts(results):
     """Why the numbers are not to be relied on; empty where they are."""
-    reasons = []
-    # The benches run one after another: the load before the first is that of other programs.
-    load = results["knn"]["machine"]["load average at start"]
-    if load > BUSY_LOAD:
-        reasons.append(f"other programs were running (load average {load:.1f} before the first "
-                       "bench), and more or fewer of them from one row to the next, so ratios are "
-                       "as doubtful as times")
     single = [name for name, result in results.items() if result["settings"].get("repeats", 3) < 3]
-    if single:
-        reasons.append(f"fewer than three repeats ({', '.join(single)}), so the brackets do not "
-                       "show the spread")
-    return reasons
+    return [f"fewer than three repeats ({', '.join(single)}), so the brackets do not show the spread"] if single else []
 
 
 def machine_of(result):
@@ -82,10 +82,19 @@ def machine_section(results):
         + ".",
         *other_machines(results),
     ]
+    if load(results):
+        lines.append(f"**Load**: {load(results)}.")
     lines += [f"**Provisional**: {reason}." for reason in doubts(results)]
     if any(result["settings"]["quick"] for result in results.values()):
         lines.append("**From a smoke test (`--quick`): these numbers mean nothing.**")
     return "  \n".join(lines)
+
+
+def structure_and_selection(knn):
+    """Its section, of a million photons; none where a run left out the structures."""
+    rows = [row for rows in report_tables.cases_of_a_million(knn).values() for row in rows]
+    text = report_ratios.structure_and_selection(rows)
+    return ["### Structure and selection", text] if text else []
 
 
 def page(results, plots, ratio_plots, notes):
@@ -98,14 +107,18 @@ def page(results, plots, ratio_plots, notes):
         "On a GPU: `PHOTILE_DEVICE=gpu bench/run_all.sh --docs`.",
         "## Targets", report_targets.write_table(results, bool(doubts(results))),
         "## Search and estimate against the number of photons",
-        report_tables.knn_text(),
+        report_tables.knn_text(results["knn"]),
         "\n\n".join(f"![Time against photons: {name}](benchmarks/{file})"
                     for name, file in plots),
         report_tables.knn(results["knn"]),
+        *structure_and_selection(results["knn"]),
+        "### Lists", report_tables.lists(results["knn"], results.get("python_neighbours")),
+        "### Kernels and the rest", report_tables.parts_of_time(results["knn"]),
+        "### Variants of nanoflann", report_tables.variants(results["knn"]),
         "### As ratios",
         "\n\n".join(f"![Time over that of the uniform grid: {name}](benchmarks/{file})"
                     for name, file in ratio_plots),
-        report_ratios.text([row for row in results["knn"]["results"] if row["k"] == RATIO_K]),
+        report_ratios.text([row for row in report_tables.timed(results["knn"]) if row["k"] == RATIO_K]),
         "## Where the time of an estimate goes", report_kernels.profile(results["profile"]),
         "## Kinds of scenes", report_kernels.specialisations(results["kernels"]),
         "## Beside the limits of the device", report_kernels.roofline(results["kernels"]),
@@ -131,6 +144,9 @@ def main():
     for bench in BENCHES:
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
+    python = options.results / "python_neighbours.json"
+    if python.exists():
+        results["python_neighbours"] = json.loads(python.read_text(encoding="utf-8"))
     plots = report_plots.draw_knn(results["knn"], caption(results, "knn"), options.results)
     ratio_plots = report_plots.draw_ratios(results["knn"], caption(results, "knn"), options.results)
     report_lights.draw(results["lights"], caption(results, "lights"), options.results)

@@ -1,6 +1,9 @@
 """Tables of docs/benchmarks.md."""
 
-REFERENCE = "nanoflann"
+import statistics
+
+RIVALS = ("nanoflann", "nanoflann, newer", "embree")
+LISTS = ", lists"  # ends the names of rows that list the neighbours
 TARGET_PHOTONS = 1_000_000
 
 
@@ -23,24 +26,62 @@ def figure(ratio):
     return f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0f}"
 
 
-def knn_text():
-    return """
-Microseconds a query; all hardware threads, the same queries, in the order of the renderer: by oriented
-face, then along a Morton curve. All find the k nearest photons within R (`automatic_radius`,
-twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1 over
-the disc, per light. Maps are those of `--set maps=auto`, the default.
+def time_name(result):
+    """The time that rows are compared by: where device and host are one processor, its seconds."""
+    return "processor seconds" if result.get("device", {}).get("type") == "cpu" else "seconds"
 
+
+def timed(result):
+    """The rows of photile_bench_knn that have times, each with the one that counts as its "time"."""
+    name = time_name(result)
+    return [{**row, "time": row.get(name, row["seconds"])} for row in result["results"] if "seconds" in row]
+
+
+def samples_a_query(row):
+    return [sample / row["queries"] for sample in row["time"]["samples"]]
+
+
+def ratio(row, base):
+    """How many times as long a row takes as another of its case: the median of the rounds, in each of which
+    both ran."""
+    return statistics.median(a / b for a, b in zip(samples_a_query(row), samples_a_query(base)))
+
+
+def best_rival(rows, lists=False):
+    """Of the rows of one case the rival that takes least; None without any."""
+    names = [name + LISTS * lists for name in RIVALS]
+    rivals = [row for row in rows if row["structure"] in names]
+    return min(rivals, key=lambda row: row["time"]["median"] / row["queries"], default=None)
+
+
+def knn_text(result):
+    versions = result["versions"]
+    newer = versions.get("nanoflann, newer")
+    given = (f"`nanoflann, newer` is {newer}" if newer else
+             "a newer nanoflann was not at hand: `-DPHOTILE_NANOFLANN=FOLDER` takes its header")
+    return f"""
+{time_name(result).capitalize().replace("seconds", "microseconds")} a query; all hardware threads, the same queries, in
+the order of the renderer: by oriented face, then along a Morton curve. All find the k nearest photons within R
+(`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1
+over the disc, per light. Maps are those of `--set maps=auto`, the default.
+
+- **In turns**: all of a case run once, then all again, five times. A ratio is the median of those of the rounds, so
+  that other programs slow both sides of it; on a device that is the host's processor the seconds are those of the
+  processor, of all threads together.
+- **Rivals at their best**: photons and queries are in Morton order, normals are looked up only where they differ, code
+  is compiled with `-march=native`. Of nanoflann's 3D tree the fastest of leaves of 10, 20, 32 and 64, with its own set
+  of results or with a heap, is chosen for each case. `nanoflann` is Debian's {versions.get("nanoflann", "")}, {given}.
+  `embree` is rtcPointQuery with a heap.
 - Times on the device are those of `Estimator::estimate`: transfers in and out are in them.
-- `nanoflann` is a 3D tree over all photons with leaves of 10 and its own result set,
-  `nanoflann-heap` the same with a heap, `nanoflann-morton` with queries in Morton order over the
-  whole scene. `embree` is rtcPointQuery with a heap. They are compiled with `-march=native`.
+- `uniform-grid-heap` has the cells of the grid and a heap, `kdtree-2d-radix-N` a tree with leaves of N and the grid's
+  selection: [structure and selection](#structure-and-selection).
 - *plane*: two triangles, uniform photons, 524,288 queries. Interiors: traced photons, the primary
   hits of the camera at 512 x 512, every surface diffuse. Slow cases answer every 2nd, 4th, ... block
   of 256 queries.
-- Every run compares results with nanoflann's and fails where one differs: irradiance on the plane
-  (within 0.01%), elsewhere the distance to the k-th photon.
+- Radius and irradiance are compared with a search in double precision at some hits, and where one differs the bench
+  fails.
 
-The ratio is nanoflann's time over that of the row: more is better, below 1 is slower."""
+The ratio is the time of the best rival of the case over that of the row: more is better, below 1 is slower."""
 
 
 PRODUCT_MAPS = "auto"  # of the setting maps; other rows show what it saves
@@ -56,40 +97,97 @@ def near_target(photons):
     return abs(photons - TARGET_PHOTONS) <= 0.05 * TARGET_PHOTONS
 
 
+def cases_of_a_million(result):
+    """{(workload, photons): rows}, those of the number of photons nearest to a million."""
+    cases = {}
+    for row in timed(result):
+        cases.setdefault(row["workload"], {}).setdefault(row["photons"], []).append(row)
+    return {(workload, photons): counts[photons] for workload, counts in cases.items()
+            for photons in [min(counts, key=lambda count: abs(count - TARGET_PHOTONS))]}
+
+
 def knn(result):
     """The tables of a million photons; those of other numbers are in the plots and the data."""
-    parts = []
-    rows = result["results"]
-    for workload in dict.fromkeys(row["workload"] for row in rows):
-        counts = list(dict.fromkeys(r["photons"] for r in rows if r["workload"] == workload))
-        photons = next((count for count in counts if near_target(count)), max(counts))
-        chosen = [r for r in rows if r["workload"] == workload and r["photons"] == photons]
-        parts.append(f"**{workload}, {photons:,} photons**\n\n" + knn_table(chosen))
-    return "\n\n".join(parts)
+    return "\n\n".join(f"**{workload}, {photons:,} photons**\n\n"
+                       + knn_table([row for row in rows if LISTS not in row["structure"]])
+                       for (workload, photons), rows in cases_of_a_million(result).items())
 
 
-def seconds_per_query(row):
-    return row["seconds"]["median"] / row["queries"]
-
-
-def knn_table(rows):
-    ks = sorted({row["k"] for row in rows})
-    by_key = {(row["structure"], row["k"]): row for row in rows}
+def knn_table(rows, lists=False):
+    """A row a structure; those of a k are one case."""
+    cases = {k: [row for row in rows if row["k"] == k] for k in sorted({row["k"] for row in rows})}
     lines = []
     for structure in dict.fromkeys(row["structure"] for row in rows):
         cells = [structure]
-        for k in ks:
-            row = by_key.get((structure, k), {})
-            if "seconds" not in row:
-                cells += ["failed" if "failure" in row else "", ""]
-                continue
-            ratio = seconds_per_query(by_key[REFERENCE, k]) / seconds_per_query(row)
-            cells += [times(row["seconds"], 1e6 / row["queries"]), figure(ratio)]
+        for case in cases.values():
+            row = next((row for row in case if row["structure"] == structure), None)
+            base = best_rival(case, lists)
+            cells += [times(row["time"], 1e6 / row["queries"]) if row else "",
+                      figure(1 / ratio(row, base)) if row and base else ""]
         lines.append(cells)
     header = ["structure"]
-    for k in ks:
+    for k in cases:
         header += [f"k = {k}", "ratio"]
     return table(header, lines)
+
+
+def lists(result, python):
+    """Tables of lists of neighbours; `python`: what bench/rivals/python_neighbours.py wrote, or None."""
+    parts = ["""The neighbours themselves, as `Estimator::nearest` and `PhotonCloud::nearest` give them. The rivals' lists stay in
+the order of their search; those of the grid are sorted by the host."""]
+    for (workload, photons), rows in cases_of_a_million(result).items():
+        chosen = [row for row in rows if LISTS in row["structure"]]
+        if chosen:
+            parts.append(f"**{workload}, {photons:,} photons**\n\n" + knn_table(chosen, True))
+    if python:
+        versions = ", ".join(f"{name} {version}" for name, version in python["versions"].items())
+        parts.append(f"""By libraries of Python and photile's module, in turns in one process, on the points of the plane;
+`bench/rivals/python_neighbours.py`; {versions}. Processor microseconds a query, and how many times as long as
+photile's lists, nearest first, and their squared distances.""")
+        rows = [{**row, "time": row["processor seconds"]} for row in python["results"] if "seconds" in row]
+        ks = sorted({row["k"] for row in rows})
+        lines = []
+        for name in dict.fromkeys(row["structure"] for row in rows):
+            cells = [name.removesuffix(LISTS).replace("uniform-grid", "photile")]
+            for k in ks:
+                case = {row["structure"]: row for row in rows if row["k"] == k}
+                cells += [times(case[name]["time"], 1e6 / case[name]["queries"]),
+                          figure(ratio(case[name], case["uniform-grid" + LISTS]))]
+            lines.append(cells)
+        parts.append(table(["", *(head for k in ks for head in (f"k = {k}", "over photile"))], lines))
+    return "\n\n".join(parts)
+
+
+def parts_of_time(result):
+    """What a caller of the grid waits for: kernels, and all else."""
+    lines = []
+    for (workload, _), rows in cases_of_a_million(result).items():
+        for row in rows:
+            if row["structure"].split(LISTS)[0] != "uniform-grid" or "kernel seconds" not in row:
+                continue
+            part = {name: 1e9 * row[f"{name}seconds"]["median"] / row["queries"]
+                    for name in ("", "kernel ", "processor ", "system ")}
+            lines.append([f"{workload}, {row['structure']}, k = {row['k']}",
+                          *(f"{value:.0f}" for value in (part[""], part["kernel "], part[""] - part["kernel "],
+                                                         part["processor "], part["system "]))])
+    return ("Nanoseconds a query of the grid: what a caller waits, of which kernels run, and host and transfers take the "
+            "rest; seconds of the processor, of which the operating system's are above all memory that is touched for the "
+            "first time.\n\n" + table(["case", "in all", "kernels", "the rest", "processor", "operating system"], lines))
+
+
+def variants(result):
+    """How nanoflann's leaves and sets compare: times of the trial over those of the best."""
+    columns = {}
+    for (workload, _), rows in cases_of_a_million(result).items():
+        for row in rows:
+            if "variants" in row and LISTS not in row["structure"]:
+                least = row["variants"][0]["seconds"]
+                columns[f"{row['structure']}: {workload}, {row['k']}"] = {
+                    one["variant"]: one["seconds"] / least for one in row["variants"]}
+    names = sorted({name for column in columns.values() for name in column})
+    lines = [[head, *(f"{column[name]:.2f}" for name in names)] for head, column in columns.items()]
+    return ("The variants of nanoflann, over the best of each case; the trial is on a 64th of the queries.\n\n"
+            + table(["case, k", *names], lines))
 
 
 def paper(result):

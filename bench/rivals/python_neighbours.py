@@ -130,7 +130,7 @@ def measure(points, queries, k, repeats):
 def main():
     given = arguments()
     points, queries = plane(given.photons, 1), plane(given.queries, 3)
-    record = {"schema version": 1, "bench": "python_neighbours", "date": str(datetime.date.today()),
+    record = {"schema version": 2, "bench": "python_neighbours", "date": str(datetime.date.today()),
               "machine": {"processor": processor_name(), "hardware threads": os.cpu_count(),
                           "load average at start": os.getloadavg()[0]},
               "settings": {"quick": False, "repeats": given.repeats},

@@ -118,7 +118,13 @@ struct Estimates {
   void append(Estimates part);
 };
 
-/// Neighbours of a batch of hits: photon indices, ascending, `none` beyond the last.
+/// Whose order is requested of a list of neighbours.
+enum class ListOrder {
+  ascending,  ///< by photon index: the same on every device
+  any         ///< sorted by nobody, which takes half of the time
+};
+
+/// Neighbours of a batch of hits: photon indices, `none` beyond the last.
 struct NeighbourLists {
   int k = 0;
   std::vector<std::uint32_t> photons;  ///< hits x k
@@ -145,7 +151,7 @@ class Estimator {
   Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
 
   /// The neighbours themselves, for tests and inspection.
-  NeighbourLists nearest(const PrimaryHits& hits);
+  NeighbourLists nearest(const PrimaryHits& hits, ListOrder order = ListOrder::ascending);
 
  private:
   struct Impl;

@@ -12,7 +12,8 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench/kernels/report_rat
 
 def row(structure, seconds, queries, photons=1000, **more):
     return {"workload": "plane", "structure": structure, "k": 50, "photons": photons,
-            "queries": queries, "seconds": {"median": seconds}, **more}
+            "queries": queries, "seconds": {"median": seconds, "min": seconds, "max": seconds,
+                                           "samples": [seconds]}, **more}
 
 
 class RatiosTest(unittest.TestCase):

@@ -31,7 +31,15 @@ def scale_result(**stages):
 
 
 def timing(seconds):
-    return {"median": seconds, "min": seconds, "max": seconds}
+    return {"median": seconds, "min": seconds, "max": seconds, "samples": [seconds]}
+
+
+def knn_row(structure, *samples, queries=100, k=50, **more):
+    """A row of a million photons on the plane, whose rounds took so long."""
+    time = {"median": sorted(samples)[len(samples) // 2], "min": min(samples), "max": max(samples),
+            "samples": list(samples)}
+    return {"workload": "plane", "structure": structure, "photons": 1_000_000, "k": k, "queries": queries,
+            "seconds": time, **more}
 
 
 class Scale(unittest.TestCase):
@@ -65,14 +73,40 @@ class Scale(unittest.TestCase):
 
 
 class Knn(unittest.TestCase):
-    def test_ratios_are_of_times_a_query_where_cases_were_asked_differently_often(self):
-        rows = [{"structure": "nanoflann", "k": 50, "queries": 100, "seconds": timing(1)},
-                {"structure": "uniform-grid", "k": 50, "queries": 1000, "seconds": timing(0.5)}]
+    def test_ratios_are_to_the_best_rival_a_query_where_cases_were_asked_differently_often(self):
+        rows = report_tables.timed({"results": [
+            knn_row("nanoflann", 2), knn_row("nanoflann, newer", 1), knn_row("embree", 4),
+            knn_row("uniform-grid", 0.5, queries=1000)]})
         lines = report_tables.knn_table(rows).splitlines()
+        self.assertEqual(lines[2], "| nanoflann | 20,000 (20,000-20,000) | 0.5 |")
         self.assertEqual(lines[-1], "| uniform-grid | 500 (500-500) | 20 |")
 
+    def test_a_ratio_is_the_median_of_those_of_the_rounds(self):
+        result = {"results": [knn_row("nanoflann", 10, 80, 30), knn_row("uniform-grid", 1, 8, 2)]}
+        self.assertAlmostEqual(report_targets.speedup({"knn": result}, "plane", 50, "nanoflann"), 10)
+
+    def test_on_a_cpu_the_processor_counts_and_elsewhere_what_a_caller_waits(self):
+        rows = [knn_row("nanoflann", 6), {**knn_row("uniform-grid", 2), "processor seconds": timing(1)}]
+        for kind, faster in (("cpu", 6), ("gpu", 3)):
+            knn = {"device": {"type": kind}, "results": rows}
+            self.assertAlmostEqual(report_targets.speedup({"knn": knn}, "plane", 50, report_targets.BEST), faster)
+
+    def test_lists_are_held_against_lists(self):
+        result = {"results": [knn_row("nanoflann", 8), knn_row("nanoflann, lists", 6),
+                              knn_row("uniform-grid", 1), knn_row("uniform-grid, lists", 3)]}
+        self.assertAlmostEqual(
+            report_targets.speedup({"knn": result}, "plane", 50, report_targets.BEST, lists=True), 2)
+        self.assertNotIn("lists", report_tables.knn(result))
+        self.assertIn("| uniform-grid, lists | 30,000 (30,000-30,000) | 2 |", report_tables.lists(result, None))
+
+    def test_what_is_no_kernel_is_the_rest(self):
+        row = knn_row("uniform-grid", 3e-6, **{"kernel seconds": timing(2e-6), "processor seconds": timing(5e-6),
+                                               "system seconds": timing(1e-6)})
+        self.assertIn("| plane, uniform-grid, k = 50 | 30 | 20 | 10 | 50 | 10 |",
+                      report_tables.parts_of_time({"results": [row]}))
+
     def test_a_structure_that_no_style_names_is_drawn_beside_the_others(self):
-        rows = [{"structure": name, "photons": 10, "queries": 1, "seconds": timing(1)}
+        rows = [{"structure": name, "photons": 10, "queries": 1, "time": timing(1)}
                 for name in ("my-list", "uniform-grid")]
         axis = unittest.mock.Mock()
         report_plots.draw_times(axis, rows)

@@ -1,8 +1,10 @@
 #include "photile/photon_cloud.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -196,26 +198,32 @@ CloudNeighbours PhotonCloud::nearest(std::span<const glm::vec3> points,
                                      std::span<const glm::vec3> normals, int k, double radius) {
   Estimator estimator(impl_->photon_maps, Scene(),
                       {.neighbours = k, .radius = radius, .area = AreaMode::disc});
-  NeighbourLists lists = estimator.nearest(impl_->place(points, normals));
+  NeighbourLists lists = estimator.nearest(impl_->place(points, normals), ListOrder::any);
   CloudNeighbours result;
   result.k = k;
   result.photons = std::move(lists.photons);
   result.squared_distance.resize(result.photons.size(), std::numeric_limits<float>::infinity());
   const auto width = static_cast<std::size_t>(k);
-  std::vector<std::pair<double, std::uint32_t>> row;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    row.clear();
-    for (std::size_t j = i * width; j < (i + 1) * width && result.photons[j] != none; ++j) {
-      const glm::dvec3 offset =
-          glm::dvec3(impl_->positions[result.photons[j]]) - glm::dvec3(points[i]);
-      row.emplace_back(glm::dot(offset, offset), result.photons[j]);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size()), [&](const auto& range) {
+    // Distance and photon in one number: those that are not negative sort as their bits do.
+    std::vector<std::uint64_t> row;
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      row.clear();
+      for (std::size_t j = i * width; j < (i + 1) * width && result.photons[j] != none; ++j) {
+        const glm::dvec3 offset =
+            glm::dvec3(impl_->positions[result.photons[j]]) - glm::dvec3(points[i]);
+        const auto distance = static_cast<float>(glm::dot(offset, offset));
+        row.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32 |
+                      result.photons[j]);
+      }
+      std::sort(row.begin(), row.end());
+      for (std::size_t j = 0; j < row.size(); ++j) {
+        result.squared_distance[i * width + j] =
+            std::bit_cast<float>(static_cast<std::uint32_t>(row[j] >> 32));
+        result.photons[i * width + j] = static_cast<std::uint32_t>(row[j]);
+      }
     }
-    std::sort(row.begin(), row.end());
-    for (std::size_t j = 0; j < row.size(); ++j) {
-      result.squared_distance[i * width + j] = static_cast<float>(row[j].first);
-      result.photons[i * width + j] = row[j].second;
-    }
-  }
+  });
   return result;
 }
 

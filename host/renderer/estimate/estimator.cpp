@@ -1,6 +1,7 @@
 #include "photile/estimator.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <optional>
@@ -95,7 +96,7 @@ struct Estimator::Impl {
   }
 
   /// The neighbours of hits [first, first + count).
-  void nearest(const PrimaryHits& hits, std::size_t first, std::size_t count,
+  void nearest(const PrimaryHits& hits, std::size_t first, std::size_t count, ListOrder order,
                NeighbourLists& result) {
     const std::size_t k = neighbours;
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
@@ -110,10 +111,11 @@ struct Estimator::Impl {
     });
     context.read(photons, std::span(result.photons).subspan(first * k, count * k));
     context.read(squared_radius, std::span(result.squared_radius).subspan(first, count));
-    for (std::size_t hit = first; hit < first + count; ++hit) {
+    if (order == ListOrder::any) return;
+    tbb::parallel_for(first, first + count, [&](std::size_t hit) {
       std::sort(result.photons.begin() + static_cast<std::ptrdiff_t>(hit * k),
                 result.photons.begin() + static_cast<std::ptrdiff_t>((hit + 1) * k));
-    }
+    });
   }
 };
 
@@ -169,11 +171,11 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
   return result;
 }
 
-NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
+NeighbourLists Estimator::nearest(const PrimaryHits& hits, ListOrder list_order) {
   const std::size_t k = impl_->neighbours;
   const auto order = estimate::order_by_map(impl_->store.maps_of(hits, 0, hits.size()));
   if (!order.empty()) {
-    NeighbourLists result = nearest(estimate::reordered(hits, 0, order));
+    NeighbourLists result = nearest(estimate::reordered(hits, 0, order), list_order);
     estimate::restore_rows(result.photons, order, k);
     estimate::restore_rows(result.squared_radius, order, 1);
     return result;
@@ -183,9 +185,10 @@ NeighbourLists Estimator::nearest(const PrimaryHits& hits) {
   result.k = static_cast<int>(k);
   result.photons.resize(hits.size() * k);
   result.squared_radius.resize(hits.size());
-  impl_->batches.run(
-      hits.size(), impl_->needs(output, output + sizeof(float)),
-      [&](std::size_t first, std::size_t count) { impl_->nearest(hits, first, count, result); });
+  impl_->batches.run(hits.size(), impl_->needs(output, output + sizeof(float)),
+                     [&](std::size_t first, std::size_t count) {
+                       impl_->nearest(hits, first, count, list_order, result);
+                     });
   return result;
 }
 
