@@ -15,7 +15,6 @@
 
 #include "photile/errors.hpp"
 #include "photile/estimator.hpp"
-#include "photile/statistics.hpp"
 #include "structures/structure.hpp"
 #include "structures/visits.hpp"
 #include "support/bench_record.hpp"
@@ -100,15 +99,18 @@ struct Case {
 /// A sample of hits contains those of every larger stride up to this.
 constexpr std::size_t most_stride = 64;
 
-/// A sample of as many hits as `run` affords: a warm-up and three repeats within the budget.
-HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats,
+/// A sample of as many hits as `run` affords: a warm-up and three repeats within the budget. Where
+/// the host runs it, other programs that slow it down make it no smaller.
+HitSample affordable_hits(const PrimaryHits& hits, const Repeats& repeats, bool on_host,
                           const std::function<void(const PrimaryHits&)>& run) {
   constexpr double passes = 4;
   const HitSample pilot = block_sample(hits, most_stride);
   run(pilot.hits);  // compiles kernels
-  const Stopwatch stopwatch;
-  run(pilot.hits);
-  const double hits_per_second = static_cast<double>(pilot.index.size()) / stopwatch.seconds();
+  RunTimes times;
+  times.count([&] { run(pilot.hits); });
+  const double waited = times.wall.seconds[0], computed = times.processor.seconds[0];
+  const double hits_per_second =
+      static_cast<double>(pilot.index.size()) / (on_host ? std::min(waited, computed) : waited);
   const double affordable = hits_per_second * repeats.seconds_per_case / passes;
   std::size_t stride = 1;
   while (stride<most_stride&& static_cast<double>(hits.size() / stride)> affordable) {
@@ -175,12 +177,15 @@ class KnnBench {
            std::find(structures_.begin(), structures_.end(), structure.name) != structures_.end();
   }
 
+  bool on_host() const { return device_.info().type == DeviceType::cpu; }
+
   void run_case(const Case& c, Rivals& rivals) {
     const bool lists = worth_listing(c.photons.size(), c.k);
     const SearchParameters parameters{static_cast<std::size_t>(c.k), static_cast<float>(c.radius)};
     std::vector<Contestant> contestants;
-    const PrimaryHits trial = block_sample(c.hits, most_stride).hits;
-    for (const Rivals::Library& library : rivals.at_their_best(trial, parameters)) {
+    const std::size_t tried = std::max<std::size_t>(500'000 / parameters.k, 512);
+    const HitSample trial = thinned(block_sample(c.hits, most_stride), tried);
+    for (const Rivals::Library& library : rivals.at_their_best(trial.hits, parameters)) {
       contestants.push_back(rival<DensityAnswers>(c, library, parameters));
       if (lists) contestants.push_back(rival<ListAnswers>(c, library, parameters));
     }
@@ -235,7 +240,7 @@ class KnnBench {
         search->estimate(hits, state->order, parameters, state->answers);
       }
     };
-    state->asked = affordable_hits(c.hits, repeats_, ask);
+    state->asked = affordable_hits(c.hits, repeats_, true, ask);
     state->order.clear();
     Contestant one{row_of(c, library.name + (lists ? list_rows : ""), state->asked),
                    [ask, state] { ask(state->asked.hits); },
@@ -275,7 +280,7 @@ class KnnBench {
     const auto estimate = [searched](const PrimaryHits& hits) {
       searched->estimates = searched->estimator.estimate(hits);
     };
-    searched->asked = affordable_hits(c.hits, repeats_, estimate);
+    searched->asked = affordable_hits(c.hits, repeats_, on_host(), estimate);
     return {row_of(c, structure.name, searched->asked),
             [estimate, searched] { estimate(searched->asked.hits); },
             [&c, &structure, searched](nlohmann::json& row) {
@@ -298,7 +303,8 @@ class KnnBench {
     const auto list = [searched, found](const PrimaryHits& hits) {
       *found = searched->estimator.nearest(hits, ListOrder::any);
     };
-    const auto asked = std::make_shared<HitSample>(affordable_hits(c.hits, repeats_, list));
+    const auto asked =
+        std::make_shared<HitSample>(affordable_hits(c.hits, repeats_, on_host(), list));
     return {row_of(c, structure.name + list_rows, *asked), [list, asked] { list(asked->hits); },
             [&c, found, asked](nlohmann::json& row) {
               return differences(row,

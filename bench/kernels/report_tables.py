@@ -186,7 +186,7 @@ def variants(result):
                     one["variant"]: one["seconds"] / least for one in row["variants"]}
     names = sorted({name for column in columns.values() for name in column})
     lines = [[head, *(f"{column[name]:.2f}" for name in names)] for head, column in columns.items()]
-    return ("The variants of nanoflann, over the best of each case; the trial is on a 64th of the queries.\n\n"
+    return ("The variants of nanoflann, over the best of each case; the trial is on some of the queries.\n\n"
             + table(["case, k", *names], lines))
 
 

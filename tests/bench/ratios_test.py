@@ -49,6 +49,19 @@ class RatiosTest(unittest.TestCase):
         rows = [row("tree", 3.0, 50, **{"nodes visited": 12.4, "photons visited": 99.6})]
         self.assertIn("| tree | 12 | 100 |", self.run_on(json.dumps({"results": rows})).stdout)
 
+    def test_structure_and_selection_are_told_apart(self):
+        sys.path.insert(0, str(SCRIPT.parents[1]))
+        from kernels import report_ratios, report_tables
+        seconds = {"uniform-grid": 1, "uniform-grid-heap": 10, "kdtree-2d": 15, "kdtree-3d": 14,
+                   "kdtree-2d-radix-32": 2, "kdtree-2d-radix-64": 1.75, "kdtree-2d-radix-128": 3}
+        rows = report_tables.timed({"results": [row(name, taken, 100) for name, taken in seconds.items()]})
+        text = report_ratios.structure_and_selection(rows)
+        self.assertIn("| plane, k = 50 | 1.8 (leaves of 64) | 10 | 15 | 14 |", text)
+        self.assertIn("the grid is 1.8 to 1.8 times as fast as the kd-tree", text)
+        self.assertIn("with the heap for both 1.5 to 1.5 times", text)
+        self.assertIn("the heap takes 10 to 10 times as long", text)
+        self.assertIsNone(report_ratios.structure_and_selection(rows[:3]))
+
     def test_other_files_are_refused_in_a_line(self):
         for content in ("{", "[]", "{}"):
             result = self.run_on(content)
