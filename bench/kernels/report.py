@@ -92,7 +92,7 @@ def machine_section(results):
 
 def structure_and_selection(knn):
     """Its section, of a million photons; none where a run left out the structures."""
-    rows = [row for rows in report_tables.cases_of_a_million(knn).values() for row in rows]
+    rows = [row for row in report_tables.timed(knn) if report_tables.near_target(row["photons"])]
     text = report_ratios.structure_and_selection(rows)
     return ["### Structure and selection", text] if text else []
 

@@ -72,8 +72,9 @@ def structure_and_selection(rows):
 Figure 6 of the paper has the grid 2 times as fast as a kd-tree in the plane, and 3 to 5 times as fast as one in space.
 
 - **The structure alone**: with the selection by radix for both, the grid is {span(cells)} times as fast as the kd-tree in
-  the plane, with the heap for both {span(trees)} times. That is the paper's 2: rows of cells are found by arithmetic
-  where a tree is walked, and their records lie in fewer, longer pieces.
+  the plane, with the heap for both {span(trees)} times: on the plane nearly the paper's 2. Rows of cells are found by
+  arithmetic where a tree is walked, and the more neighbours, the less that counts; in interiors maps hold several surfaces
+  whose cells are looked through together.
 - **The selection alone**: over the same cells the heap takes {span(selection)} times as long as the radix, which computes
   with whole vectors and does not branch on what it finds. The paper, which has no such selection, cannot show it; most of
   the ratios to other libraries on this page are this.

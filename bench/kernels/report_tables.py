@@ -65,7 +65,7 @@ the order of the renderer: by oriented face, then along a Morton curve. All find
 (`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1
 over the disc, per light. Maps are those of `--set maps=auto`, the default.
 
-- **In turns**: all of a case run once, then all again, five times. A ratio is the median of those of the rounds, so
+- **In turns**: all of a case run once, then all again, {result["settings"].get("repeats", "some")} times. A ratio is the median of those of the rounds, so
   that other programs slow both sides of it; on a device that is the host's processor the seconds are those of the
   processor, of all threads together.
 - **Rivals at their best**: photons and queries are in Morton order, normals are looked up only where they differ, code
@@ -133,8 +133,8 @@ def knn_table(rows, lists=False):
 
 def lists(result, python):
     """Tables of lists of neighbours; `python`: what bench/rivals/python_neighbours.py wrote, or None."""
-    parts = ["""The neighbours themselves, as `Estimator::nearest` and `PhotonCloud::nearest` give them. The rivals' lists stay in
-the order of their search; those of the grid are sorted by the host."""]
+    parts = ["""The neighbours themselves: of the grid by `Estimator::nearest`. All lists stay in the order of the search;
+`PhotonCloud::nearest` sorts its own by distance on all threads."""]
     for (workload, photons), rows in cases_of_a_million(result).items():
         chosen = [row for row in rows if LISTS in row["structure"]]
         if chosen:

@@ -27,7 +27,7 @@ def speedups(results):
                speedup(results, workload, k, rival), least, workload, k)
     for workload in ("plane", "living-room"):
         yield (f"{workload}, 1M photons, lists of k = 50: times faster than {BEST}",
-               speedup(results, workload, 50, BEST, True), 5, workload, 50)
+               speedup(results, workload, 50, BEST, True), 5, "lists of " + workload, 50)
 
 
 def verdict(short):
@@ -73,7 +73,7 @@ def relight_share(results):
 
 
 def shares(results, case):
-    """The largest stages of a profiled estimate, or ""."""
+    """The largest stages of a profiled estimate, or "": lists are not profiled."""
     for row in results["profile"]["results"]:
         if row["case"] == case:
             largest = sorted(row["shares"].items(), key=lambda item: -item[1])[:3]

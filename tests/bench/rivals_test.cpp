@@ -1,12 +1,12 @@
 // The rivals of the benches, and the turns in which they are timed.
-#include <catch2/catch.hpp>
+#include "support/rivals.hpp"
 
+#include <catch2/catch.hpp>
 #include <numeric>
 
 #include "neighbour_comparison.hpp"
 #include "photon_sets.hpp"
 #include "support/estimate_check.hpp"
-#include "support/rivals.hpp"
 #include "support/turns.hpp"
 
 namespace photile::test {
@@ -28,9 +28,8 @@ std::size_t wrong_lists(const HostSearch& search, const PrimaryHits& hits,
   search.nearest(hits, order, parameters, found);
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const auto expected =
-        oracle.nearest(hits.position[i], hits.oriented_face[i], static_cast<int>(parameters.k),
-                       parameters.radius);
+    const auto expected = oracle.nearest(hits.position[i], hits.oriented_face[i],
+                                         static_cast<int>(parameters.k), parameters.radius);
     const auto row = std::span(found.photons).subspan(i * parameters.k, parameters.k);
     std::set<std::uint32_t> photons(row.begin(), row.end());
     photons.erase(none);
@@ -42,7 +41,8 @@ std::size_t wrong_lists(const HostSearch& search, const PrimaryHits& hits,
   return wrong;
 }
 
-TEST_CASE("every variant of every rival finds the oracle's neighbours, filtered where normals differ") {
+TEST_CASE(
+    "every variant of every rival finds the oracle's neighbours, filtered where normals differ") {
   const bool curved = GENERATE(false, true);
   Scene scene = empty_scene();
   if (curved) {
@@ -50,8 +50,8 @@ TEST_CASE("every variant of every rival finds the oracle's neighbours, filtered 
   } else {
     add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
   }
-  const Photons photons = uniform_photons(scene, 4'000, 71);
-  const PrimaryHits hits = uniform_hits(scene, 200, 72);
+  const Photons photons = uniform_photons(scene, 4'000, 71, curved);
+  const PrimaryHits hits = uniform_hits(scene, 200, 72, curved);
   const NormalFilter filter(scene, angle);
   CHECK(filter.all_agree(photons.oriented_face, hits.oriented_face) != curved);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, angle);
