@@ -83,10 +83,6 @@ CLI::Validator top_of_scale() {
 
 }  // namespace
 
-FalseColourOptions::FalseColourOptions() : scale(fmt::format("{}", colours.scale)) {
-  colours.label.clear();
-}
-
 report::FalseColour FalseColourOptions::of(const std::string& unit) const {
   report::FalseColour result = colours;
   if (result.label.empty()) result.label = unit;

@@ -2,6 +2,8 @@
 // no input, and how pictures are shown.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <span>
 #include <string>
@@ -47,7 +49,7 @@ struct FalseColourOptions {
   report::FalseColour colours;  ///< but for the top of the scale; no label: the unit
   std::string scale;            ///< top, or "auto"
 
-  FalseColourOptions();
+  FalseColourOptions() : scale(fmt::format("{}", colours.scale)) { colours.label.clear(); }
 
   /// What they ask for where values are in `unit`.
   report::FalseColour of(const std::string& unit) const;
