@@ -2,6 +2,7 @@
 // own, for tests of what may end the process. Modes:
 //   run        computes, prints the sum of the results and the cache's counters
 //   overrun    writes one element past the end of a buffer
+//   underrun   writes one element before its begin
 //   unwritten  prints an element that no kernel wrote
 //   abort      computes, then dies by SIGABRT
 // Exit codes are photile's; errors go to the standard error stream.
@@ -22,9 +23,9 @@ namespace {
 using photile::device::Context;
 
 constexpr const char* source = R"(
-kernel void squares(global int* out, const uint n) {
+kernel void squares(global int* out, const int first, const uint n) {
   const size_t i = get_global_id(0);
-  if (i < n) out[i] = (int)(i * i);
+  if (i < n) out[(int)i + first] = (int)(i * i);
 }
 )";
 
@@ -35,7 +36,11 @@ int probe(std::string_view mode, bool use_cache) {
   auto buffer = context.allocate<int>(n, "squares");
   const auto kernel = context.kernel("test/squares.cl", "squares", {});
   const unsigned written = mode == "overrun" ? n + 1 : mode == "unwritten" ? n - 1 : n;
-  photile::device::Launch(context, kernel).set("out", buffer).set("n", written).run(written, 0);
+  photile::device::Launch(context, kernel)
+      .set("out", buffer)
+      .set("first", mode == "underrun" ? -1 : 0)
+      .set("n", written)
+      .run(written, 0);
   context.finish();
   std::vector<int> values(n);
   context.read<int>(buffer, values);

@@ -104,11 +104,12 @@ TEST_CASE("a launch that runs out of memory says what the device has and what to
                                 Catch::Contains("use fewer photons"));
 }
 
-ChildResult probe(const char* mode, bool fence) {
+ChildResult probe(const char* mode, bool fence, const char* kind = "page") {
   // The address sanitizer would turn the signal into an exit code of its own. Leaks are not the
   // subject here.
   ChildEnvironment environment = {{"ASAN_OPTIONS", "handle_segv=0:detect_leaks=0"}};
   if (fence) environment["OPENCL_LAYERS"] = PHOTILE_FENCE_LAYER;
+  environment["PHOTILE_FENCE"] = kind;
   return run_child({PHOTILE_DEVICE_PROBE, mode}, environment);
 }
 
@@ -128,7 +129,18 @@ TEST_CASE("a kernel that writes one element past the end dies at the fence") {
 }
 
 TEST_CASE("what no kernel wrote shows behind the fence") {
-  CHECK_THAT(probe("unwritten", true).output, Catch::Contains("last=-1 "));
+  const char* kind = GENERATE("page", "guard");
+  CHECK_THAT(probe("unwritten", true, kind).output, Catch::Contains("last=-1 "));
+}
+
+TEST_CASE("a kernel that writes beyond its buffer is told where guards stand in place of pages") {
+  CHECK_THAT(probe("run", true, "guard").output, Catch::Contains("last=998001 sum=332833500"));
+  const auto [mode, where] =
+      GENERATE(table<const char*, const char*>({{"overrun", "wrote behind a buffer of 4000"},
+                                                {"underrun", "wrote before a buffer of 4000"}}));
+  const ChildResult result = probe(mode, true, "guard");
+  CHECK(result.signal == SIGABRT);
+  CHECK_THAT(result.errors, Catch::Contains(where));
 }
 
 // Machines without OpenCL, or with runtimes that offer nothing.
