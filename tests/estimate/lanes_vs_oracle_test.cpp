@@ -1,6 +1,10 @@
-// The kernels whose lanes are the work-items of a group, as on GPUs: the neighbours and estimates
-// of the double-precision oracle, and those of a work-item's own vectors but for the order of sums.
+// Every kind of kernel, for every k: the neighbours and estimates of the double-precision oracle.
+// The kernels whose lanes are the work-items of a group, as on GPUs, on any device, and those of a
+// work-item's own vectors beside them, which differ in the order of sums alone.
+#include <array>
 #include <catch2/catch.hpp>
+#include <string>
+#include <utility>
 
 #include "estimate/specialisation.hpp"
 #include "estimates_comparison.hpp"
@@ -8,6 +12,7 @@
 #include "oracle/clipped_area.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
+#include "test_tunings.hpp"
 
 namespace photile::test {
 namespace {
@@ -17,18 +22,50 @@ constexpr int k = 50;
 
 EstimateTuning lanes(int width) { return {EstimateStrategy::lanes, width, 4, width}; }
 
+/// What kernels are specialised for, but for k.
+struct Kind {
+  std::string name;
+  std::size_t lights = 1;
+  bool glossy = false;
+  AreaMode area = AreaMode::disc;
+  MapMode maps = MapMode::triangle;
+};
+
+const std::array kinds{Kind{"disc"}, Kind{"clipped", 1, false, AreaMode::clipped},
+                       Kind{"glossy", 2, true}, Kind{"many lights", 20},
+                       Kind{"patches", 1, false, AreaMode::disc, MapMode::patch}};
+
+Scene scene_of(const Kind& kind) {
+  Scene scene = empty_scene(kind.lights);
+  if (kind.glossy) {
+    scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
+    scene.materials[0].roughness = 0.3f;
+  }
+  add_torus(scene, 1.0f, 0.4f, 16, 8);
+  if (kind.area == AreaMode::clipped) {
+    // Edges and a step within reach of most hits.
+    add_plate(scene, {-1.5f, -1.5f, -0.5f}, {3, 0, 0}, {0, 3, 0.1f}, 4);
+    add_plate(scene, {-0.5f, -0.5f, -0.4f}, {1, 0, 0}, {0, 1, 0}, 1);
+  }
+  return scene;
+}
+
+/// A kind with photons, of which about a thousand are within the radius.
 struct Subject {
+  Kind kind;
   Scene scene;
   Photons photons;
   PrimaryHits hits;
   PhotonMaps maps;
 
-  Subject(Scene built, std::size_t hit_count)
-      : scene(std::move(built)),
-        photons(uniform_photons(scene, 6000, 91)),
+  Subject(Kind of_kind, std::size_t hit_count)
+      : kind(std::move(of_kind)),
+        scene(scene_of(kind)),
+        photons(uniform_photons(scene, 90'000, 91)),
         hits(uniform_hits(scene, hit_count, 92)),
-        maps(device(), scene, photons, find_neighbour_groups(scene, {radius, 60}), {radius, 4}) {
-    if (needs_of(scene).glossy) add_lobes(hits, scene, 93);
+        maps(device(), scene, photons, find_map_groups(scene, photons, kind.maps, {radius, 60}),
+             {radius, 4}) {
+    if (kind.glossy) add_lobes(hits, scene, 93);
   }
 
   reference::DensityOracle oracle() const {
@@ -39,17 +76,23 @@ struct Subject {
     return Estimator(maps, scene, {.neighbours = neighbours, .tuning = tuning, .area = area})
         .estimate(hits);
   }
-};
 
-Scene torus(std::size_t lights, bool glossy) {
-  Scene scene = empty_scene(lights);
-  if (glossy) {
-    scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
-    scene.materials[0].roughness = 0.3f;
+  ExpectedEstimates expected_irradiance(int neighbours) const {
+    if (kind.area == AreaMode::disc) {
+      return test::expected_irradiance(oracle(), hits, neighbours, radius);
+    }
+    const reference::DensityOracle truth = oracle();
+    const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), radius, 60);
+    const reference::ClippedArea clipped(scene, photons, surface, 60);
+    ExpectedEstimates expected;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      expected.push_back(truth.irradiance(clipped, hits.position[i], hits.oriented_face[i],
+                                          neighbours, static_cast<float>(radius),
+                                          DensityKernel::constant));
+    }
+    return expected;
   }
-  add_torus(scene, 1.0f, 0.4f, 16, 8);
-  return scene;
-}
+};
 
 /// Largest relative difference of two lists of positive numbers.
 double relative_difference(const std::vector<glm::vec3>& values,
@@ -65,82 +108,59 @@ double relative_difference(const std::vector<glm::vec3>& values,
   return worst;
 }
 
-/// Estimates over whole discs by `lanes` against the oracle's.
-void check_estimates(const Subject& subject, int width, int neighbours) {
-  const std::size_t lights = subject.scene.lights.size();
-  CAPTURE(width, neighbours, lights, subject.hits.size());
-  const Estimates estimates = subject.estimate(lanes(width), neighbours, AreaMode::disc);
+/// The neighbours and estimates of a kind against the oracle's.
+void check(const Kind& kind, const EstimateTuning& tuning, int neighbours, std::size_t hit_count) {
+  const Subject subject(kind, hit_count);
   const reference::DensityOracle oracle = subject.oracle();
-  CHECK(worst_difference(by_light(estimates.irradiance, estimates, lights),
-                         expected_irradiance(oracle, subject.hits, neighbours, radius)) <=
-        estimate_tolerance(neighbours));
-  if (!needs_of(subject.scene).glossy) return;
-  CHECK(worst_difference(by_light(estimates.radiance, estimates, lights),
-                         expected_radiance(oracle, subject.photons, subject.hits, lights,
+  if (kind.lights == 1 && kind.area == AreaMode::disc) {  // no other kind has lists of its own
+    Estimator estimator(subject.maps, subject.scene, {.neighbours = neighbours, .tuning = tuning});
+    CHECK(count_differences(subject.hits, estimator.nearest(subject.hits), oracle, subject.photons,
+                            radius) == 0);
+  }
+  const Estimates estimates = subject.estimate(tuning, neighbours, kind.area);
+  // The oracle's clipped discs are polygons: clipped_vs_oracle_test.cpp.
+  const double tolerance = kind.area == AreaMode::clipped ? 1e-3 : estimate_tolerance(neighbours);
+  CHECK(worst_difference(by_light(estimates.irradiance, estimates, kind.lights),
+                         subject.expected_irradiance(neighbours)) <= tolerance);
+  if (!kind.glossy) return;
+  CHECK(worst_difference(by_light(estimates.radiance, estimates, kind.lights),
+                         expected_radiance(oracle, subject.photons, subject.hits, kind.lights,
                                            neighbours, radius)) <= glossy_tolerance(neighbours));
 }
 
 }  // namespace
 
-TEST_CASE("lanes find the oracle's neighbours for any k and number of hits", "[slow]") {
+// bench/device_report.sh tells of each section.
+TEST_CASE("every kind of estimate is the oracle's for k of 1 to 1,000", "[slow][device]") {
+  for (const EstimateTuning& tuning : tunings_of(device().info())) {
+    for (const Kind& kind : kinds) {
+      for (const int neighbours : {1, 2, 31, 50, 65, 200, 1000}) {
+        DYNAMIC_SECTION(name_of(tuning.strategy) << ", " << kind.name << ", k = " << neighbours) {
+          check(kind, tuning, neighbours, 61);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("lanes estimate what the oracle does for any k and number of hits", "[slow]") {
   const int width = GENERATE(32, 64);
   const std::size_t hits = GENERATE(1u, 61u);
-  const Subject subject(torus(1, false), hits);
-  const reference::DensityOracle oracle = subject.oracle();
   for (const int neighbours : {1, 2, 31, 50, 65, 200, 1000}) {
     CAPTURE(width, hits, neighbours);
-    Estimator estimator(subject.maps, subject.scene,
-                        {.neighbours = neighbours, .tuning = lanes(width)});
-    CHECK(count_differences(subject.hits, estimator.nearest(subject.hits), oracle, subject.photons,
-                            radius) == 0);
+    check(kinds[0], lanes(width), neighbours, hits);
   }
 }
 
-TEST_CASE("lanes estimate the oracle's irradiance for any k and number of hits", "[slow]") {
+TEST_CASE("lanes estimate every kind as the oracle does", "[slow]") {
   const int width = GENERATE(32, 64);
-  const std::size_t hits = GENERATE(1u, 61u);
-  const Subject subject(torus(1, false), hits);
-  for (const int neighbours : {1, 2, 31, 50, 65, 200, 1000}) {
-    check_estimates(subject, width, neighbours);
-  }
-}
-
-TEST_CASE("lanes estimate the oracle's irradiance of several lights and of many", "[slow]") {
-  const int width = GENERATE(32, 64);
-  const std::size_t lights = GENERATE(3u, 20u);
-  check_estimates(Subject(torus(lights, false), 61), width, k);
-}
-
-TEST_CASE("lanes estimate the oracle's glossy radiance", "[slow]") {
-  const int width = GENERATE(32, 64);
-  const std::size_t lights = GENERATE(2u, 20u);
-  check_estimates(Subject(torus(lights, true), 61), width, k);
-}
-
-TEST_CASE("lanes clip discs as the oracle does", "[slow]") {
-  const int width = GENERATE(32, 64);
-  Scene scene = torus(1, false);
-  // Edges and a step within reach of most hits.
-  add_plate(scene, {-1.5f, -1.5f, -0.5f}, {3, 0, 0}, {0, 3, 0.1f}, 4);
-  add_plate(scene, {-0.5f, -0.5f, -0.4f}, {1, 0, 0}, {0, 1, 0}, 1);
-  const Subject subject(std::move(scene), 120);
-  const SurfaceIndex surface =
-      index_surface(subject.scene, landed_on(subject.scene, subject.photons), radius, 60);
-  const reference::ClippedArea area(subject.scene, subject.photons, surface, 60);
-  const reference::DensityOracle oracle = subject.oracle();
-  ExpectedEstimates expected;
-  for (std::size_t i = 0; i < subject.hits.size(); ++i) {
-    expected.push_back(oracle.irradiance(area, subject.hits.position[i],
-                                         subject.hits.oriented_face[i], k,
-                                         static_cast<float>(radius), DensityKernel::constant));
-  }
-  const Estimates estimates = subject.estimate(lanes(width), k, AreaMode::clipped);
-  // The oracle's discs are polygons: clipped_vs_oracle_test.cpp.
-  CHECK(worst_difference(estimates.irradiance, expected) <= 1e-3);
+  for (const Kind& kind : kinds) check(kind, lanes(width), k, 61);
+  check({"several lights", 3}, lanes(width), k, 61);
+  check({"glossy, many lights", 20, true}, lanes(width), k, 61);
 }
 
 TEST_CASE("lanes differ from vectors in the order of sums alone") {
-  const Subject subject(torus(3, false), 60);
+  const Subject subject({"several lights", 3}, 60);
   const Estimates of_lanes = subject.estimate(lanes(32), k, AreaMode::disc);
   const Estimates of_vectors =
       subject.estimate({EstimateStrategy::select, 16, 4, 16}, k, AreaMode::disc);
@@ -152,7 +172,7 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
 }
 
 TEST_CASE("lanes that take hits in turn estimate the bits of each alone", "[slow]") {
-  const Subject subject(torus(3, false), 62);
+  const Subject subject({"several lights", 3}, 62);
   EstimateTuning tuning = lanes(32);
   const Estimates in_turn = subject.estimate(tuning, k, AreaMode::clipped);
   tuning.hits_per_item = 1;
@@ -163,7 +183,7 @@ TEST_CASE("distances in private memory give the bits of those in local memory", 
   const std::size_t lights = GENERATE(1u, 20u);
   // At k = 1,000 a block does not fit and is walked again.
   const int neighbours = GENERATE(50, 1000);
-  const Subject subject(torus(lights, false), 61);
+  const Subject subject({"lights", lights}, 61);
   EstimateTuning tuning = lanes(32);
   const Estimates local = subject.estimate(tuning, neighbours, AreaMode::disc);
   tuning.private_distances = true;

@@ -122,7 +122,9 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
     const auto near =
         oracle.nearest(hits.position[hit], hits.oriented_face[hit], k, static_cast<float>(radius));
     const auto count = static_cast<std::size_t>(k);
-    const std::size_t used = near.photons.size() == count ? count - 1 : near.photons.size();
+    // Of one photon, that one.
+    const std::size_t used =
+        near.photons.size() == count ? std::max<std::size_t>(count - 1, 1) : near.photons.size();
     std::vector<glm::dvec3>& sums = expected.emplace_back(lights, glm::dvec3(0.0));
     for (std::size_t n = 0; n < used; ++n) {
       const std::uint32_t photon = near.photons[n];
