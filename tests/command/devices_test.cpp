@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "box_scene.hpp"
@@ -34,6 +36,10 @@ TEST_CASE("the list of devices is JSON and marks exactly one as selected") {
                       [](const auto& device) { return device["selected"] == true; }) == 1);
   for (const auto& device : devices) {
     CHECK(device["max_allocation_bytes"] <= device["global_memory_bytes"]);
+    CHECK(device["clock_mhz"] > 0);
+    // Every OpenCL 1.2 device has these atomics.
+    CHECK_THAT(device["extensions"].get<std::string>(),
+               Contains("cl_khr_global_int32_base_atomics"));
   }
 }
 
@@ -151,9 +157,11 @@ TEST_CASE("the test of devices passes, and not with kernels that compute wrong a
 constexpr double rounding = 1e-5;
 
 /// Runs the command on a device of this type alone: where there is none, it fails.
-Outcome run_on(const std::string& type, const std::vector<std::string>& arguments) {
+Outcome run_on(const std::string& type, const std::vector<std::string>& arguments,
+               std::map<std::string, std::string> environment = {}) {
   Run run;
   run.arguments = arguments;
+  run.environment = std::move(environment);
   run.environment["PHOTILE_DEVICE"] = type;
   if (type == "gpu") run.environment["OPENCL_LAYERS"] = PHOTILE_GPU_LAYER;
   return succeed(run);
@@ -162,10 +170,9 @@ Outcome run_on(const std::string& type, const std::vector<std::string>& argument
 /// Runs the command on a CPU and as a GPU, each in a folder of its own that holds the box.
 struct OnBoth {
   template <class Arguments>
-  explicit OnBoth(const Arguments& arguments) {
-    for (const auto& [type, folder] : {std::pair("cpu", &cpu), std::pair("gpu", &gpu)}) {
-      CHECK_THAT(run_on(type, arguments(*folder)).errors, Contains("device: "));
-    }
+  explicit OnBoth(const Arguments& arguments, std::map<std::string, std::string> as_gpu = {}) {
+    CHECK_THAT(run_on("cpu", arguments(cpu)).errors, Contains("device: "));
+    CHECK_THAT(run_on("gpu", arguments(gpu), std::move(as_gpu)).errors, Contains("device: "));
   }
 
   FileFolder cpu, gpu;
@@ -244,6 +251,34 @@ TEST_CASE("as a GPU, render and measure find the light of the Cornell box that a
                  "-o", folder / "box.json", "--photons 20k --rays 64 --repeats 2");
   });
   check_same_values(measured, "box.json");
+}
+
+/// Whether some file of a folder that ends so has this text.
+bool any_has(const std::filesystem::path& folder, const std::string& ending,
+             const std::string& text) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string file = entry.path().string();
+    if (file.ends_with(ending) && bytes_of(file).find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST_CASE("as a GPU, a device that lanes do not fit on runs a kernel that fits any", "[slow]") {
+  const auto [variable, value] = GENERATE(table<const char*, const char*>(
+      {{"PHOTILE_POSED_GROUP", "16"},    // work-items that run of it together
+       {"PHOTILE_POSED_LOCAL", "2048"},  // bytes
+       {"PHOTILE_POSED_PRIVATE", "20000"}}));
+  CAPTURE(variable);
+  const FileFolder dump;
+  const std::string scene = source_folder() / "scenes/cornell-box/cornell-box.obj";
+  const OnBoth rendered(
+      [&](const FileFolder& folder) {
+        return typed("render", scene, "-o", folder / "box.exr",
+                     "--photons 20k --size 16x16 --quality draft --set light_maps=off");
+      },
+      {{variable, value}, {"PHOTILE_DUMP_KERNELS", dump / "kernels"}});
+  check_same_picture(rendered, "box.exr");
+  CHECK(any_has(dump / "kernels", ".options", "-D VECTOR_WIDTH=1 -D CAPACITY=256"));
 }
 
 TEST_CASE("as a GPU, a device passes its test", "[slow]") {

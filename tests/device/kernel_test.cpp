@@ -113,6 +113,23 @@ TEST_CASE("launches over nothing enqueue nothing, and an empty buffer is a valid
   CHECK(times[0].seconds >= 0);
 }
 
+TEST_CASE("writes and reads are timed apart from kernels, where times are kept") {
+  const std::vector<int> values(1 << 20, 7);
+  std::vector<int> back(values.size());
+  const auto seconds_of = [&](bool profile) {
+    Context context(options(true, profile));
+    const auto buffer = context.upload<int>(values, "values");
+    const double of_write = context.transfer_seconds();
+    context.read<int>(buffer, back);
+    CHECK(context.kernel_times().empty());
+    return std::make_pair(of_write, context.transfer_seconds());
+  };
+  const auto [of_write, of_both] = seconds_of(true);
+  CHECK(of_write > 0);
+  CHECK(of_both > of_write);
+  CHECK(seconds_of(false).second == 0);
+}
+
 TEST_CASE("what a kernel needs before its first launch is counted once") {
   photile::device::register_kernel_source("test/affine.cl", affine);
   Context context(options(true, true));

@@ -60,6 +60,19 @@ TEST_CASE("groups of lanes keep to the local memory that every device has, or ar
   }
 }
 
+TEST_CASE("what any device runs takes the same memory for every k, and no local memory") {
+  const DeviceInfo gpu = device_of_type(DeviceType::gpu);
+  for (const EstimateStrategy strategy : all_estimate_strategies) {
+    const EstimateTuning tuning = shipped_tuning(gpu, strategy);
+    const auto bytes = [&](int k) {
+      return independent_of_k(specialise(tuning, glossy, k)).private_bytes();
+    };
+    CHECK(bytes(1) == bytes(limits::max_neighbours));
+    CHECK(bytes(1) <= max_private_bytes);
+    CHECK(independent_of_k(specialise(tuning, glossy, 50)).local_bytes() == 0);
+  }
+}
+
 TEST_CASE("devices that are no CPUs work in lanes, as many as they run in step") {
   DeviceInfo gpu = device_of_type(DeviceType::gpu);
   for (const auto& [in_step, width] : std::vector<std::pair<std::uint32_t, int>>{

@@ -135,22 +135,26 @@ void Context::write_bytes(const RawBuffer& buffer, const void* data, std::size_t
   check_range(buffer, bytes, offset, "write");
   if (bytes == 0) return;
   // Blocking, so that the caller's memory may go away.
+  cl_event event = nullptr;
   const cl_int status = impl_->persevere([&] {
     return clEnqueueWriteBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes, data,
-                                0, nullptr, nullptr);
+                                0, nullptr, impl_->profile ? &event : nullptr);
   });
   impl_->check(status, "clEnqueueWriteBuffer", fmt::format("{} bytes", bytes));
+  if (impl_->profile) impl_->transfers.add("write", EventHandle(event));
 }
 
 void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
                          std::size_t offset) {
   check_range(buffer, bytes, offset, "read");
   if (bytes == 0) return;
+  cl_event event = nullptr;
   const cl_int status = impl_->persevere([&] {
     return clEnqueueReadBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes, data,
-                               0, nullptr, nullptr);
+                               0, nullptr, impl_->profile ? &event : nullptr);
   });
   impl_->check(status, "clEnqueueReadBuffer", fmt::format("{} bytes", bytes));
+  if (impl_->profile) impl_->transfers.add("read", EventHandle(event));
 }
 
 bool Context::shares_host_memory() const { return impl_->info.type == DeviceType::cpu; }

@@ -148,4 +148,10 @@ std::uint64_t Context::peak_allocated_bytes() const { return impl_->memory->peak
 const std::vector<ProgramTime>& Context::program_times() const { return impl_->programs->times(); }
 std::vector<KernelTime> Context::kernel_times() const { return impl_->times.total(); }
 
+double Context::transfer_seconds() const {
+  double seconds = 0;
+  for (const KernelTime& time : impl_->transfers.total()) seconds += time.seconds;
+  return seconds;
+}
+
 }  // namespace photile::device

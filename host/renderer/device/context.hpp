@@ -118,6 +118,13 @@ class Defines {
   std::vector<std::pair<std::string, std::string>> entries_;
 };
 
+/// What a built kernel takes, as its device says.
+struct KernelResources {
+  std::uint64_t private_bytes = 0;  ///< of a work-item in memory, for want of registers
+  std::uint64_t local_bytes = 0;    ///< of a group
+  std::size_t largest_group = 0;    ///< work-items that the device can run of it together
+};
+
 /// A kernel of a built program. Copyable; arguments are set by each Launch.
 class Kernel {
  public:
@@ -125,6 +132,7 @@ class Kernel {
   struct Impl;
   explicit Kernel(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
   Impl& impl() const { return *impl_; }
+  const KernelResources& resources() const;
 
  private:
   std::shared_ptr<Impl> impl_;
@@ -243,6 +251,9 @@ class Context {
   std::uint64_t allocated_bytes() const;       ///< live buffers
   std::uint64_t peak_allocated_bytes() const;  ///< since construction
   std::vector<KernelTime> kernel_times() const;
+  /// Of writes and reads of buffers; 0 unless DeviceOptions::profile is set. What a device shares
+  /// with the host is not moved.
+  double transfer_seconds() const;
   const std::vector<ProgramTime>& program_times() const;  ///< in the order of their first use
 
  private:

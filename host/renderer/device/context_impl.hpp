@@ -20,8 +20,8 @@ struct Kernel::Impl {
   KernelHandle kernel;
   std::string name;
   std::vector<std::string> arguments;  ///< names, in the order of the kernel's source
-  std::size_t largest_group = 0;       ///< work-items that the device can run of it together
-  std::size_t required_group = 0;      ///< that its source asks for, or 0
+  KernelResources resources;
+  std::size_t required_group = 0;  ///< work-items that its source asks for, or 0
   bool launched = false;
 };
 
@@ -80,6 +80,7 @@ struct Context::Impl {
   bool reclaiming = false;  ///< what a reclaimer itself calls must not ask for memory again
   bool profile = false;
   KernelTimes times;
+  KernelTimes transfers;  ///< between host and device, both ways
 };
 
 }  // namespace photile::device

@@ -75,20 +75,16 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
   made->arguments = std::move(*arguments);
   const cl_kernel made_kernel = made->kernel.get();
   const cl_device_id device = impl_->device;
-  made->largest_group = group_property<std::size_t>(made_kernel, device, CL_KERNEL_WORK_GROUP_SIZE);
+  made->resources = {group_property<cl_ulong>(made_kernel, device, CL_KERNEL_PRIVATE_MEM_SIZE),
+                     group_property<cl_ulong>(made_kernel, device, CL_KERNEL_LOCAL_MEM_SIZE),
+                     group_property<std::size_t>(made_kernel, device, CL_KERNEL_WORK_GROUP_SIZE)};
   made->required_group = group_property<std::array<std::size_t, 3>>(
       made_kernel, device, CL_KERNEL_COMPILE_WORK_GROUP_SIZE)[0];
-  const auto local = group_property<cl_ulong>(made_kernel, device, CL_KERNEL_LOCAL_MEM_SIZE);
-  if (local > impl_->info.local_memory_bytes) {
-    throw DeviceError(
-        fmt::format("kernel '{}' of '{}' takes {} bytes of local memory where '{}' has "
-                    "{}; use fewer neighbours, or another device",
-                    name, file, local, impl_->info.name, impl_->info.local_memory_bytes),
-        CL_OUT_OF_RESOURCES);
-  }
   if (impl_->profile) impl_->times.add_preparation(name, stopwatch.seconds());
   return impl_->kernels.emplace(key, Kernel(std::move(made))).first->second;
 }
+
+const KernelResources& Kernel::resources() const { return impl_->resources; }
 
 Launch::Launch(Context& context, Kernel kernel)
     : context_(context),
@@ -135,14 +131,24 @@ void Launch::enqueue(std::size_t global_size, std::size_t local_size) {
                       CL_INVALID_KERNEL_ARGS);
   }
   if (global_size == 0) return;
-  if (local_size > impl.largest_group) {
-    if (impl.required_group != 0 || impl.largest_group == 0) {
-      throw DeviceError(fmt::format("kernel '{}' works in groups of {} where '{}' runs at most {} "
-                                    "work-items of it together; use another device",
-                                    impl.name, local_size, context.info.name, impl.largest_group),
-                        CL_INVALID_WORK_GROUP_SIZE);
+  const KernelResources& resources = impl.resources;
+  if (resources.local_bytes > context.info.local_memory_bytes) {
+    throw DeviceError(
+        fmt::format("kernel '{}' takes {} bytes of local memory where '{}' has {}; use "
+                    "another device",
+                    impl.name, resources.local_bytes, context.info.name,
+                    context.info.local_memory_bytes),
+        CL_OUT_OF_RESOURCES);
+  }
+  if (local_size > resources.largest_group) {
+    if (impl.required_group != 0 || resources.largest_group == 0) {
+      throw DeviceError(
+          fmt::format("kernel '{}' works in groups of {} where '{}' runs at most {} "
+                      "work-items of it together; use another device",
+                      impl.name, local_size, context.info.name, resources.largest_group),
+          CL_INVALID_WORK_GROUP_SIZE);
     }
-    local_size = std::bit_floor(impl.largest_group);
+    local_size = std::bit_floor(resources.largest_group);
   }
   if (local_size != 0) global_size = (global_size + local_size - 1) / local_size * local_size;
   if (global_size > max_work_items) {

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <string>
 
+#include "device/cache_folder.hpp"
 #include "device/launch.hpp"
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
+#include "photile/errors.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -23,10 +26,12 @@ class GridQuery : public Query {
   const LightSums& sums() const override { return choice_.sums; }
 
   void estimate(const PageHits& hits, EstimateBuffers& estimates) override {
-    device::Defines estimate_defines = defines(hits.page);
-    set_density_defines(estimate_defines, parameters_.surface != nullptr, parameters_.kernel);
-    device::Launch launch(context_, context_.kernel("estimate/estimate.cl", "estimate_by_selection",
-                                                    estimate_defines));
+    device::Launch launch(context_, kernel(hits.page, "estimate/estimate.cl",
+                                           "estimate_by_selection", [&](device::Defines& defines) {
+                                             set_density_defines(defines,
+                                                                 parameters_.surface != nullptr,
+                                                                 parameters_.kernel);
+                                           }));
     set_estimate_arguments(launch, hits, parameters_, estimates);
     set_grid(launch, hits.page);
     run(launch, hits, [&](std::uint32_t count) {
@@ -36,8 +41,8 @@ class GridQuery : public Query {
 
   void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                device::Buffer<float>& squared_radius) override {
-    device::Launch launch(context_, context_.kernel("estimate/nearest.cl", "nearest_by_selection",
-                                                    defines(hits.page)));
+    device::Launch launch(context_, kernel(hits.page, "estimate/nearest.cl", "nearest_by_selection",
+                                           [](device::Defines&) {}));
     set_page_arguments(launch, hits);
     set_grid(launch, hits.page);
     launch.set("neighbours", photons).set("squared_radius", squared_radius);
@@ -68,10 +73,27 @@ class GridQuery : public Query {
     launch.set("grids", page.grids).set("cell_start", page.cell_start);
   }
 
-  device::Defines defines(const maps::MapPage& page) const {
-    device::Defines defines = choice_.defines();
-    if (page.record_normal.size() > 0) defines.set("NORMALS");
-    return defines;
+  /// A kernel for a page. What the device cannot run gives way to what any runs, from then on.
+  template <class SetDefines>
+  device::Kernel kernel(const maps::MapPage& page, const char* file, const char* name,
+                        SetDefines set_defines) {
+    const auto built = [&] {
+      device::Defines defines = choice_.defines();
+      if (page.record_normal.size() > 0) defines.set("NORMALS");
+      set_defines(defines);
+      return context_.kernel(file, name, defines);
+    };
+    const DeviceInfo& info = context_.info();
+    try {
+      device::Kernel kernel = built();
+      if (fits(choice_, kernel.resources(), info)) return kernel;
+    } catch (const KernelBuildError& error) {
+      // The compilers of CPUs have no such limits: it is the kernel that is wrong.
+      if (info.type == DeviceType::cpu) throw;
+      device::warn(std::string(error.what()) + "; a slower kernel is used");
+    }
+    choice_ = independent_of_k(choice_);
+    return built();
   }
 
   const maps::MapStore& store_;

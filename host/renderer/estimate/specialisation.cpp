@@ -16,8 +16,8 @@ std::string_view name_of(EstimateStrategy strategy) {
 }
 
 EstimateTuning shipped_tuning(const DeviceInfo& device) {
-  const bool lanes =
-      device.type != DeviceType::cpu && device.max_work_group_size >= estimate::lane_widths.front();
+  const bool lanes = device.type != DeviceType::cpu &&
+                     device.max_work_group_size >= std::size_t{estimate::lane_widths.front()};
   return shipped_tuning(device, lanes ? EstimateStrategy::lanes : EstimateStrategy::select);
 }
 
@@ -80,17 +80,26 @@ constexpr int near_capacity = 128;
 
 int rounded_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
+constexpr int least_capacity = 256;
+
 /// Distances kept for a hit: a block holds some 3 k candidates in chunks that are four fifths full,
 /// and several times as many where a map holds more than one surface. Chunks of one are counted,
 /// too.
 int capacity_for(int neighbours, EstimateStrategy strategy, int vector_width) {
-  constexpr int least = 256;
   if (strategy == EstimateStrategy::lanes) {
     return std::clamp(rounded_up(std::min(neighbours, largest_lane_capacity) * 8, vector_width),
-                      least, largest_lane_capacity);
+                      least_capacity, largest_lane_capacity);
   }
   const int most = vector_width == 1 ? largest_scalar_capacity : largest_capacity;
-  return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least, most);
+  return std::clamp(rounded_up(std::min(neighbours, most) * 8, 16), least_capacity, most);
+}
+
+/// Halves work-groups until their private memory is within its bound.
+void bound_group(Specialisation& choice) {
+  while (choice.work_group_size > 1 &&
+         choice.work_group_size * choice.private_bytes() > max_private_bytes_per_group) {
+    choice.work_group_size /= 2;
+  }
 }
 
 }  // namespace
@@ -180,11 +189,25 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
     choice.work_group_size = static_cast<std::size_t>(choice.vector_width);
     return choice;
   }
-  while (choice.work_group_size > 1 &&
-         choice.work_group_size * choice.private_bytes() > max_private_bytes_per_group) {
-    choice.work_group_size /= 2;
-  }
+  bound_group(choice);
   return choice;
+}
+
+Specialisation independent_of_k(Specialisation choice) {
+  choice.strategy = EstimateStrategy::select;
+  choice.vector_width = 1;
+  choice.private_distances = false;
+  choice.capacity = least_capacity;
+  bound_group(choice);
+  return choice;
+}
+
+bool fits(const Specialisation& choice, const device::KernelResources& taken,
+          const DeviceInfo& device) {
+  const bool lanes = choice.strategy == EstimateStrategy::lanes;
+  return taken.local_bytes <= device.local_memory_bytes &&
+         (!lanes || taken.largest_group >= choice.work_group_size) &&
+         (device.type == DeviceType::cpu || taken.private_bytes <= max_private_bytes);
 }
 
 }  // namespace photile::estimate

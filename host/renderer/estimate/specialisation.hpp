@@ -68,9 +68,20 @@ struct Specialisation {
   std::size_t local_bytes() const;
 };
 
+/// What a device other than a CPU keeps in memory for a work-item at most: a work-item of AMD's may
+/// have so much.
+inline constexpr std::size_t max_private_bytes = 16u << 10;
+
 /// The capacities hold the candidates that k photons usually need. Where the
 /// lists of a group of `lanes` would not fit into max_local_bytes, the strategy becomes `select`;
 /// work-groups are halved until their private memory is within max_private_bytes_per_group.
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours);
+
+/// The same by one work-item a hit, whose memory does not depend on k: any device runs it.
+Specialisation independent_of_k(Specialisation choice);
+
+/// Whether a device has what the built kernel of a choice takes.
+bool fits(const Specialisation& choice, const device::KernelResources& taken,
+          const DeviceInfo& device);
 
 }  // namespace photile::estimate
