@@ -139,6 +139,25 @@ TEST_CASE("a compiler without memory ends the command in one line, and not in a 
   CHECK_THAT(only_error(outcome, device_error), Catch::Contains("ulimit -v"));
 }
 
+TEST_CASE("a runtime that aborts ends the command in one line") {
+  const FileFolder folder;
+  auto layer = failing({"clBuildProgram", 0, ""}, 1, false, folder);
+  layer["PHOTILE_FAIL_BY"] = "abort";
+  const Outcome outcome = run_photile(small_render(folder, layer, {"-q"}));
+  CHECK_THAT(only_error(outcome, device_error), Catch::Contains("--device"));
+}
+
+TEST_CASE("a compiler that takes more than a minute is told of once, and its kernel is run",
+          "[slow]") {
+  const FileFolder folder;
+  auto layer = failing({"clBuildProgram", 0, ""}, 1, false, folder);
+  layer["PHOTILE_FAIL_BY"] = "minute";
+  const Outcome outcome = run_photile(small_render(folder, layer, {"-q"}));
+  CHECK(outcome.exit_code == 0);
+  CHECK_THAT(outcome.errors, Catch::Contains("for a minute") && Catch::Contains("-k"));
+  CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+}
+
 TEST_CASE("a device that is lost in the middle of a render is reported once") {
   const Failure failure = out_of_memory();
   const Light light = GENERATE(Light::estimated, Light::gathered);

@@ -23,6 +23,7 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "device/context_impl.hpp"
 #include "device/program.hpp"
 #include "photile/errors.hpp"
 
@@ -156,12 +157,25 @@ int conclude(ExitCode code, const std::string& problem) {
 namespace {
 
 /// Without memory, which a line made of texts would ask for.
-[[noreturn]] void end_in_compiler() {
-  constexpr std::string_view line =
-      "photile: error: out of memory in the compiler of a device; raise the limit of its address "
-      "space (ulimit -v)\n";
+[[noreturn]] void end_in_runtime(std::string_view line) {
   static_cast<void>(::write(STDERR_FILENO, line.data(), line.size()) == 0);
   ::_exit(static_cast<int>(ExitCode::device));
+}
+
+[[noreturn]] void end_in_compiler() {
+  end_in_runtime(
+      "photile: error: out of memory in the compiler of a device; raise the limit of its address "
+      "space (ulimit -v)\n");
+}
+
+/// Compilers of devices abort where they do not know further (docs/runtimes.md).
+void end_where_a_compiler_aborts() {
+  std::signal(SIGABRT, [](int) {
+    if (device::LiveContext::count() == 0) return;  // then the process ends by the signal
+    end_in_runtime(
+        "photile: error: the device's runtime ended the program; choose another device (--device), "
+        "or another version of the runtime\n");
+  });
 }
 
 /// No exception passes through PoCL: in a thread of ours it would leave locks held for which all
@@ -189,6 +203,7 @@ int run_command_line(int argument_count, const char* const* arguments) {
   std::string problem;
   const TerminalText names_command_nothing(std::cout);
   end_where_a_compiler_lacks_memory();
+  end_where_a_compiler_aborts();
   std::signal(SIGPIPE, SIG_IGN);  // whoever reads no more of what is told loses no picture
   try {
     join_processes({arguments, static_cast<std::size_t>(argument_count)});

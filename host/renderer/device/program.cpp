@@ -4,12 +4,18 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <sstream>
+#include <system_error>
+#include <thread>
 
 #include "common/files.hpp"
+#include "device/cache_folder.hpp"
 #include "device/opencl.hpp"
 #include "device/program_source.hpp"
 #include "photile/errors.hpp"
@@ -134,7 +140,45 @@ namespace {
 
 thread_local bool compiling = false;
 
+/// Tells of a compilation that takes a minute: a user who waits for it sees nothing else.
+class SlowCompilation {
+ public:
+  explicit SlowCompilation(const DeviceInfo& info) {
+    try {
+      teller_ = std::thread([this, name = info.name] { wait(name); });
+    } catch (const std::system_error&) {  // no thread is left: nothing is told
+    }
+  }
+  ~SlowCompilation() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    over_.notify_one();
+    if (teller_.joinable()) teller_.join();
+  }
+  SlowCompilation(const SlowCompilation&) = delete;
+  SlowCompilation& operator=(const SlowCompilation&) = delete;
+
+ private:
+  void wait(const std::string& device) {
+    std::unique_lock lock(mutex_);
+    if (over_.wait_for(lock, std::chrono::minutes(1), [this] { return is_over_; })) return;
+    warn(
+        fmt::format("'{}' has compiled a kernel for a minute and goes on; fewer neighbours (-k), "
+                    "another device "
+                    "(--device) or a newer driver may be quicker; what is compiled is kept",
+                    device));
+  }
+
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread teller_;
+};
+
 cl_int build(cl_program program, const BuildTarget& target, const std::string& options) {
+  const SlowCompilation watched(*target.info);
   compiling = true;
   const cl_int status =
       clBuildProgram(program, 1, &target.device, options.c_str(), nullptr, nullptr);

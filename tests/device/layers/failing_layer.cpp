@@ -7,12 +7,16 @@
 //   PHOTILE_FAIL_ON=1                  and so do all later ones ("device lost")
 //   PHOTILE_FAIL_ABOVE=4096            instead, clCreateBuffer fails for more bytes than this
 //   PHOTILE_FAIL_BY=new                it asks for more memory than there is, in the thread that
-//   calls PHOTILE_FAIL_BY=thread             the same in a thread of its own, as runtimes have them
+//                                      calls
+//   PHOTILE_FAIL_BY=thread             the same in a thread of its own, as runtimes have them
+//   PHOTILE_FAIL_BY=abort              it ends the process
+//   PHOTILE_FAIL_BY=minute             it takes a minute and a second
 //   PHOTILE_FAIL_COUNT_FILE=path       at exit the number of calls is written there
 //
 // A sweep first counts (PHOTILE_FAIL_AT=0), then lets each call fail in turn: the program must end
 // with one message and exit code 4, or with the right result; never by a signal, never hanging.
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -41,11 +45,13 @@ void write_count() {
 }
 
 /// As the compiler of a runtime does; where PHOTILE_FAIL_BY asks for it.
-void lack_memory() {
+void fail_as_asked() {
   const std::string_view by = text_variable("PHOTILE_FAIL_BY");
   const auto ask = [] { ::operator delete(::operator new(PTRDIFF_MAX)); };
   if (by == "new") ask();
   if (by == "thread") std::thread(ask).join();
+  if (by == "abort") std::abort();
+  if (by == "minute") std::this_thread::sleep_for(std::chrono::seconds(61));
 }
 
 /// The status with which this call of the chosen function must fail, or CL_SUCCESS.
@@ -54,7 +60,7 @@ cl_int failure() {
   static const bool on = number_variable("PHOTILE_FAIL_ON") != 0;
   static const auto status = static_cast<cl_int>(number_variable("PHOTILE_FAIL_STATUS"));
   const long call = ++calls;
-  if (call == at) lack_memory();
+  if (call == at) fail_as_asked();
   return at != 0 && (call == at || (on && call > at)) ? status : CL_SUCCESS;
 }
 
