@@ -1,10 +1,16 @@
-// What kernels take: each of build and estimate beside the limits of the device, and the estimate
-// of each specialisation (one light or several, diffuse or glossy) with its bytes per photon.
+// What kernels take: each of build and estimate beside the limits of the device, the estimate of
+// each specialisation (one light or several, diffuse or glossy) with its bytes per photon, and
+// where the time of every structure goes: compiler, kernels, transfers, host.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "estimate/device_test.hpp"
+#include "photile/errors.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photons.hpp"
+#include "photile/statistics.hpp"
+#include "structures/structure.hpp"
 #include "support/bench_record.hpp"
 #include "support/device_limits.hpp"
 #include "support/estimate_check.hpp"
@@ -151,7 +157,68 @@ class KernelsBench {
     }
   }
 
+  /// A row for a structure: seconds of compiling, and of building and of estimating those of
+  /// kernels, of transfers, and of all together.
+  void structure(const structures::Structure& structure, const Subject& subject, int k) {
+    const double radius = automatic_radius(subject.photons, k);
+    const NeighbourGroups groups = default_groups(subject.scene, subject.photons, radius);
+    nlohmann::json row{{"measured", "structure"},
+                       {"structure", structure.name},
+                       {"k", k},
+                       {"photons", subject.photons.size()},
+                       {"hits", subject.hits.size()}};
+    std::optional<PhotonMaps> maps;
+    std::optional<Estimator> estimator;
+    Estimates estimates;
+    const auto build = [&] {
+      estimator.reset();
+      maps.emplace(structures::build(structure, device_, subject.scene, subject.photons, groups,
+                                     {.radius = radius}));
+      estimator.emplace(*maps, subject.scene,
+                        EstimateParameters{.neighbours = k, .area = AreaMode::disc});
+    };
+    const auto estimate = [&] { estimates = estimator->estimate(subject.hits); };
+    const double compiled_before = preparation_seconds();
+    try {
+      build();
+      estimate();
+      row["compile"] = preparation_seconds() - compiled_before;
+      row["build"] = split_times(build);
+      row["estimate"] = split_times(estimate);
+      check(subject, k, radius, *estimator, estimates);
+    } catch (const DeviceError& error) {  // the others may run
+      row["failure"] = error.what();
+    }
+    record_.add(std::move(row));
+  }
+
  private:
+  /// Seconds spent so far until programs and kernels could run.
+  double preparation_seconds() {
+    const device::Context& context = device::context_of(device_);
+    double seconds = context.compile_seconds();
+    for (const device::KernelTime& time : context.kernel_times()) {
+      seconds += time.preparation_seconds;
+    }
+    return seconds;
+  }
+
+  /// Seconds of a call, by those of its kernels, of its transfers and of all together.
+  template <class Run>
+  nlohmann::json split_times(const Run& run) {
+    Timing kernels, transfers, all;
+    for (int i = 0; i < repeats_.most; ++i) {
+      const double transferred = device::context_of(device_).transfer_seconds();
+      const Stopwatch stopwatch;
+      double device_seconds = kernel_seconds_of(device_, run);
+      all.seconds.push_back(stopwatch.seconds());
+      kernels.seconds.push_back(device_seconds);
+      transfers.seconds.push_back(device::context_of(device_).transfer_seconds() - transferred);
+    }
+    return {
+        {"kernels", to_json(kernels)}, {"transfers", to_json(transfers)}, {"all", to_json(all)}};
+  }
+
   void check(const Subject& subject, int k, double radius, Estimator& estimator,
              const Estimates& estimates) {
     const reference::DensityOracle oracle(subject.scene, subject.photons,
@@ -172,8 +239,16 @@ bool run(BenchOptions& options) {
   if (options.quick) {
     size = {10'000, 32, 1u << 20};
   }
+  SceneNeeds diffuse;
+  diffuse.light_count = 1;
+  const Subject square = plane(diffuse, size);
   constexpr std::uint32_t several = 7;  // those of the living room
   KernelsBench bench(options, size);
+  // Before their kernels are compiled for others; the grids', which all are built from, first.
+  bench.structure(structures::named("uniform-grid"), square, 50);
+  for (const structures::Structure& structure : structures::all()) {
+    if (!structure.is_grid()) bench.structure(structure, square, 50);
+  }
   const Subject room = whole_living_room(size);
   for (const bool glossy : {false, true}) {
     for (const std::uint32_t lights : {1u, several}) {
@@ -184,9 +259,6 @@ bool run(BenchOptions& options) {
       bench.specialisation(restricted(room, needs));
     }
   }
-  SceneNeeds diffuse;
-  diffuse.light_count = 1;
-  const Subject square = plane(diffuse, size);
   bench.kernels(square, 50);
   bench.kernels(square, 200);
   bench.kernels(restricted(room, diffuse), 50);

@@ -5,6 +5,8 @@ import math
 
 from kernels.report_tables import table, times
 
+ESTIMATE = "estimate_by_selection"
+
 
 def rows_of(result, measured):
     return [row for row in result["results"] if row["measured"] == measured]
@@ -82,7 +84,7 @@ def roofline(result):
     operations = limits["operations per second"]
     lines = []
     for row in rows_of(result, "kernel"):
-        if row["kernel"] != "estimate":
+        if row["kernel"] != ESTIMATE:
             continue
         cost_bytes, cost_operations = estimate_cost(row["k"])
         floor = max(cost_bytes / cache, cost_operations / operations)
@@ -105,7 +107,7 @@ def roofline(result):
 def build_kernels(result):
     copy = result["settings"]["limits"]["copied bytes per second"]
     k = result["settings"]["k"]
-    rows = [row for row in rows_of(result, "kernel") if row["k"] == k and row["kernel"] != "estimate"]
+    rows = [row for row in rows_of(result, "kernel") if row["k"] == k and row["kernel"] != ESTIMATE]
     workloads = list(dict.fromkeys(row["workload"] for row in rows))
     lines = []
     for kernel in dict.fromkeys(row["kernel"] for row in rows):

@@ -1,5 +1,6 @@
 """What was aimed at, and what the results say."""
 
+from kernels.report_kernels import ESTIMATE
 from kernels.report_tables import LISTS, PRODUCT_MAPS, best_rival, near_target, ratio, table, timed
 
 BEST = "the best rival"
@@ -87,7 +88,7 @@ def build_shares(results, workload):
     parts = {f"`{row['kernel']}`": row["seconds"]["median"]
              for row in results["kernels"]["results"]
              if row["measured"] == "kernel" and row["workload"] == workload and row["k"] == k
-             and row["kernel"] != "estimate"}
+             and row["kernel"] != ESTIMATE}
     for row in results["build"]["results"]:
         if (row["workload"], row["maps of"]) == (workload, PRODUCT_MAPS) and near_target(
                 row["photons"]):

@@ -25,6 +25,8 @@ struct DeviceInfo {
   std::string platform_version;
   DeviceType type = DeviceType::other;
   std::uint32_t compute_units = 0;
+  std::uint32_t clock_mhz = 0;  ///< the highest, as the device says
+  std::string extensions;       ///< names, separated by spaces
   std::uint64_t global_memory_bytes = 0;
   std::uint64_t max_allocation_bytes = 0;  ///< largest single buffer
   std::uint64_t local_memory_bytes = 0;

@@ -45,6 +45,8 @@ json device_json(const DeviceInfo& device, bool selected) {
           {"driver_version", device.driver_version},
           {"platform_version", device.platform_version},
           {"compute_units", device.compute_units},
+          {"clock_mhz", device.clock_mhz},
+          {"extensions", device.extensions},
           {"global_memory_bytes", device.global_memory_bytes},
           {"max_allocation_bytes", device.max_allocation_bytes},
           {"local_memory_bytes", device.local_memory_bytes},

@@ -52,6 +52,8 @@ DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
   info.platform_version = platform_text(platform, CL_PLATFORM_VERSION);
   info.type = type_of(device_property<cl_device_type>(device, CL_DEVICE_TYPE));
   info.compute_units = device_property<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
+  info.clock_mhz = device_property<cl_uint>(device, CL_DEVICE_MAX_CLOCK_FREQUENCY);
+  info.extensions = device_text(device, CL_DEVICE_EXTENSIONS);
   info.global_memory_bytes = device_property<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
   info.max_allocation_bytes = device_property<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   info.local_memory_bytes = device_property<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
