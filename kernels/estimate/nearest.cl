@@ -3,9 +3,28 @@
 
 #include "estimate/neighbourhood.clh"
 
+// Lists those of the records that tie at the border of the neighbourhood which belong to it. Rare,
+// and therefore plain: every lane finds them, and the first writes.
+static void list_tied(const Candidates* candidates, const Neighbourhood* near,
+                      __global const uint* record_photon, uint found, __global uint* list) {
+  const uint last = last_tied_photon(candidates, near->below, near->tied, record_photon);
+  const Block* block = &candidates->block;
+  uint cell = block->first_cell;
+  for (uint row = 0; row < block->height; ++row, cell += block->columns) {
+    const uint end = candidates->cell_start[cell + block->width];
+    for (uint record = candidates->cell_start[cell]; record < end; ++record) {
+      if (record_photon[record] > last) continue;
+      if (squared_distance(candidates, record) != near->below) continue;
+      if (LANE == 0) list[found] = record_photon[record];
+      ++found;
+    }
+  }
+}
+
 // One worker per hit of one map page; arguments as in estimate.cl.
-// After: neighbours[hit * k ...] holds photon indices in any order, 0xFFFFFFFF beyond the last;
-// squared_radius[hit] is that of the estimate's disc.
+// Before: neighbours is 0xFFFFFFFF, squared_radius the square of the search radius.
+// After: neighbours[hit * k ...] of hits on maps with photons holds photon indices in any order,
+// followed by what was there; squared_radius[hit] is that of the estimate's disc.
 __kernel WORKER_GROUP void nearest_by_selection(
     const PhotileQuery query, __global const PhotileHit* hits,
     __global const PhotileHitSurface* hit_surfaces, __global const PhotileGrid* grids,
@@ -13,15 +32,10 @@ __kernel WORKER_GROUP void nearest_by_selection(
     __global const float* record_position, __global const float* record_normal,
     __global uint* neighbours, __global float* squared_radius) {
   WORKER_SPACE WorkerMemory memory;
+  WORKER_SPACE uint listed;
   const uint k = query.k;
   for (uint h = WORKER; h < query.hit_count; h += WORKERS) {
     const uint index = query.first_hit + h;
-    __global uint* list = neighbours + (size_t)index * k;
-    if (LANE == 0) {
-      for (uint i = 0; i < k; ++i) list[i] = 0xFFFFFFFFu;
-      squared_radius[index] = query.radius * query.radius;
-    }
-
     __global const PhotileGrid* grid = &grids[hits[index].map - query.first_map];
     if (grid->columns == 0) continue;
 
@@ -34,25 +48,25 @@ __kernel WORKER_GROUP void nearest_by_selection(
     Neighbourhood near;
     find_neighbourhood(&candidates, &chunks, k, k, query.radius, 0.0f, grid, &near, &memory);
 
-    float farthest = 0.0f;
-    uint found = 0;
-    uint last_tied = 0;
-    for (int pass = 0; pass < 2; ++pass) {
-      uint cell = candidates.block.first_cell;
-      for (uint row = 0; row < candidates.block.height; ++row, cell += candidates.block.columns) {
-        const uint end = cell_start[cell + candidates.block.width];
-        for (uint record = cell_start[cell]; record < end; ++record) {
-          const float d = squared_distance(&candidates, record);
-          const bool is_near =
-              pass == 0 ? d < near.below : d == near.below && record_photon[record] <= last_tied;
-          if (!is_near) continue;
-          if (LANE == 0) list[found] = record_photon[record];
-          ++found;
-          farthest = fmax(farthest, d);
-        }
+    __global uint* list = neighbours + (size_t)index * k;
+    simd_float farther = 0.0f;  // negative, so that the smallest is the farthest
+    synchronise_lanes();        // all have read the count of the list before
+    if (LANE == 0) listed = 0;
+    Walk walk;
+    begin_walk(&walk, &candidates);
+    do {
+      next_chunks(&candidates, &walk, &chunks, &memory);
+      for (uint i = 0; i < chunks.count; ++i) {
+        const simd_float d = kept_distances(&chunks, &memory, i);
+        const simd_int is_near = d < near.below;
+        list_lanes(record_photon, kept_record(&chunks, &memory, i), is_near, list, &listed);
+        farther = select(farther, -d, is_near & (-d < farther));
       }
-      if (near.tied == 0) break;
-      last_tied = last_tied_photon(&candidates, near.below, near.tied, record_photon);
+    } while (walk.row < candidates.block.height);
+    float farthest = -smallest_lane(farther, &memory);
+    if (near.tied > 0) {
+      list_tied(&candidates, &near, record_photon, listed, list);
+      farthest = near.below;
     }
     // The k-th is the farthest of the neighbours.
     if (LANE == 0) {
