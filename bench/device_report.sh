@@ -8,10 +8,10 @@
 #
 #   --device SELECTOR   as for photile; default: the device that photile takes
 #   --name NAME         of the files, in place of DEVICE-RUNTIME
-#   --quick             tiny sizes and few k: for simulators; times nothing
 #   --parts REGEX       only those whose names it finds, beside the last results of the others
+#   --quick             tiny sizes and few k: for simulators; times nothing
 #   --no-build          what is built is run: in a container of another system
-#   --beside SELECTOR   whose picture is compared; default: PoCL's, where it is there
+#   --beside SELECTOR   whose picture is compared with; default: PoCL's, where it is there
 set -uo pipefail
 cd "$(dirname "$0")/.."
 usage() {
@@ -39,11 +39,13 @@ if ((build)); then
     photile_fence_layer photile_tests_maps photile_tests_estimate photile_bench_kernels || exit 1
 fi
 
-selector=() folder=build/device-report/${names[1]:-device}
+folder=${names[1]:-${device:-default}} selector=()
+folder=build/device-report/${folder//[^A-Za-z0-9.-]/-}
 if [[ $device ]]; then
   selector=(--device "$device")
   export PHOTILE_DEVICE=$device
 fi
+[[ $parts == . ]] && rm -rf "$folder"
 mkdir -p "$folder/parts"
 failed=0
 
@@ -81,8 +83,8 @@ oracle maps maps '~[slow]~[long]'
 ((${#quick[@]})) || oracle kinds estimate '[device]'
 oracle structures estimate 'neighbours equal*'
 picture picture "${selector[@]}"
-((${#quick[@]})) && sizes=(--quick) || sizes=(--repeats 3)
-part kernels "$release/bench/photile_bench_kernels" "${sizes[@]}" --output "$folder/kernels.json"
+((${#quick[@]})) && sizes=(--quick) || sizes=(--repeats 5)
+part kernels "$release/bench/photile_bench_kernels" --plane "${sizes[@]}" --output "$folder/kernels.json"
 if "$release/photile" devices --device "$beside" > /dev/null 2>&1; then
   picture beside --device "$beside"
   part compare "$release/photile" compare "$folder/beside.exr" "$folder/picture.exr" \

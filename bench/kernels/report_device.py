@@ -114,21 +114,21 @@ def least(row):
 
 
 def split(times, scale):
-    """kernels, transfers, host: of one unit each."""
+    """kernels, transfers, host, processor: of one unit each."""
     host = max(times["all"] - times["kernels"] - times["transfers"], 0)
-    return [f"{scale * seconds:.3g}" for seconds in (times["kernels"], times["transfers"], host)]
+    return [f"{scale * seconds:.3g}" for seconds in (times["kernels"], times["transfers"], host, times["processor"])]
 
 
 def structures_table(result):
     lines = []
     for row in result["structures timed"]:
         if "failure" in row:
-            lines.append([f"`{row['structure']}`", row["failure"], *[""] * 6])
+            lines.append([f"`{row['structure']}`", row["failure"], *[""] * 8])
             continue
         lines.append([f"`{row['structure']}`", f"{row['compile']:.2f}", *split(row["build"], 1e3),
                       *split(row["estimate"], 1e9 / row["hits"])])
-    return table(["structure", "compile, s", "build, ms: kernels", "transfers", "host", "estimate, ns a hit: kernels",
-                  "transfers", "host"], lines)
+    return table(["structure", "compile, s", "build, ms: kernels", "transfers", "host", "processor",
+                  "estimate, ns a hit: kernels", "transfers", "host", "processor"], lines)
 
 
 def kinds_table(result, names):
@@ -166,7 +166,8 @@ def page(result, folder):
     if result.get("structures timed"):
         structure = result["structures timed"][0]
         lines += ["", "## Time", "", f"A square metre with {structure['photons']:,} photons, {structure['hits']:,} hits, "
-                  f"k = {structure['k']}; the least of the repeats. Host: all that is neither kernels nor transfers.",
+                  f"k = {structure['k']}; the least of the repeats. Host: all that is neither kernels nor transfers. Processor: of the host, "
+                  "all threads; where that is the device, other programs disturb it least.",
                   "", structures_table(result)]
         bench = load(folder / "kernels.json")
         lines += ["", "## Beside the limits", "", report_kernels.roofline(bench), "", report_kernels.build_kernels(bench)]
@@ -198,14 +199,15 @@ def docs_table():
             cells += [""] * 6
         else:
             limits = result["limits"]
-            cells += [f"{grid['compile']:.1f}", f"{1e3 * grid['build']['all']:.0f}",
+            on = "processor" if result["device"]["type"] == "cpu" else "all"
+            cells += [f"{grid['compile']:.1f}", f"{1e3 * grid['build'][on]:.0f}",
                       f"{1e9 / grid['hits'] * grid['estimate']['kernels']:.0f}",
-                      f"{1e9 / grid['hits'] * grid['estimate']['all']:.0f}",
+                      f"{1e9 / grid['hits'] * grid['estimate'][on]:.0f}",
                       f"{limits['copied bytes per second'] / 1e9:.0f}",
                       f"{limits['operations per second'] / 1e9:.0f}"]
         lines.append(cells)
     return table(["runtime", "device", "right: maps / kinds / structures", "picture beside PoCL's", "compile, s", "build, ms",
-                  "kernels, ns a hit", "all, ns a hit", "copies, GB/s", "1e9 operations/s"], lines)
+                  "a hit, ns: kernels", "all", "copies, GB/s", "1e9 operations/s"], lines)
 
 
 def main():
@@ -219,7 +221,8 @@ def main():
     arguments = parser.parse_args()
     if arguments.check:
         if read_section(PAGE, SCRIPT) != docs_table():
-            sys.exit("docs/devices.md: its table is not that of results/; write it by bench/kernels/report_device.py --docs")
+            sys.exit("docs/devices.md: its table is not that of results/; write it by bench/kernels/report_device.py "
+                     "--docs")
         return
     if arguments.docs:
         replace_section(PAGE, SCRIPT, docs_table())
