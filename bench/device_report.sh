@@ -3,11 +3,11 @@
 # docs/devices.md has a row, and build/device-report/DEVICE-RUNTIME.md, a page to post. Ten minutes on
 # a GPU, twenty on two cores. What fails is told, and the next part runs.
 #
-#   bench/device_report.sh [--device SELECTOR] [--name NAME] [--parts REGEX] [--quick] [--no-build]
-#                       [--beside SELECTOR]
+#   bench/device_report.sh [OPTION]...
 #
 #   --device SELECTOR   as for photile; default: the device that photile takes
 #   --name NAME         of the files, in place of DEVICE-RUNTIME
+#   --results FOLDER    in place of results/
 #   --parts REGEX       only those whose names it finds, beside the last results of the others
 #   --quick             tiny sizes and few k: for simulators; times nothing
 #   --no-build          what is built is run: in a container of another system
@@ -18,11 +18,12 @@ usage() {
   sed -n '2,/^set/{/^set/!s/^# \{0,1\}//p}' "$0" >&2
   exit 2
 }
-build=1 device=${PHOTILE_DEVICE:-} beside=portable parts=. quick=() names=()
+build=1 device=${PHOTILE_DEVICE:-} beside=portable parts=. quick=() names=() results=()
 while (($#)); do
   case $1 in
     --device) device=${2:?--device needs a selector} && shift ;;
     --beside) beside=${2:?--beside needs a selector} && shift ;;
+    --results) results=(--results "${2:?--results needs a folder}") && shift ;;
     --name) names=(--name "${2:?--name needs a name}") && shift ;;
     --parts) parts=${2:?--parts needs a regular expression} && shift ;;
     --no-build) build=0 ;;
@@ -90,5 +91,5 @@ if "$release/photile" devices --device "$beside" > /dev/null 2>&1; then
   part compare "$release/photile" compare "$folder/beside.exr" "$folder/picture.exr" \
     --json "$folder/compare.json" -o "$folder/compare.png"
 fi
-bench/kernels/report_device.py "$folder" "${quick[@]}" "${names[@]}" || failed=1
+bench/kernels/report_device.py "$folder" "${quick[@]}" "${names[@]}" "${results[@]}" || failed=1
 exit $failed

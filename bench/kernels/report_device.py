@@ -2,7 +2,7 @@
 """What bench/device_report.sh has found, as a file of results/ and as a page to post; and the table of
 docs/devices.md, of all files.
 
-    bench/kernels/report_device.py FOLDER [--name NAME] [--quick]
+    bench/kernels/report_device.py FOLDER [--name NAME] [--results FOLDER] [--quick]
     bench/kernels/report_device.py --docs     # writes the table of docs/devices.md
     bench/kernels/report_device.py --check    # exits with 1 where it is another one
 """
@@ -215,6 +215,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, nargs="?")
     parser.add_argument("--name")
+    parser.add_argument("--results", type=pathlib.Path, default=RESULTS)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--docs", action="store_true")
     parser.add_argument("--check", action="store_true")
@@ -231,11 +232,11 @@ def main():
         parser.error("give the folder of a report, --docs or --check")
     result = collect(arguments.folder, arguments.quick)
     name = arguments.name or slug(f"{chip_of(result['device'])}-{result['runtime']}")
-    RESULTS.mkdir(exist_ok=True)
-    write(result, RESULTS / f"{name}.json")
+    arguments.results.mkdir(parents=True, exist_ok=True)
+    write(result, arguments.results / f"{name}.json")
     written = arguments.folder.parent / f"{name}.md"
     written.write_text(page(result, arguments.folder))
-    print(f"wrote results/{name}.json and {written}")
+    print(f"wrote {arguments.results / name}.json and {written}")
 
 
 if __name__ == "__main__":
