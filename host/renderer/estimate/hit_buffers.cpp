@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <cstring>
+#include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "trace/opaque_bsdf.hpp"
@@ -76,6 +78,16 @@ PhotileHitLobe hit_lobe(const PrimaryHits& hits, std::size_t hit, bool normal_ma
   return on_device;
 }
 
+/// A buffer of make(i) for each i < count. Made by all cores, which touch the memory first, too: a
+/// GPU waits for it.
+template <class T, class Make>
+device::Buffer<T> upload_each(device::Context& context, std::size_t count, std::string_view what,
+                              const Make& make) {
+  const auto values = std::make_unique_for_overwrite<T[]>(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { values[i] = make(i); });
+  return context.upload(std::span<const T>(values.get(), count), what);
+}
+
 }  // namespace
 
 std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
@@ -88,32 +100,29 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
                        const SurfaceBuffers* surface, const SceneNeeds& needs) {
   const std::size_t count = maps.size();
   HitBuffers buffers{.count = static_cast<std::uint32_t>(count)};
-  const auto upload = [&](const auto& values, std::string_view what) {
-    return context.upload(std::span(values), what);
-  };
   if (count == 0) return buffers;
-  std::vector<PhotileHit> positions(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    store(positions[i].position, hits.position[first + i]);
-    positions[i].map = maps[i];
-  }
-  buffers.hits = upload(positions, "hits");
+  buffers.hits = upload_each<PhotileHit>(context, count, "hits", [&](std::size_t i) {
+    PhotileHit hit{};
+    store(hit.position, hits.position[first + i]);
+    hit.map = maps[i];
+    return hit;
+  });
   if (surface != nullptr || !normals.empty()) {
-    std::vector<PhotileHitSurface> surfaces(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t own = hits.oriented_face[first + i];
-      if (surface != nullptr) {
-        surfaces[i] = clipped_surface(*surface, own, hits.position[first + i]);
-      } else {
-        store(surfaces[i].normal, normals[own]);
-      }
-    }
-    buffers.surfaces = upload(surfaces, "surfaces at hits");
+    buffers.surfaces =
+        upload_each<PhotileHitSurface>(context, count, "surfaces at hits", [&](std::size_t i) {
+          const std::uint32_t own = hits.oriented_face[first + i];
+          if (surface != nullptr) {
+            return clipped_surface(*surface, own, hits.position[first + i]);
+          }
+          PhotileHitSurface at{};
+          store(at.normal, normals[own]);
+          return at;
+        });
   }
   if (!needs.glossy) return buffers;
-  std::vector<PhotileHitLobe> lobes(count);
-  for (std::size_t i = 0; i < count; ++i) lobes[i] = hit_lobe(hits, first + i, needs.normal_maps);
-  buffers.lobes = upload(lobes, "reflections at hits");
+  buffers.lobes = upload_each<PhotileHitLobe>(
+      context, count, "reflections at hits",
+      [&](std::size_t i) { return hit_lobe(hits, first + i, needs.normal_maps); });
   return buffers;
 }
 
