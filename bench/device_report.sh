@@ -66,9 +66,12 @@ part() {
   fi
 }
 
-# oracle NAME PROGRAM CASES: tests against double precision, with guards around every buffer.
+# oracle NAME PROGRAM CASES: tests against double precision, with guards around every buffer; simulators
+# look at each access themselves, and Oclgrind 21.10 breaks on sub-buffers.
 oracle() {
-  part "$1" env OPENCL_LAYERS="$PWD/$layers/libphotile_fence_layer.so" PHOTILE_FENCE=guard \
+  local guards=(OPENCL_LAYERS="$PWD/$layers/libphotile_fence_layer.so" PHOTILE_FENCE=guard)
+  ((${#quick[@]})) && guards=()
+  part "$1" env "${guards[@]}" \
     "$release/tests/$2/photile_tests_$2" "$3" -r xml -o "$folder/$1.xml"
 }
 

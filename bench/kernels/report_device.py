@@ -133,7 +133,10 @@ def structures_table(result):
 
 def kinds_table(result, names):
     """Kinds of kernels by k; an empty cell: it did not come so far."""
-    cells = {tuple(re.match(r"(.*), k = (\d+)", name).groups()): passed for name, passed in names.items()}
+    named = {re.fullmatch(r"(.*), k = (\d+)", name): passed for name, passed in names.items()}
+    cells = {match.groups(): passed for match, passed in named.items() if match}
+    if not cells:
+        return "No kernel came to an end."
     ks = sorted({int(k) for _, k in cells})
     return table(["kernel"] + [f"k = {k}" for k in ks],
                  [[kind] + [{True: "right", False: "**wrong**", None: ""}[cells.get((kind, str(k)))] for k in ks]
@@ -198,13 +201,14 @@ def docs_table():
         if result["quick"] or "compile" not in grid:
             cells += [""] * 6
         else:
-            limits = result["limits"]
+            # A runtime that times no kernels (docs/runtimes.md) has no limits either.
+            timed = grid["estimate"]["kernels"] > 0
+            copied, operations = (f"{result['limits'][name] / 1e9:.0f}" if timed else ""
+                                  for name in ("copied bytes per second", "operations per second"))
             on = "processor" if result["device"]["type"] == "cpu" else "all"
             cells += [f"{grid['compile']:.1f}", f"{1e3 * grid['build'][on]:.0f}",
-                      f"{1e9 / grid['hits'] * grid['estimate']['kernels']:.0f}",
-                      f"{1e9 / grid['hits'] * grid['estimate'][on]:.0f}",
-                      f"{limits['copied bytes per second'] / 1e9:.0f}",
-                      f"{limits['operations per second'] / 1e9:.0f}"]
+                      f"{1e9 / grid['hits'] * grid['estimate']['kernels']:.0f}" if timed else "",
+                      f"{1e9 / grid['hits'] * grid['estimate'][on]:.0f}", copied, operations]
         lines.append(cells)
     return table(["runtime", "device", "right: maps / kinds / structures", "picture beside PoCL's", "compile, s", "build, ms",
                   "a hit, ns: kernels", "all", "copies, GB/s", "1e9 operations/s"], lines)

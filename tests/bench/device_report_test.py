@@ -59,6 +59,10 @@ class DeviceReportTest(unittest.TestCase):
         result = report_device.collect(self.folder, False)
         self.assertEqual(result["kinds"], {"passed": 1, "failed": ["select, disc, k = 50"]})
 
+    def test_a_run_that_ends_in_its_first_kernel_is_told(self):
+        self.put("kinds.xml", '<TestCase name="every kind"><Section name="select, disc, k = 1">')
+        self.assertIn("No kernel came to an end.", self.page())
+
     def test_cases_without_sections_count_by_themselves(self):
         self.put("maps.xml", '<TestCase name="a"><OverallResult success="true"/></TestCase>'
                              '<TestCase name="b"><OverallResult success="false"/></TestCase>')

@@ -23,7 +23,6 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
-#include "device/context_impl.hpp"
 #include "device/program.hpp"
 #include "photile/errors.hpp"
 
@@ -170,8 +169,7 @@ namespace {
 
 /// Compilers of devices abort where they do not know further (docs/runtimes.md).
 void end_where_a_compiler_aborts() {
-  std::signal(SIGABRT, [](int) {
-    if (device::LiveContext::count() == 0) return;  // then the process ends by the signal
+  device::handle_aborts_by([](int) {
     end_in_runtime(
         "photile: error: the device's runtime ended the program; choose another device (--device), "
         "or another version of the runtime\n");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
@@ -139,6 +140,7 @@ std::string base_options(cl_device_id device) {
 namespace {
 
 thread_local bool compiling = false;
+void (*abort_handler)(int) = nullptr;
 
 /// Tells of a compilation that takes a minute: a user who waits for it sees nothing else.
 class SlowCompilation {
@@ -179,6 +181,7 @@ class SlowCompilation {
 
 cl_int build(cl_program program, const BuildTarget& target, const std::string& options) {
   const SlowCompilation watched(*target.info);
+  if (abort_handler != nullptr) std::signal(SIGABRT, abort_handler);
   compiling = true;
   const cl_int status =
       clBuildProgram(program, 1, &target.device, options.c_str(), nullptr, nullptr);
@@ -189,6 +192,8 @@ cl_int build(cl_program program, const BuildTarget& target, const std::string& o
 }  // namespace
 
 bool in_compiler() { return compiling; }
+
+void handle_aborts_by(void (*handler)(int)) { abort_handler = handler; }
 
 ProgramHandle build_from_source(const BuildTarget& target, const std::string& file,
                                 const std::string& source, const std::string& options) {
