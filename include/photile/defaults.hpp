@@ -60,9 +60,9 @@ inline constexpr float strong_lobe = 0.2f;
 inline constexpr int least_rays = 16;
 /// Light samples for each ray of a node.
 inline constexpr int light_samples_per_ray = 2;
-/// Times as many rays where a sun or a sky shines, and light samples for each: what they bring,
-/// sunlit floor or a window, varies more.
-inline constexpr int times_in_the_open = 2;
+/// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window, varies
+/// more. Of light samples one for each ray is enough there.
+inline constexpr int times_in_the_open = 4;
 /// Where light samples leave an error of more than this fraction of all light, as in penumbrae, a
 /// point takes so many times as many, but at most `most_light_samples_again` times: 2% shows as
 /// ragged borders.

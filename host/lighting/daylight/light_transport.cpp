@@ -76,7 +76,7 @@ void SkyRays::follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, st
 VisibleByRays SkyRays::from(std::span<const trace::Photometer> places, std::uint64_t number,
                             int rays) const {
   VisibleByRays seen;
-  thread_local std::vector<double> weights;
+  thread_local trace::PortalSizes portals;
   const float each = glm::pi<float>() / static_cast<float>(rays * parameters_.batches);
   for (int batch = 0; batch < parameters_.batches; ++batch) {
     const std::uint64_t seed =
@@ -89,22 +89,22 @@ VisibleByRays SkyRays::from(std::span<const trace::Photometer> places, std::uint
       const trace::RandomBlock own = random.block(trace::Purpose::sensor_direction, 1);
       const trace::Photometer& place =
           places[static_cast<std::size_t>(batch * rays + ray) % places.size()];
-      const double sum = portals_.empty() ? 0 : portals_.weigh(glm::dvec3(place.origin()), weights);
+      portals_.measure(glm::dvec3(place.origin()), portals);
       // A ray alone follows the cosine: what it brings is then no more than what is there.
-      const double looking = sum > 0 ? (rays / 2) / static_cast<double>(rays) : 0;
+      const double looking = portals.sum > 0 ? (rays / 2) / static_cast<double>(rays) : 0;
       const bool looks = looking > 0 && ray % 2 == 1;
       const auto index = static_cast<std::uint32_t>(looking > 0 ? ray / 2 : ray);
       const glm::dvec2 spread = trace::sobol_point(index, scrambles[looks ? 1 : 0]);
       const glm::vec3 direction =
-          looks ? glm::vec3(portals_.sample_direction(glm::dvec3(place.origin()), weights, sum,
+          looks ? glm::vec3(portals_.sample_direction(glm::dvec3(place.origin()), portals,
                                                       own.uniform_double(0), spread.x, spread.y))
                 : place.sample(spread, own.uniform(0), own.uniform(1));
       const double density = place.density(direction);
       if (!(density > 0)) continue;
       double of_both = (1 - looking) * density;
       if (looking > 0) {
-        of_both += looking * portals_.density(glm::dvec3(place.origin()), glm::dvec3(direction),
-                                              weights, sum);
+        of_both +=
+            looking * portals_.density(glm::dvec3(place.origin()), glm::dvec3(direction), portals);
       }
       follow(place.origin(), direction, glm::vec3(each * static_cast<float>(density / of_both)),
              static_cast<std::uint32_t>(batch), random, seen);

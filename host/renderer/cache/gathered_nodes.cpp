@@ -88,11 +88,12 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
   // it, and few light samples find the sky through a window: what single ones find would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
-  const int times = open ? defaults::times_in_the_open : 1;
-  const int rays = std::min(times * coarse, limits::max_gathering_rays);
+  const int rays =
+      std::min((open ? defaults::times_in_the_open : 1) * coarse, limits::max_gathering_rays);
   const int fine = std::max((rays + 3) / 4, std::min(rays, defaults::least_rays));
   const auto light_samples_of = [&](int of_rays) {
-    return std::min(times * defaults::light_samples_per_ray * of_rays, limits::max_direct_rays);
+    return std::min((open ? 1 : defaults::light_samples_per_ray) * of_rays,
+                    limits::max_direct_rays);
   };
   return {{rays, light_samples_of(rays)}, {fine, light_samples_of(open ? rays : fine)}, inset};
 }

@@ -94,29 +94,37 @@ struct RunLight {
     };
     if (traced) {
       thread_local trace::SelectionProbabilities probabilities;
-      thread_local trace::ShadowRays light_samples;
+      thread_local trace::ShadowRays first, more;
       light_sampler.weigh(where.position, where.normal, probabilities);
       // What rays that meet lights count is weighed by the light samples of most points.
       const auto rays_per_light_sample =
           static_cast<float>(rays_per_batch) / static_cast<float>(light_samples_per_batch);
-      const auto found_by = [&](int count) {
-        const glm::vec3 weight(1.0f / static_cast<float>(count));
+      const auto found_by = [&](int begin, int end, trace::ShadowRays& light_samples) {
         light_samples.clear();
         for (std::uint32_t batch = 0; batch < batches; ++batch) {
           const trace::LightSampleNumbers samples = samples_of(batch);
-          for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
-            light_samples.add(light_sampler, where, samples.light(i), weight, rays_per_light_sample,
-                              probabilities, batch);
+          for (int i = begin; i < end; ++i) {
+            light_samples.add(light_sampler, where, samples.light(static_cast<std::uint32_t>(i)),
+                              glm::vec3(1.0f), rays_per_light_sample, probabilities, batch);
           }
         }
         return light_samples.found(rays);
       };
-      const int again = std::min(defaults::light_samples_again * light_samples_per_batch,
-                                 defaults::most_light_samples_again / parameters.batches);
-      std::span<const trace::ShadowRays::Found> found = found_by(light_samples_per_batch);
-      if (again > light_samples_per_batch && is_uncertain(found, indirect)) found = found_by(again);
-      for (const auto& light : found) {
-        sums.add_light(light.layer, light.tag, light.irradiance, light.direction);
+      const std::span<const trace::ShadowRays::Found> found =
+          found_by(0, light_samples_per_batch, first);
+      std::span<const trace::ShadowRays::Found> others;
+      int count = light_samples_per_batch;
+      const int most = std::min(defaults::light_samples_again * count,
+                                defaults::most_light_samples_again / parameters.batches);
+      if (most > count && is_uncertain(found, indirect)) {
+        others = found_by(count, most, more);
+        count = most;
+      }
+      const float weight = 1.0f / static_cast<float>(count);
+      for (const auto& some : {found, others}) {
+        for (const trace::ShadowRays::Found& light : some) {
+          sums.add_light(light.layer, light.tag, weight * light.irradiance, light.direction);
+        }
       }
       return;
     }
@@ -131,6 +139,7 @@ struct RunLight {
     }
   }
   /// Whether the scatter of the batches is a visible part of all light.
+  ///   found   by the light samples of all points, each with a weight of 1
   bool is_uncertain(std::span<const trace::ShadowRays::Found> found, double indirect) const {
     if (found.empty()) return false;
     thread_local std::vector<double> of_batch;
@@ -138,6 +147,7 @@ struct RunLight {
     for (const auto& light : found) {
       of_batch[light.tag] += layer_powers[light.layer] * luminance(glm::dvec3(light.irradiance));
     }
+    for (double& light : of_batch) light /= light_samples_per_batch;
     const auto count = static_cast<double>(of_batch.size());
     const double mean = std::accumulate(of_batch.begin(), of_batch.end(), 0.0) / count;
     double squares = 0;

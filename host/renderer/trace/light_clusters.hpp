@@ -9,14 +9,16 @@
 
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
+#include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile::trace {
 
-/// How likely light samples from a point choose each cluster of the lights. Empty: as from
-/// everywhere, by the power of lights alone.
+/// How likely light samples from a point choose each cluster of the lights, and each portal. Empty:
+/// as from everywhere, by the power of lights alone.
 struct SelectionProbabilities {
   std::vector<double> up_to;  ///< of the clusters up to and with this one; the last is their sum
+  PortalSizes portals;        ///< empty where there are none, and where it is not known
 
   double of(std::size_t cluster) const {
     return (up_to[cluster] - (cluster == 0 ? 0.0 : up_to[cluster - 1])) / up_to.back();

@@ -160,14 +160,21 @@ LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& 
           true};
 }
 
+const PortalSizes& LightSampler::portals_from(const glm::vec3& position,
+                                              const SelectionProbabilities& probabilities) const {
+  if (!probabilities.portals.solid_angle.empty()) return probabilities.portals;
+  thread_local PortalSizes here;
+  portals_.measure(glm::dvec3(position), here);
+  return here;
+}
+
 std::optional<LightSample> LightSampler::through_portal(
     double number, const glm::vec3& position, const RandomBlock& on_light,
     const SelectionProbabilities& probabilities) const {
-  thread_local std::vector<double> weights;
-  const double sum = portals_.weigh(glm::dvec3(position), weights);
-  if (!(sum > 0)) return std::nullopt;
+  const PortalSizes& portals = portals_from(position, probabilities);
+  if (!(portals.sum > 0)) return std::nullopt;
   const glm::vec3 direction(
-      portals_.sample_direction(glm::dvec3(position), weights, sum, double{on_light.uniform(0)},
+      portals_.sample_direction(glm::dvec3(position), portals, double{on_light.uniform(0)},
                                 double{on_light.uniform(2)}, double{on_light.uniform(3)}));
   // One of the lights there, each as likely.
   thread_local std::vector<std::pair<const DistantLight*, glm::vec3>> there;
@@ -194,11 +201,9 @@ float LightSampler::density(const DistantLight& light, const glm::vec3& position
   const float alone = probability(light.light(), probabilities) *
                       distant_samplers_[distant_of_[light.light()]].density(direction);
   if (!(portal_fraction_ > 0)) return alone;
-  thread_local std::vector<double> weights;
-  const double sum = portals_.weigh(glm::dvec3(position), weights);
-  if (!(sum > 0) || light.radiance(direction) == glm::vec3(0.0f)) return alone;
-  const double through =
-      portals_.density(glm::dvec3(position), glm::dvec3(direction), weights, sum);
+  const PortalSizes& portals = portals_from(position, probabilities);
+  if (!(portals.sum > 0) || light.radiance(direction) == glm::vec3(0.0f)) return alone;
+  const double through = portals_.density(glm::dvec3(position), glm::dvec3(direction), portals);
   if (!(through > 0)) return alone;
   double count = 0;
   distant_.for_each_shining(direction, [&](const DistantLight&, const glm::vec3&) { ++count; });

@@ -53,6 +53,7 @@ class LightSampler {
   void weigh(const glm::vec3& position, const glm::vec3& normal,
              SelectionProbabilities& probabilities) const {
     clusters_.weigh(position, normal, probabilities);
+    portals_.measure(glm::dvec3(position), probabilities.portals);
   }
 
   /// A light as seen from `position`. Nothing where it shines elsewhere.
@@ -86,6 +87,9 @@ class LightSampler {
                                           const SelectionProbabilities& probabilities) const;
   std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position,
                                            const SelectionProbabilities& probabilities) const;
+  /// As large as portals look from a point.
+  const PortalSizes& portals_from(const glm::vec3& position,
+                                  const SelectionProbabilities& probabilities) const;
   /// Through a portal, towards what shines from there.
   ///   number   in [0, 1)
   std::optional<LightSample> through_portal(double number, const glm::vec3& position,

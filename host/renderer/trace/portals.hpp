@@ -6,8 +6,15 @@
 
 #include "photile/scene.hpp"
 #include "trace/distant_light.hpp"
+#include "trace/rectangle.hpp"
 
 namespace photile::trace {
+
+/// Portals as they look from a point.
+struct PortalSizes {
+  std::vector<double> solid_angle;  ///< of each, about; 0 of what is seen from behind
+  double sum = 0;
+};
 
 /// The portals of a scene. Light "enters" by one along its inward normal alone.
 class Portals {
@@ -27,26 +34,20 @@ class Portals {
   ///   u, v       in [0, 1): where on it
   glm::dvec3 entrance(const glm::dvec3& travel, double choice, double u, double v) const;
 
-  /// Samples directions from a point through portals: which are in front of it and about how
-  /// large they look. Returns the sum of weights; 0 where none can be seen.
-  double weigh(const glm::dvec3& from, std::vector<double>& weights) const;
+  /// About how large each portal looks from a point.
+  void measure(const glm::dvec3& from, PortalSizes& sizes) const;
 
-  /// A unit direction through one of them, chosen by its weight, evenly over its area.
-  glm::dvec3 sample_direction(const glm::dvec3& from, const std::vector<double>& weights,
-                              double sum, double choice, double u, double v) const;
+  /// A unit direction through one of them, chosen by its size, evenly over its area. One can be
+  /// seen.
+  glm::dvec3 sample_direction(const glm::dvec3& from, const PortalSizes& sizes, double choice,
+                              double u, double v) const;
 
   /// Density of `sample_direction` per steradian.
   double density(const glm::dvec3& from, const glm::dvec3& direction,
-                 const std::vector<double>& weights, double sum) const;
+                 const PortalSizes& sizes) const;
 
  private:
-  struct Rectangle {
-    glm::dvec3 corner, u, v, normal;  ///< metres; the normal is unit and points inwards
-    double area, uu, vv;              ///< m2; squared lengths of the sides
-  };
-  static bool crosses(const Rectangle& portal, const glm::dvec3& point);
-
-  std::vector<Rectangle> portals_;
+  std::vector<Rectangle> portals_;  ///< their normals point inwards
 };
 
 /// What portals show to a sun's disc or a patch of the sky, on average over its solid angle, square
