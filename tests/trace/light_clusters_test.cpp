@@ -105,6 +105,37 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "light clusters: of few lights a batch of 32 light samples chooses each just as often as "
+    "its probability says") {
+  SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  for (int sun = 0; sun < 3; ++sun) {
+    Light light = point_light("sun " + std::to_string(sun), {}, 1.0 + 0.7 * sun);
+    light.kind = LightKind::directional;
+    light.direction = glm::vec3(0, 0, -1);
+    builder.add(light);
+  }
+  const Scene scene = builder.build();
+  const LightSampler lamps(scene);
+  SelectionProbabilities probabilities;
+  lamps.weigh(glm::vec3(0.0f), {0, 0, 1}, probabilities);
+  for (std::uint64_t number = 0; number < 20; ++number) {
+    const LightSampleNumbers samples(RandomStream(3, number, 0), 0);
+    std::array<int, 3> chosen{};
+    for (std::uint32_t i = 0; i < 32; ++i) {
+      const LightNumbers numbers = samples.light(i);
+      const auto light =
+          lamps.sample(glm::vec3(0.0f), numbers.choice, numbers.position, probabilities);
+      REQUIRE(light);
+      ++chosen[light->layer];
+    }
+    for (std::size_t sun = 0; sun < chosen.size(); ++sun) {
+      CHECK(chosen[sun] == Approx(32 * probabilities.of(sun)).margin(1e-9));
+    }
+  }
+}
+
+TEST_CASE(
     "light clusters: a disc of many triangles gives its form factor, and each its share of looks") {
   // Slices of unequal angles, so that their areas differ.
   constexpr int slices = 64;

@@ -21,6 +21,11 @@ constexpr std::size_t most_clusters = 64;
 constexpr std::size_t most_lights = 1024;
 /// The fraction of light samples that are chosen by power alone.
 constexpr double everywhere = 0.5;
+/// Up to so many clusters have probabilities that are multiples of 1 / `strata`: of so many Sobol
+/// points each then has just its number, where by chance it would have one more or one less, which
+/// is all the noise there is of two suns. Each has one stratum at least, and so three eighths of
+/// the samples at most are chosen by their number alone.
+constexpr std::size_t most_by_strata = 12, strata = 32;
 
 /// Cosine of a - b, or 1 where b is larger, by cosines and sines of angles up to pi.
 float cosine_of_difference(float cosine_a, float sine_a, float cosine_b, float sine_b) {
@@ -224,7 +229,13 @@ void LightClusters::weigh(const glm::vec3& position, const glm::vec3& normal,
     const double probability =
         near ? everywhere * fraction + (1 - everywhere) * probabilities.up_to[i] / weights
              : fraction;
-    probabilities.up_to[i] = sum += probability;
+    sum += probability;
+    probabilities.up_to[i] =
+        clusters_.size() > most_by_strata
+            ? sum
+            : (static_cast<double>(i + 1) +
+               std::round(static_cast<double>(strata - clusters_.size()) * sum)) /
+                  strata;
   }
 }
 
