@@ -202,7 +202,7 @@ def docs_table():
             cells += [""] * 6
         else:
             # A runtime that times no kernels (docs/runtimes.md) has no limits either.
-            timed = grid["estimate"]["kernels"] > 0
+            timed = grid["estimate"]["kernels"] > 1e-3 * grid["estimate"]["all"]
             copied, operations = (f"{result['limits'][name] / 1e9:.0f}" if timed else ""
                                   for name in ("copied bytes per second", "operations per second"))
             on = "processor" if result["device"]["type"] == "cpu" else "all"

@@ -72,6 +72,8 @@ DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
 /// Why photile cannot use a device, or "".
 std::string refusal(const DeviceInfo& info, cl_device_id device) {
   if (info.platform == "Clover") return "Mesa Clover computes wrong results; not supported";
+  if (info.platform == "rusticl" && info.driver_version.starts_with("22."))
+    return "rusticl of Mesa 22 computes wrong results; use a newer Mesa";
   if (!device_property<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "not available";
   if (!device_property<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "has no compiler";
   if (!device_property<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE)) return "is big-endian";
