@@ -13,6 +13,7 @@
 #include "room_with_window.hpp"
 #include "statistical_tests.hpp"
 #include "trace/light_emitter.hpp"
+#include "trace/light_sampler.hpp"
 #include "trace/portal_search.hpp"
 #include "validation/analytic_cases.hpp"
 
@@ -129,6 +130,21 @@ TEST_CASE("light samples through a portal find pi L times the window's form fact
     scene.portals = {Room::window(0.3f)};
     CHECK_VERDICT(mean_is(irradiances(scene, sensor, 2048), truth, 0.12 * truth));
   }
+}
+
+TEST_CASE("a ray from the wall around a portal has the density that light samples there have") {
+  // It starts a rounding above the wall, before the portal's plane, where the portal looks
+  // large; from the wall itself it cannot be seen, and no light sample goes through it.
+  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  scene.portals = {Room::window()};
+  const LightSampler lights(scene);
+  const glm::vec3 on_wall(0.5f, 1.4f, 0), start = on_wall + glm::vec3(0, 0, 1e-5f);
+  const glm::vec3 towards = glm::normalize(glm::vec3(1.8f, 1.4f, 0) - start);
+  SelectionProbabilities probabilities;
+  lights.weigh(on_wall, {0, 0, 1}, probabilities);
+  const DistantLight& sky = lights.distant()[0];
+  CHECK(lights.density(sky, start, towards, probabilities) ==
+        lights.density(sky, on_wall, towards, probabilities));
 }
 
 TEST_CASE("a lamp is as bright beside portals") {
