@@ -281,6 +281,29 @@ TEST_CASE("a report describes the luminaires, their energy and the room, in two 
                                      Contains("Nutzebene") && !Contains("not met"));
 }
 
+TEST_CASE("a list of parts totals the power where every file states it") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  const auto write_spot = [&](const std::string& name, const std::string& watts) {
+    folder.write(name + ".ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 " +
+                                    watts + "\n0 45 90\n0\n1000 707.107 0\n");
+  };
+  write_spot("a", "30");
+  folder.write("lamps.json", R"([{"name": "a", "file": "a.ies", "position": [0, 0.9, 0]},
+      {"name": "b", "file": "b.ies", "position": [0.3, 0.9, 0]}])");
+  const auto total = [&](const std::string& watts) {
+    write_spot("b", watts);
+    succeed(measure(scene, {"--plane", "floor+0.75", "--luminaires", folder / "lamps.json", "-o",
+                            folder / "a.html"}));
+    const std::string page = folder.read("a.html");
+    const std::size_t at = page.find("together");
+    REQUIRE(at != std::string::npos);
+    return page.substr(at, page.find("</tr>", at) - at);
+  };
+  CHECK_THAT(total("20"), Contains(">50 W<") && Contains("lm/W"));
+  CHECK_THAT(total("0"), Contains(" lm<") && !Contains(" W<") && !Contains("lm/W"));
+}
+
 TEST_CASE("a mood that names an unknown light is refused before anything is measured") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

@@ -114,7 +114,11 @@ report::ReportTable list_of_parts(const std::vector<report::Part>& parts) {
     lumens += part.lumens;
     watts += part.watts;
   }
-  if (parts.size() > 1) row({std::to_string(count), "together", "", ""}, lumens, watts);
+  const bool all_known = std::all_of(parts.begin(), parts.end(),
+                                     [](const report::Part& part) { return part.watts > 0; });
+  if (parts.size() > 1) {
+    row({std::to_string(count), "together", "", ""}, lumens, all_known ? watts : 0);
+  }
   return table;
 }
 
