@@ -140,7 +140,9 @@ TEST_CASE("what meshopt packed without a filter is the mesh bit by bit") {
   const Sheet sheet;
   const Scene expected = as_it_is(sheet);
   REQUIRE(expected.triangle_count() == 2 * sheet_cells * sheet_cells);
-  const PackedSheet from = packed(sheet);
+  PackedSheet from = packed(sheet);
+  // Nobody needs the buffer for readers without meshopt, so its file may be left behind.
+  if (GENERATE(false, true)) from.document["buffers"][1]["uri"] = "nowhere.bin";
   CHECK(from.buffer.size() < 0.7 * from.document["buffers"][1]["byteLength"].get<double>());
   const Scene scene = load(from.document, from.buffer);
   CHECK(scene.report.warnings.empty());

@@ -165,16 +165,25 @@ TEST_CASE("an unknown extension is named when used and refused when required") {
         std::string::npos);
 }
 
-TEST_CASE("primitives without a material get glTF's default, and a wrong number is refused") {
+TEST_CASE("primitives without a material are matt grey, and a wrong number is refused") {
   json document = square_document();
   auto& primitives = document["meshes"][0]["primitives"];
   primitives.push_back(primitives[0]);
   primitives[1].erase("material");
   const Scene scene = load_gltf(document);
-  CHECK(scene.materials[scene.triangle_material[2]].name == "default");
+  const Material& surface = scene.materials[scene.triangle_material[2]];
+  CHECK(surface.name == "default");
+  check_rgb(surface.diffuse, {0.5, 0.5, 0.5});
+  CHECK_FALSE(surface.glossy());
+  CHECK(warns(scene, {"'default'", "matt grey"}));
   CHECK(scene.triangle_light[2] == none);
+  // A material that is a name alone says no more.
+  document["materials"].push_back({{"name", "plaster"}});
   primitives[1]["material"] = 1;
-  CHECK(input_error_of([&] { load_gltf(document); }).find("material 1") != std::string::npos);
+  const Scene named = load_gltf(document);
+  check_rgb(named.materials[named.triangle_material[2]].diffuse, {0.5, 0.5, 0.5});
+  primitives[1]["material"] = 2;
+  CHECK(input_error_of([&] { load_gltf(document); }).find("material 2") != std::string::npos);
 }
 
 }  // namespace photile::test

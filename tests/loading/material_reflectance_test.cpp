@@ -78,6 +78,19 @@ TEST_CASE("a material reflects the share that is asked for, and keeps its hue") 
   CHECK(material.diffuse.g / material.diffuse.r == Approx(0.75));  // the file has 0.8, 0.6, 0.4
 }
 
+TEST_CASE("a metal reflects the share that is asked for, keeps its hue and stays one") {
+  const json metal{
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {0.8, 0.6, 0.4, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 1}}}};
+  SceneLoadOptions options;
+  options.reflectances = {ReflectanceChange::parse("*=0.5")};
+  const Scene scene = square_of(metal, options);
+  const Material& material = scene.materials[scene.triangle_material[0]];
+  CHECK(whole(scene) == Approx(0.5).epsilon(1e-4));
+  CHECK(material.diffuse == glm::vec3(0.0f));
+  CHECK(material.specular.g / material.specular.r == Approx(0.75));
+}
+
 TEST_CASE("reflectances that cannot be are refused with the remedy") {
   const auto refused = [&](const char* text, const char* words) {
     SceneLoadOptions options;

@@ -43,6 +43,23 @@ TEST_CASE("a base-colour texture colours a metal's reflection") {
   CHECK(surface.alpha == 0.02f);
 }
 
+TEST_CASE("a texture that is a WebP alone is read, as files require by EXT_texture_webp") {
+  const SceneFolderOnDisk folder;
+  write_texel(folder.path / "texel.webp", {255, 255, 255});
+  folder.write("square.bin", square_buffer());
+  json document = square_document();
+  document["extensionsUsed"] = document["extensionsRequired"] = {"EXT_texture_webp"};
+  document["images"] = {{{"uri", "texel.webp"}}};
+  document["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
+  document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  const Scene scene = load_scene(folder.write("scene.gltf", document.dump()));
+  CHECK(scene.report.warnings.empty());
+  CHECK(scene.textures.size() == 1);
+  check_sampled(trace::reflectance(scene, middle(scene)).albedo, {0.8, 0.6, 0.4});
+  document["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+  CHECK(warns(load_scene(folder.write("scene.gltf", document.dump())), {"no picture"}));
+}
+
 TEST_CASE("specular textures multiply the factor by alpha, the colour by RGB") {
   const Scene scene = square_with({{0, 0, 0, 51}, {255, 0, 255}}, [](json& material) {
     material["extensions"]["KHR_materials_specular"] = {{"specularTexture", {{"index", 0}}},

@@ -13,11 +13,12 @@
 namespace photile::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 13> understood_extensions{
+constexpr std::array<std::string_view, 14> understood_extensions{
     "EXT_lights_area",
     "EXT_lights_ies",
     "EXT_lights_image_based",
     "EXT_meshopt_compression",
+    "EXT_texture_webp",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -38,9 +39,8 @@ constexpr std::array<std::string_view, 4> harmless_extensions{
 };
 
 /// What to do about extensions that files of the wild have.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> remedies{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
-    {"EXT_texture_webp", "save its textures as PNG or JPEG"},
     {"KHR_materials_anisotropy", "brushed metal shines alike in all directions"},
     {"KHR_materials_clearcoat", "coats are left out: what is below them reflects alone"},
     {"KHR_materials_pbrSpecularGlossiness",

@@ -139,6 +139,15 @@ class Converter {
 MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   MetallicRoughness model;
+  // glTF would have a metal there that reflects all light, but who sets nothing wants no such room.
+  const bool unsaid = source.values.empty() &&
+                      find_extension(source.extensions, "KHR_materials_transmission") == nullptr;
+  if (unsaid) {
+    model.base_color = glm::dvec3(scene::missing_albedo);
+    model.metallic = model.specular_factor = 0;
+    warn("the file says nothing of its surface; it is matt grey (0.5)");
+    return model;
+  }
   model.base_color = glm::clamp(rgb_of(pbr.baseColorFactor, glm::dvec3(1.0)), 0.0, 1.0);
   model.metallic = std::isfinite(pbr.metallicFactor) ? pbr.metallicFactor : 1.0;
   model.roughness = std::isfinite(pbr.roughnessFactor) ? pbr.roughnessFactor : 1.0;
@@ -263,7 +272,10 @@ std::uint32_t Converter::load_texture(int texture, pictures::TextureContent cont
     throw files::ResourceError(fmt::format("there is no texture {}", texture));
   }
   const tinygltf::Texture& source = model_.textures[static_cast<std::size_t>(texture)];
-  if (source.source < 0 || static_cast<std::size_t>(source.source) >= model_.images.size()) {
+  const auto* webp = find_extension(source.extensions, "EXT_texture_webp");
+  const int picture =
+      source.source >= 0 || webp == nullptr ? source.source : integer_member(*webp, "source", -1);
+  if (picture < 0 || static_cast<std::size_t>(picture) >= model_.images.size()) {
     throw files::ResourceError(
         fmt::format("texture {} has no picture of a format that is read", texture));
   }
@@ -278,8 +290,7 @@ std::uint32_t Converter::load_texture(int texture, pictures::TextureContent cont
       has_wrap(TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)) {
     warn("texture repeats where the file clamps or mirrors it");
   }
-  return texture_picture(model_, static_cast<std::size_t>(source.source), accessors_, content,
-                         textures_);
+  return texture_picture(model_, static_cast<std::size_t>(picture), accessors_, content, textures_);
 }
 
 /// A texture of the surface; `none` where the material has none or it cannot be used. `substitute`

@@ -184,9 +184,15 @@ double whole_of(const Reflectance& surface) {
   return luminance(hemispherical_reflectance(surface));
 }
 
-void scale_diffuse(Scene& scene, Material& material, const glm::vec3& base,
-                   const glm::dvec3& model_base, double scale) {
-  material.diffuse = base * static_cast<float>(scale);
+/// Whether it reflects as metals do, and no light from below its surface: diamond, of the densest
+/// of what is clear, has an F0 of 0.17.
+bool is_metal(const Material& material) {
+  return material.diffuse == glm::vec3(0.0f) && luminance(glm::dvec3(material.specular)) > 0.2;
+}
+
+void scale_color(Scene& scene, Material& material, glm::vec3& color, const glm::vec3& base,
+                 const glm::dvec3& model_base, double scale) {
+  color = base * static_cast<float>(scale);
   if (material.metallic_roughness != none) {
     scene.metallic_roughness[material.metallic_roughness].base_color = model_base * scale;
   }
@@ -232,10 +238,9 @@ bool set_reflectance(Scene& scene, Material& material, double fraction) {
     material.specular *= static_cast<float>(fraction / now);
     return std::max({material.specular.r, material.specular.g, material.specular.b}) <= 1.0f;
   }
-  if (material.diffuse == glm::vec3(0.0f) && material.metallic_roughness == none) {
-    material.diffuse = glm::vec3(1.0f);
-  }
-  const glm::vec3 base = material.diffuse;
+  glm::vec3& color = is_metal(material) ? material.specular : material.diffuse;
+  if (color == glm::vec3(0.0f) && material.metallic_roughness == none) color = glm::vec3(1.0f);
+  const glm::vec3 base = color;
   const glm::dvec3 model_base =
       material.metallic_roughness == none
           ? glm::dvec3(1.0)
@@ -244,12 +249,12 @@ bool set_reflectance(Scene& scene, Material& material, double fraction) {
   // The scale at which a channel is 1; the reflectance grows with it.
   double high = 1 / std::max({widest.r, widest.g, widest.b, 1e-6}), low = 0;
   const auto at = [&](double scale) {
-    scale_diffuse(scene, material, base, model_base, scale);
+    scale_color(scene, material, color, base, model_base, scale);
     return whole_of(mean_surface(scene, material));
   };
   constexpr double slack = 1e-6;
   if (at(low) > fraction + slack || at(high) < fraction - slack) {
-    scale_diffuse(scene, material, base, model_base, 1);
+    scale_color(scene, material, color, base, model_base, 1);
     return false;
   }
   for (int step = 0; step < 60; ++step) {
