@@ -91,6 +91,7 @@ TEST_CASE("info as text names every light and material, and what a coat adds to 
   CHECK_THAT(succeed({"info", scene}).output,
              Contains("light: left: area") && Contains("light: right: area") &&
                  Contains("material: wall: diffuse, 12 triangles") &&
+                 Contains("room: 4.0 m2, 2.00 x 2.00 m, 2.00 m high") &&
                  Contains("material: coated: glossy, 1 triangle, reflectance 0.65 (0.5 entered, "
                           "and 0.3 specular"));
 }

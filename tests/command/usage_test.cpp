@@ -448,8 +448,8 @@ TEST_CASE("numbers of five digits and more are grouped, not powers of ten") {
 }
 
 TEST_CASE("a power is given in its own unit first") {
-  CHECK(format_power_in_both(683, PowerUnit::lumen, 683) == "683 lm (1 W)");
-  CHECK(format_power_in_both(2, PowerUnit::watt, 179) == "2 W (358 lm)");
+  CHECK(format_power_in_lumens(683, PowerUnit::lumen, 683) == "683 lm");
+  CHECK(format_power_in_lumens(2, PowerUnit::watt, 179) == "2 W (358 lm)");
 }
 
 }  // namespace

@@ -55,7 +55,14 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
     add(glare::observers_at(measuring::read_points(file), axes));
   }
   for (const auto& name : options.cameras) {
-    const Camera camera = in_world(scene, choose_camera(scene, name));
+    const Camera& placed = choose_camera(scene, name);
+    const Camera camera = in_world(scene, placed);
+    if (!trace::Room::around(RayScene(scene), {}, placed.position)) {
+      progress.warn(fmt::format(
+          "camera '{}' stands in no room with a ceiling; give the eyes of people who sit or stand "
+          "by --observers FILE",
+          camera.name));
+    }
     all.push_back(
         glare::Observer::looking(camera.name, camera.position, camera.forward, camera.up));
   }

@@ -167,7 +167,11 @@ struct InfoOptions {
 
 void print_text(const Scene& scene, const LightMix& mix) {
   for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
-  for (const auto& [camera, room] : measuring::rooms_of_cameras(scene)) {
+  const auto rooms = measuring::rooms_of_cameras(scene);
+  if (rooms.empty()) {
+    std::cout << "room: none with a ceiling around a camera or before it\n";
+  }
+  for (const auto& [camera, room] : rooms) {
     std::cout << fmt::format(
         "room: {:.1f} m2, {:.2f} x {:.2f} m, {:.2f} m high, floor at {:.2f} m, of camera {}\n",
         room.area, room.sides.x, room.sides.y, room.height, room.floor, scene.cameras[camera].name);

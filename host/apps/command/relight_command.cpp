@@ -45,7 +45,7 @@ void print_lights(const LightMix& mix) {
     const MixedLight& light = mix.lights[i];
     if (patch_of[i] != none) continue;
     std::cout << fmt::format("{}: {}: {}\n", light.members.empty() ? "light" : "group", light.name,
-                             format_power_in_both(light.power, light.unit, mix.lumen_per_watt));
+                             format_power_in_lumens(light.power, light.unit, mix.lumen_per_watt));
   }
   for (const std::string& line : sky_summary(mix)) std::cout << line << '\n';
 }

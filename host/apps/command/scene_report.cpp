@@ -182,7 +182,7 @@ std::vector<std::string> sky_summary(const LightMix& mix) {
   }
   if (patches == 0) return {};
   return {fmt::format("sky: {} patches and the ground, a light each: {}", patches,
-                      format_power_in_both(power, mix.lights.front().unit, mix.lumen_per_watt))};
+                      format_power_in_lumens(power, mix.lights.front().unit, mix.lumen_per_watt))};
 }
 
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
@@ -205,7 +205,7 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
     if (patch_of[groups.group_of[i]] != none) continue;
     const std::string source = source_of(scene, light);
     lines.push_back(fmt::format("light: {}: {}, {}{}{}", light.name, kind_name(light),
-                                format_power_in_both(powers[i], scene.unit, mix.lumen_per_watt),
+                                format_power_in_lumens(powers[i], scene.unit, mix.lumen_per_watt),
                                 light.group.empty() ? "" : ", of group " + light.group,
                                 source.empty() ? "" : ", from " + source));
   }
@@ -214,7 +214,7 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
     if (group.members.empty()) continue;
     lines.push_back(fmt::format("group: {}: {}, {}", group.name,
                                 counted(group.members.size(), "light"),
-                                format_power_in_both(group.power, group.unit, mix.lumen_per_watt)));
+                                format_power_in_lumens(group.power, group.unit, mix.lumen_per_watt)));
   }
   return lines;
 }

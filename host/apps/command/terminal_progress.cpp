@@ -233,11 +233,10 @@ std::string format_power(double power, PowerUnit unit) {
   return report::grouped(power, 4) + " " + unit_symbol(unit);
 }
 
-std::string format_power_in_both(double power, PowerUnit unit, double lumen_per_watt) {
-  const bool lumen = unit == PowerUnit::lumen;
-  const std::string other = lumen ? format_power(power / lumen_per_watt, PowerUnit::watt)
-                                  : format_power(power * lumen_per_watt, PowerUnit::lumen);
-  return format_power(power, unit) + " (" + other + ")";
+std::string format_power_in_lumens(double power, PowerUnit unit, double lumen_per_watt) {
+  const std::string own = format_power(power, unit);
+  if (unit == PowerUnit::lumen) return own;
+  return own + " (" + format_power(power * lumen_per_watt, PowerUnit::lumen) + ")";
 }
 
 }  // namespace photile::app

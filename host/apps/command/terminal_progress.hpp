@@ -95,8 +95,8 @@ std::string format_seconds(double seconds);
 /// "800 lm" or "5 W"
 std::string format_power(double power, PowerUnit unit);
 
-/// A power in both units: "800 lm (1.171 W)".
-std::string format_power_in_both(double power, PowerUnit unit, double lumen_per_watt);
+/// "800 lm", and of a light that its scene counts in watts "5 W (3,415 lm)".
+std::string format_power_in_lumens(double power, PowerUnit unit, double lumen_per_watt);
 
 /// "lm" or "W"
 std::string unit_symbol(PowerUnit unit);

@@ -93,7 +93,7 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   if (!room) {
     grid.remark =
         "the camera comes to no room with a ceiling: this is the widest floor of the scene; name a "
-        "point in the room by --inside X,Y,Z";
+        "point in the room by --inside X,Y,Z, or give the area by --grid FILE";
   }
   return grid;
 }
