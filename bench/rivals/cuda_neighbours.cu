@@ -44,6 +44,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #define CUBQL_GPU_BUILDER_IMPLEMENTATION 1
@@ -204,6 +205,10 @@ std::vector<std::vector<double>> nearest(const Points& points, const Points& que
 template <class List, int k>
 __host__ __device__ float2 answer(const List& list) {
   float sum = 0;
+  // The fixed list lies in registers, which no loop can index; a heap does not, and an unrolled
+  // loop would bring it there.
+  constexpr int unrolled = std::is_same_v<List, cukd::FixedCandidateList<k>> ? k : 1;
+#pragma unroll unrolled
   for (int i = 0; i < k; ++i) {
     if (list.get_pointID(i) >= 0) sum += list.get_dist2(i);
   }
