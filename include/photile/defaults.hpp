@@ -60,8 +60,11 @@ inline constexpr float strong_lobe = 0.2f;
 inline constexpr int least_rays = 16;
 /// Light samples for each ray of a node.
 inline constexpr int light_samples_per_ray = 2;
-/// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window, varies
-/// more. Of light samples one for each ray is enough there.
+/// Lamps and suns without size that a node samples once each, not by chance: no more than the
+/// light samples that these take the place of.
+inline constexpr std::size_t most_sampled_once = 32;
+/// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window,
+/// varies more. Of light samples one for each ray is enough there.
 inline constexpr int times_in_the_open = 4;
 /// Where light samples leave an error of more than this fraction of all light, as in penumbrae, a
 /// point takes so many times as many, but at most `most_light_samples_again` times: 2% shows as

@@ -163,6 +163,34 @@ TEST_CASE("gathering: direct light is that of form factors, within its own error
   CHECK(std::sqrt(squares / errors) == Approx(1).margin(0.2));
 }
 
+TEST_CASE("gathering: lamps and suns without size are sampled once, which is exact") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
+  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, black, builder.add(area_light("lamp")));
+  const glm::dvec3 bulb(-0.4, 0.3, 1.2);
+  builder.add(point_light("bulb", glm::vec3(bulb), 0.2));
+  builder.grid({-2, 0.9f, 0.5f}, {4, 0, 0}, {0, 0.2f, 0}, 1, black);  // it hides the bulb beyond
+  GatheringScene place(builder.build(), looked_up(20'000));
+  const std::vector<Sensor> sensors = sensors_on({-1.5, -1.5, 0}, {3, 0, 0}, {0, 3, 0}, up, 20);
+  const cache::GatheredIrradiance light = place.at(sensors);
+  int dark = 0;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::size_t of_bulb = 2 * i + 1;
+    const glm::dvec3 offset = bulb - sensors[i].position;
+    // Where the line to the bulb passes through the height of the screen.
+    const double y = sensors[i].position.y + offset.y * 0.5 / offset.z;
+    const bool hidden = y > 0.9 && y < 1.1;
+    dark += hidden ? 1 : 0;
+    CHECK(lux(light, of_bulb) ==
+          Approx(hidden ? 0.0 : offset.z / (4 * pi * std::pow(glm::length(offset), 3)))
+              .epsilon(1e-5)
+              .margin(1e-12));
+    CHECK(light.error(of_bulb) <= 1e-7 * lux(light, of_bulb));
+  }
+  CHECK(dark > 10);
+}
+
 TEST_CASE("gathering: layers of a furnished room are those of paths") {
   check_against_paths(furnished_room(), 0.03);
 }

@@ -93,6 +93,8 @@ struct RunLight {
                                        0);
     };
     if (traced) {
+      const double exact = add_sampled_once(where, sums);
+      if (light_sampler.samples_all_once()) return;
       thread_local trace::SelectionProbabilities probabilities;
       thread_local trace::ShadowRays first, more;
       light_sampler.weigh(where.position, where.normal, probabilities);
@@ -116,7 +118,7 @@ struct RunLight {
       int count = light_samples_per_batch;
       const int most = std::min(defaults::light_samples_again * count,
                                 defaults::most_light_samples_again / parameters.batches);
-      if (most > count && is_uncertain(found, indirect)) {
+      if (most > count && is_uncertain(found, indirect + exact)) {
         others = found_by(count, most, more);
         count = most;
       }
@@ -138,9 +140,28 @@ struct RunLight {
       }
     }
   }
+  /// Adds to all batches what lights without size bring. Returns its luminance.
+  double add_sampled_once(const trace::SurfacePoint& where, BatchSums& sums) const {
+    thread_local trace::ShadowRays shadow_rays;
+    shadow_rays.clear();
+    for (const std::uint32_t light : light_sampler.sampled_once()) {
+      shadow_rays.add(where, light_sampler.towards(light, where.position), glm::vec3(1.0f), 0.0f,
+                      0);
+    }
+    double exact = 0;
+    for (const trace::ShadowRays::Found& light : shadow_rays.found(rays)) {
+      exact += layer_powers[light.layer] * luminance(glm::dvec3(light.irradiance));
+      for (int batch = 0; batch < parameters.batches; ++batch) {
+        sums.add_light(light.layer, static_cast<std::uint32_t>(batch), light.irradiance,
+                       light.direction);
+      }
+    }
+    return exact;
+  }
   /// Whether the scatter of the batches is a visible part of all light.
-  ///   found   by the light samples of all points, each with a weight of 1
-  bool is_uncertain(std::span<const trace::ShadowRays::Found> found, double indirect) const {
+  ///   found    by the light samples of all points, each with a weight of 1
+  ///   others   luminance of all other light
+  bool is_uncertain(std::span<const trace::ShadowRays::Found> found, double others) const {
     if (found.empty()) return false;
     thread_local std::vector<double> of_batch;
     of_batch.assign(static_cast<std::size_t>(parameters.batches), 0.0);
@@ -152,7 +173,7 @@ struct RunLight {
     const double mean = std::accumulate(of_batch.begin(), of_batch.end(), 0.0) / count;
     double squares = 0;
     for (const double light : of_batch) squares += (light - mean) * (light - mean);
-    const double tolerated = defaults::tolerated_light_sample_error * (mean + indirect);
+    const double tolerated = defaults::tolerated_light_sample_error * (mean + others);
     return squares > tolerated * tolerated * count * (count - 1);
   }
   void add_visible_lights(std::size_t i, BatchSums& sums) const {

@@ -140,11 +140,8 @@ void ShadowRays::clear() {
   found_.clear();
 }
 
-void ShadowRays::add(const LightSampler& light_sampler, const SurfacePoint& point,
-                     const LightNumbers& numbers, const glm::vec3& weight, float directions,
-                     const SelectionProbabilities& probabilities, std::uint32_t tag) {
-  const auto light =
-      light_sampler.sample(point.position, numbers.choice, numbers.position, probabilities);
+void ShadowRays::add(const SurfacePoint& point, const std::optional<LightSample>& light,
+                     const glm::vec3& weight, float directions, std::uint32_t tag) {
   if (!light) return;
   const float cosine = glm::dot(light->direction, point.normal);
   if (!(cosine > 0.0f)) return;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -82,7 +83,13 @@ class ShadowRays {
   ///   tag          that is found again with the light
   void add(const LightSampler& light_sampler, const SurfacePoint& point,
            const LightNumbers& numbers, const glm::vec3& weight, float directions,
-           const SelectionProbabilities& probabilities, std::uint32_t tag);
+           const SelectionProbabilities& probabilities, std::uint32_t tag) {
+    add(point,
+        light_sampler.sample(point.position, numbers.choice, numbers.position, probabilities),
+        weight, directions, tag);
+  }
+  void add(const SurfacePoint& point, const std::optional<LightSample>& light,
+           const glm::vec3& weight, float directions, std::uint32_t tag);
 
   struct Found {
     std::uint32_t tag, layer;

@@ -44,13 +44,16 @@ using Box = geometry::BoxOf<double>;
 }  // namespace
 
 LightClusters::LightClusters(const Scene& scene, std::span<const double> fractions,
-                             const BoundingSphere& bounds)
+                             const BoundingSphere& bounds, std::span<const std::uint32_t> left_out)
     : whole_(scene.lights.size(), none),
       far_(static_cast<float>(1 / (bounds.radius * bounds.radius))) {
   if (scene.lights.size() > most_lights) return;
+  double all = 1;
+  for (const std::uint32_t light : left_out) all -= fractions[light];
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
+    if (std::binary_search(left_out.begin(), left_out.end(), light)) continue;
     const Light& source = scene.lights[light];
-    Cluster cluster{.light = light, .fraction = static_cast<float>(fractions[light])};
+    Cluster cluster{.light = light, .fraction = static_cast<float>(fractions[light] / all)};
     if (source.kind == LightKind::area) {
       add_area_light(scene, cluster);
       continue;
@@ -67,7 +70,7 @@ LightClusters::LightClusters(const Scene& scene, std::span<const double> fractio
   for (const Cluster& cluster : clusters_) extent.push_back(extent_of(cluster));
   while (clusters_.size() < most_clusters) {
     const auto largest = std::max_element(extent.begin(), extent.end());
-    if (!(*largest > 0.0f)) break;
+    if (largest == extent.end() || !(*largest > 0.0f)) break;
     const auto index = static_cast<std::size_t>(largest - extent.begin());
     if (!cut(scene, index)) {
       *largest = 0.0f;

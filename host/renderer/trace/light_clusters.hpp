@@ -37,8 +37,9 @@ class LightClusters {
  public:
   /// Errors: none; there are no clusters where there are too many lights to weigh each.
   ///   fractions   of the lights, summing to 1: how light samples are chosen wherever the point is
-  LightClusters(const Scene& scene, std::span<const double> fractions,
-                const BoundingSphere& bounds);
+  ///   left_out    lights of no cluster, ascending
+  LightClusters(const Scene& scene, std::span<const double> fractions, const BoundingSphere& bounds,
+                std::span<const std::uint32_t> left_out = {});
 
   /// The selection probabilities of light samples from a point of a surface; empty where there are
   /// no clusters.

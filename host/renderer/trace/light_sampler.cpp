@@ -14,12 +14,26 @@
 
 namespace photile::trace {
 
+namespace {
+
+std::vector<std::uint32_t> lights_sampled_once(const Scene& scene) {
+  std::vector<std::uint32_t> lights;
+  for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
+    if (!scene.lights[light].has_size()) lights.push_back(light);
+  }
+  if (lights.size() > defaults::most_sampled_once) lights.clear();
+  return lights;
+}
+
+}  // namespace
+
 LightSampler::LightSampler(const Scene& scene)
     : scene_(&scene),
       groups_(light_groups_of(scene)),
       bounds_(bounding_sphere(scene)),
       fraction_(light_fractions(scene.lights, PhotonQuota::balanced)),
-      clusters_(scene, fraction_, bounds_),
+      sampled_once_(lights_sampled_once(scene)),
+      clusters_(scene, fraction_, bounds_, sampled_once_),
       radiance_(emitted_radiance_at_unit_power(scene)),
       distant_(scene),
       portals_(scene),
@@ -84,9 +98,7 @@ std::optional<LightSample> LightSampler::sample(const glm::vec3& position,
         triangle == none ? area.sample_front(on_light) : area.sample_front_of(triangle, on_light),
         position, probabilities);
   }
-  return scene_->lights[light].kind == LightKind::directional
-             ? towards_sun(light, position, probabilities)
-             : towards_point(light, position, probabilities);
+  return towards_light_without_size(light, position, double{probability(light, probabilities)});
 }
 
 /// Towards a point of the light.
@@ -105,10 +117,22 @@ std::optional<LightSample> LightSampler::towards_area(
                      radiance_[light] * emission_towards(*scene_, point, -direction) / seen, seen};
 }
 
-std::optional<LightSample> LightSampler::towards_point(
-    std::uint32_t light, const glm::vec3& position,
-    const SelectionProbabilities& probabilities) const {
+/// Towards a light that is chosen with this probability.
+std::optional<LightSample> LightSampler::towards_light_without_size(std::uint32_t light,
+                                                                    const glm::vec3& position,
+                                                                    double probability) const {
   const Light& source = scene_->lights[light];
+  const glm::dvec3 color = glm::dvec3(source.color) * groups_.fraction[light];
+  if (source.kind == LightKind::directional) {
+    // Its flux falls on the disc of the bounding sphere, which the shadow ray leaves.
+    const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
+    return LightSample{groups_.group_of[light],
+                       -source.direction,
+                       beyond(position, -source.direction),
+                       glm::vec3(color / (disc * probability)),
+                       0.0f,
+                       true};
+  }
   const glm::dvec3 offset = glm::dvec3(source.position) - glm::dvec3(position);
   const double squared_distance = glm::dot(offset, offset);
   if (!(squared_distance > 0)) return std::nullopt;
@@ -116,28 +140,12 @@ std::optional<LightSample> LightSampler::towards_point(
   const double intensity = candela_per_lumen(*scene_, source, -direction);
   if (!(intensity > 0)) return std::nullopt;
   return LightSample{groups_.group_of[light], glm::vec3(direction), source.position,
-                     glm::vec3(glm::dvec3(source.color) * groups_.fraction[light] * intensity /
-                               (squared_distance * double{probability(light, probabilities)})),
-                     0.0f};
+                     glm::vec3(color * intensity / (squared_distance * probability)), 0.0f};
 }
 
 glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direction) const {
   const double reach = glm::distance(glm::dvec3(position), bounds_.center) + 1.5 * bounds_.radius;
   return position + static_cast<float>(std::max(2.5 * bounds_.radius, reach)) * direction;
-}
-
-LightSample LightSampler::towards_sun(std::uint32_t light, const glm::vec3& position,
-                                      const SelectionProbabilities& probabilities) const {
-  const Light& source = scene_->lights[light];
-  // Its flux falls on the disc of the bounding sphere, which the shadow ray leaves.
-  const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
-  return {groups_.group_of[light],
-          -source.direction,
-          beyond(position, -source.direction),
-          glm::vec3(glm::dvec3(source.color) * groups_.fraction[light] /
-                    (disc * double{probability(light, probabilities)})),
-          0.0f,
-          true};
 }
 
 LightSample LightSampler::towards_distant(std::uint32_t light, const glm::vec3& position,

@@ -48,7 +48,7 @@ class LightSampler {
   explicit LightSampler(const Scene& scene);
 
   /// Selection probabilities of lights at a point of a surface, which take as long as two rays to
-  /// find: for several samples.
+  /// find: for several samples. Lights that are sampled once each are not among them.
   ///   normal   unit, to the side from which is looked
   void weigh(const glm::vec3& position, const glm::vec3& normal,
              SelectionProbabilities& probabilities) const {
@@ -61,6 +61,15 @@ class LightSampler {
   std::optional<LightSample> sample(
       const glm::vec3& position, const RandomBlock& choice, const RandomBlock& on_light,
       const SelectionProbabilities& probabilities = by_power_alone) const;
+
+  /// Lights without size, of which one sample is exact; none where they are too many. Where they
+  /// are all lights, nothing is left to choose by weighed probabilities.
+  const std::vector<std::uint32_t>& sampled_once() const { return sampled_once_; }
+  bool samples_all_once() const { return sampled_once_.size() == fraction_.size(); }
+  /// One of these as seen from `position`. Nothing where it shines elsewhere.
+  std::optional<LightSample> towards(std::uint32_t light, const glm::vec3& position) const {
+    return towards_light_without_size(light, position, 1.0);
+  }
 
   /// Density per steradian with which `sample` would have chosen a point that emits, seen from
   /// `position`.
@@ -85,8 +94,9 @@ class LightSampler {
   std::optional<LightSample> towards_area(std::uint32_t light, SurfacePoint point,
                                           const glm::vec3& position,
                                           const SelectionProbabilities& probabilities) const;
-  std::optional<LightSample> towards_point(std::uint32_t light, const glm::vec3& position,
-                                           const SelectionProbabilities& probabilities) const;
+  std::optional<LightSample> towards_light_without_size(std::uint32_t light,
+                                                        const glm::vec3& position,
+                                                        double probability) const;
   /// As large as portals look from a point.
   const PortalSizes& portals_from(const glm::vec3& position,
                                   const SelectionProbabilities& probabilities) const;
@@ -95,8 +105,6 @@ class LightSampler {
   std::optional<LightSample> through_portal(double number, const glm::vec3& position,
                                             const RandomBlock& on_light,
                                             const SelectionProbabilities& probabilities) const;
-  LightSample towards_sun(std::uint32_t light, const glm::vec3& position,
-                          const SelectionProbabilities& probabilities) const;
   LightSample towards_distant(std::uint32_t light, const glm::vec3& position,
                               const RandomBlock& on_light,
                               const SelectionProbabilities& probabilities) const;
@@ -107,6 +115,7 @@ class LightSampler {
   LightGroups groups_;
   BoundingSphere bounds_;
   std::vector<double> fraction_;  ///< of the light samples of any point, per light
+  std::vector<std::uint32_t> sampled_once_;
   LightClusters clusters_;
   std::vector<double> cumulative_fraction_;  ///< of the lights up to and with this one
   std::vector<glm::vec3> radiance_;          ///< per light, of white texels; black without area
