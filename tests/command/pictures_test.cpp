@@ -190,7 +190,8 @@ TEST_CASE("white balance makes the light of all lamps white in PNGs, and changes
                                       "--light", "right=2700K", "-o"};
   const auto write = [&](std::vector<std::string> words, const std::string& name,
                          const std::string& balance) {
-    words.insert(words.end(), {folder / name, "--set", "white_balance=" + balance});
+    words.push_back(folder / name);
+    if (!balance.empty()) words.insert(words.end(), {"--set", "white_balance=" + balance});
     succeed(words);
     return read_image(folder / name);
   };
@@ -204,8 +205,8 @@ TEST_CASE("white balance makes the light of all lamps white in PNGs, and changes
            folder / "white.png"});
   const double plain = blue_over_red(read_image(folder / "white.png"));
   CHECK(blue_over_red(write(warm, "off.png", "off")) < 0.6 * plain);
-  CHECK(blue_over_red(write(warm, "on.png", "on")) == Approx(plain).epsilon(0.05));
-  CHECK(write(warm, "off.exr", "off").channels == write(warm, "on.exr", "on").channels);
+  CHECK(blue_over_red(write(warm, "on.png", "")) == Approx(plain).epsilon(0.05));
+  CHECK(write(warm, "off.exr", "off").channels == write(warm, "on.exr", "").channels);
 }
 
 TEST_CASE("layers of 11 bits are near to those of 24, in less room, and lossy ones in less still") {

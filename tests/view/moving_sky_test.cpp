@@ -7,9 +7,11 @@
 #include <numeric>
 
 #include "common/files.hpp"
+#include "loading/light_changes.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
+#include "test_scenes.hpp"
 #include "weather/perez_sky.hpp"
 #include "weather_text.hpp"
 
@@ -135,6 +137,10 @@ TEST_CASE("a place makes a sky of patches, unless another sky or sun is asked fo
   nowhere.sky = Sky::parse("patches=577");
   CHECK(!take_moving_sky(nowhere).site);
   CHECK(nowhere.sky->patches == 577);
+  Scene floor = plate(diffuse(glm::vec3(0.5f)), 1);
+  loading::add_surroundings(floor, nowhere);
+  loading::group_lights(floor, nowhere.light_groups);
+  CHECK(light_groups_of(floor).groups.size() == 1);
   CHECK(!MovingSky::of(sky_mix(577), {}));  // no place
   CHECK(!MovingSky::of(sky_mix(100), {.site = berlin}));
 }

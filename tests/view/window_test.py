@@ -171,7 +171,8 @@ def same_exposure(screenshot, picture):
     unclipped = (shown.max(axis=2) < 0.98) & (shown.min(axis=2) > 0.02)
     if unclipped.mean() < 0.1:  # coloured lamps clip one primary in most of the room
         fail(f"only {unclipped.mean():.0%} of the screenshot is between black and white")
-    scale = np.median(shown[unclipped] / picture[unclipped])
+    # Of each primary its own: the white is balanced.
+    scale = np.median(shown[unclipped] / picture[unclipped], axis=0)
     expected = np.minimum(scale * picture, 1)
     encoded = np.where(expected <= 0.0031308, 12.92 * expected,
                        1.055 * np.maximum(expected, 1e-9)**(1 / 2.4) - 0.055)

@@ -10,6 +10,7 @@
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "image/layer_set.hpp"
+#include "image/light_layers.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "report/false_colour.hpp"
@@ -154,35 +155,28 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   add_drawing("--luminance", options.luminance, "cd/m2, in false colour with a legend");
 }
 
-std::array<float, 3> colour_of_light(const LayeredPicture& picture) {
-  const LightMix mix = image::read_light_records(picture.header()).mix;
-  const int height = picture.header().height;
-  glm::dvec3 sum(0.0);
+ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& picture) {
+  ToneMapping shown = options.tone_mapping;
+  if (!options.white_balance) return shown;
+  std::vector<double> sums;
   for (std::size_t light = 0; light < picture.lights(); ++light) {
-    const LightRows rows = picture.read(light, 0, height);
-    const glm::dvec3 own(mix.lights[light].color * mix.lights[light].tint);
+    const LightRows rows = picture.read(light, 0, picture.header().height);
+    double sum = 0;
     const auto add = [&](double lux) {
-      if (std::isfinite(lux) && lux > 0) sum += lux * own;
+      if (std::isfinite(lux) && lux > 0) sum += lux;
     };
     for (const float lux : rows.illuminance) add(static_cast<double>(lux));
-    if (!rows.illuminance.empty()) continue;
-    for (std::size_t i = 0; i < rows.rgb[0].size(); ++i) {
+    for (std::size_t i = 0; rows.illuminance.empty() && i < rows.rgb[0].size(); ++i) {
       add(luminance(glm::dvec3(rows.rgb[0][i], rows.rgb[1][i], rows.rgb[2][i])));
     }
+    sums.push_back(sum);
   }
-  if (!(luminance(sum) > 0)) return {1, 1, 1};
-  constexpr double least = 0.05;
-  const glm::vec3 white(glm::max(sum / luminance(sum), least));
-  return {white.r, white.g, white.b};
+  shown.white = image::white_of_light(sums, image::read_light_records(picture.header()).mix);
+  return shown;
 }
 
 PictureOutputs::PictureOutputs(const PictureOptions& options)
-    : illuminance_(options.illuminance),
-      luminance_(options.luminance),
-      tone_mapping_(options.tone_mapping),
-      white_balance_(options.white_balance),
-      precision_(options.precision),
-      false_colour_(options.false_colour) {
+    : illuminance_(options.illuminance), luminance_(options.luminance), options_(options) {
   for (const std::string& file : options.outputs) {
     const bool exr = ends_in(file, ".exr"), hdr = ends_in(file, ".hdr");
     if (!exr && !hdr && !ends_in(file, ".png")) {
@@ -208,9 +202,8 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
   Image root, displayed;
   if (exr_.size() < files().size()) {
     root = picture.root();
-    ToneMapping shown = tone_mapping_;
-    if (white_balance_) {
-      shown.white = colour_of_light(picture);
+    const ToneMapping shown = shown_as(options_, picture);
+    if (shown.white != ToneMapping{}.white) {
       notes.note(fmt::format("white balance: light of {:.3f}, {:.3f}, {:.3f} (R, G, B) is white",
                              shown.white[0], shown.white[1], shown.white[2]));
     }
@@ -221,13 +214,14 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
     if (!luminance_.empty()) candela = report::luminance_of(root);
   });
 
-  for (const auto& file : exr_) write_exr(file, picture, precision_);
+  for (const auto& file : exr_) write_exr(file, picture, options_.precision);
   for (const auto& file : png_) write_png(file, displayed);
   for (const auto& file : hdr_) write_hdr(file, root);
   const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,
                         const char* unit) {
     if (file.empty()) return;
-    write_png(file, report::false_colour_picture(values, displayed, false_colour_.of(unit)));
+    write_png(file,
+              report::false_colour_picture(values, displayed, options_.false_colour.of(unit)));
     if (report::Sheet::has_font()) return;
     notes.warn(
         fmt::format("{}: the legend has no numbers without the font DejaVu Sans; "

@@ -67,15 +67,13 @@ struct PictureOptions {
   std::string luminance;             ///< the same
   FalseColourOptions false_colour;   ///< of both
   ToneMapping tone_mapping;
-  bool white_balance = false;
+  bool white_balance = true;
   LayerPrecision precision = LayerPrecision::whole;  ///< of EXRs
 };
 
-/// Linear Rec.709, at luminance 1, of the light of all lamps together on the surfaces that are
-/// seen: their own colours by their illuminance there, or where the picture has none by their
-/// luminance. No primary is below a twentieth, so that dividing by it leaves noise in bounds. White
-/// where nothing is lit.
-std::array<float, 3> colour_of_light(const LayeredPicture& picture);
+/// How a picture is shown: with the white balance that is asked for, the light on the surfaces that
+/// are seen, or where the picture has no illuminance by their luminance.
+ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& picture);
 
 /// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
@@ -101,10 +99,7 @@ class PictureOutputs {
  private:
   std::vector<std::filesystem::path> exr_, png_, hdr_;
   std::filesystem::path illuminance_, luminance_;  ///< empty: none
-  ToneMapping tone_mapping_;
-  bool white_balance_;
-  LayerPrecision precision_;
-  FalseColourOptions false_colour_;
+  PictureOptions options_;
 };
 
 }  // namespace photile::app

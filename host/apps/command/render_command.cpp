@@ -186,8 +186,8 @@ class Denoising {
 void write_glare(const RenderOptions& options, const LightLayers& layers,
                  const LightLayers& reflections, const LightMix& mix, Progress& progress) {
   const image::Glare glare = image::find_glare(layers, reflections, mix, options.glare_limit);
-  const Image displayed =
-      tone_map(mixed_picture(layers, mix)->root(), options.pictures.tone_mapping);
+  const auto picture = mixed_picture(layers, mix);
+  const Image displayed = tone_map(picture->root(), shown_as(options.pictures, *picture));
   std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
   image::draw_marks(glare.marks, rgb);
   view::write_screenshot(options.glare, layers.width, layers.height, rgb);

@@ -193,10 +193,11 @@ std::vector<report::ReportPicture> report_pictures(const std::filesystem::path& 
       states.emplace_back(name, relit_picture(picture, kept.changes(name, mix)));
     }
   }
-  // One exposure and one scale, so that moods can be compared.
+  // One exposure, one white and one scale, so that moods can be compared.
   const Image first = states.front().second->root();
   const Image* const rendered = &first;
-  const ToneMapping shown = with_one_exposure({}, std::span(&rendered, 1));
+  const ToneMapping shown =
+      with_one_exposure(shown_as({}, *states.front().second), std::span(&rendered, 1));
   report::FalseColour scaled = colours;
   if (!(scaled.scale > 0) && knows_illuminance(*states.front().second)) {
     for (const auto& [name, state] : states) {

@@ -263,13 +263,17 @@ NamedSettings device_settings(DeviceOptions& options) {
   };
 }
 
+NamedSetting white_balance_setting(PictureOptions& options) {
+  return bound_switch("white_balance", "Display", options.white_balance,
+                      "the mean colour of the light on the surfaces that are seen becomes white, "
+                      "on displays and in PNGs");
+}
+
 NamedSettings display_settings(PictureOptions& options) {
   return {bound_switch("auto_exposure", "Display", options.tone_mapping.automatic_exposure,
                        "on: the log-average luminance becomes 0.36 of white; off: 1 cd/m2 or "
                        "1 W/(m2 sr) becomes white; before --exposure"),
-          bound_switch("white_balance", "Display", options.white_balance,
-                       "the mean colour of the light on the surfaces that are seen becomes white, "
-                       "in PNGs"),
+          white_balance_setting(options),
           {.name = "exr",
            .group = "Display",
            .range = Words{{"float", "half", "dwaa"}},

@@ -42,6 +42,7 @@ NamedSettings rendering_settings(RenderParameters& parameters,
 NamedSettings scene_settings(SceneLoadOptions& options);
 NamedSettings device_settings(DeviceOptions& options);
 NamedSettings display_settings(PictureOptions& options);
+NamedSetting white_balance_setting(PictureOptions& options);
 NamedSettings glare_settings(double& limit);
 
 /// Sets what "NAME=VALUE" names. Errors: UsageError of one line, with a remedy, for a name that is

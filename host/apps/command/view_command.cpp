@@ -11,6 +11,7 @@
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/saved_maps_option.hpp"
+#include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
@@ -75,6 +76,7 @@ void run_view(ViewOptions& options) {
   parameters.frames_per_second = options.frames_per_second;
   parameters.outputs = options.outputs;
   parameters.view = options.view;
+  parameters.white_balance = render.pictures.white_balance;
   parameters.moods = render.mood.file;
   parameters.prepared = load_maps(scene, render, progress);
   // Progress is shown in the window from here on.
@@ -114,7 +116,8 @@ void add_view_command(CLI::App& photile) {
       ->capture_default_str()
       ->group("Window");
   add_view_option(*command, options->view, "Window");
-  add_picture_settings(*command, options->render);
+  add_picture_settings(*command, options->render,
+                       {white_balance_setting(options->render.pictures)});
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });
 }

@@ -18,6 +18,7 @@
 #include "command/render_options.hpp"
 #include "command/run_record.hpp"
 #include "command/saved_maps_option.hpp"
+#include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
@@ -126,7 +127,7 @@ class Walk {
           fmt::format("{} of {} frames are finished, with these settings", kept, frames_.size()));
     }
     if (kept < frames_.size() || !options_.render.save_maps.empty()) make_maps();
-    if (png_names_ && kept < frames_.size() && frames_.front() != 0) set_exposure();
+    if (png_names_ && kept < frames_.size() && frames_.front() != 0) expose_by_first();
     progress_.begin("render frames", frames_.size() - kept, "frames");
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       progress_.throw_if_cancelled();
@@ -194,16 +195,27 @@ class Walk {
     return as_first_says(finished);
   }
 
-  /// To that of the walk's first frame, which another process may make.
-  void set_exposure() { exposure_ = std::log2(automatic_exposure(first_frame())); }
-
-  Image first_frame() {
+  /// To exposure and white of the walk's first frame, which another process may make.
+  void expose_by_first() {
     const std::string file = names_.of(number(0));
     const bool there = leads() && to_exr_ && is_finished(file, settings_of(camera_at(0)));
-    if (as_first_says({there}).front()) return read_image(file);
-    if (options_.quick) return draw(0);
+    const bool read = as_first_says({there}).front();
     LightLayers layers;
-    return picture_of(0, layers)->root();
+    if (options_.quick) {
+      expose(read ? read_image(file) : draw(0), options_.render.pictures.tone_mapping);
+    } else if (read) {
+      expose(*relit_picture(file, {}));
+    } else {
+      expose(*picture_of(0, layers));
+    }
+  }
+
+  void expose(const LayeredPicture& first) {
+    expose(first.root(), shown_as(options_.render.pictures, first));
+  }
+  void expose(const Image& first, const ToneMapping& shown) {
+    const Image* const only = &first;
+    shown_as_ = with_one_exposure(shown, std::span(&only, 1));
   }
 
   void make_maps() {
@@ -217,6 +229,7 @@ class Walk {
     LightLayers layers;
     const auto picture = picture_of(frame, layers);
     if (!leads()) return {};
+    if (!shown_as_) expose(*picture);
     if (to_exr_) write_exr(names_.of(number(frame)), *picture);
     for (const std::string& line : picture->overflows()) {
       progress_.warn(fmt::format("frame {}: {}", number(frame), line));
@@ -272,18 +285,19 @@ class Walk {
     return image;
   }
 
-  /// The frame as PNG and on the contact sheet, all with the exposure of the first.
+  /// The frame as PNG and on the contact sheet, all as the first.
   void show(int frame, std::optional<Image> root) {
     const int place = walk::place_on_sheet(frame, count_, most_on_sheet);
     const bool on_sheet = sheet_ && place >= 0;
     const bool to_png = png_names_ && (root || !is_whole(png_names_->of(number(frame))));
-    if (!on_sheet && !to_png && exposure_) return;
-    if (!exposure_ && !sheet_ && !png_names_) return;
-    if (!root) root = read_image(names_.of(number(frame)));
-    if (!exposure_) exposure_ = std::log2(automatic_exposure(*root));
+    if (!sheet_ && !png_names_) return;
+    if (shown_as_ && !on_sheet && !to_png) return;
+    const std::filesystem::path file = names_.of(number(frame));
+    if (!root) root = read_image(file);
+    if (!shown_as_ && options_.quick) expose(*root, options_.render.pictures.tone_mapping);
+    if (!shown_as_) expose(*relit_picture(file, {}));
     if (!on_sheet && !to_png) return;
-    const ToneMapping& asked = options_.render.pictures.tone_mapping;
-    const Image displayed = tone_map(*root, {false, *exposure_ + asked.exposure, asked.view});
+    const Image displayed = tone_map(*root, *shown_as_);
     if (to_png) write_png(png_names_->of(number(frame)), displayed);
     if (on_sheet) sheet_->add(place, displayed);
   }
@@ -302,8 +316,8 @@ class Walk {
   const std::string scene_digest_, surfaces_;
   std::optional<SceneRenderer> renderer_;
   std::optional<walk::ContactSheet> sheet_;
-  std::optional<double> exposure_;  ///< stops
-  std::future<void> shown_;         ///< the frame before; last: it uses all of the above
+  std::optional<ToneMapping> shown_as_;
+  std::future<void> shown_;  ///< the frame before; last: it uses all of the above
 };
 
 ///   off   light maps were refused by name
@@ -421,7 +435,8 @@ void add_walk_command(CLI::App& photile) {
       ->group("Motion");
   add_shard_option(*command, options->shard, "of the frames", "Motion");
   set_quality(options->render.quality_options(), Quality::good);
-  add_picture_settings(*command, options->render);
+  add_picture_settings(*command, options->render,
+                       {white_balance_setting(options->render.pictures)});
   add_saved_maps_options(*command, options->render);
   command->callback([options] {
     check_quick(*options, options->render.parameters.light_maps == LightMapMode::off);

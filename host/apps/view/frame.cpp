@@ -89,8 +89,8 @@ Image root_of(const Frame& frame, const LightMix& mix) {
 DisplayedFrame tone_mapped(const Frame& frame, const LightMix& mix,
                            const DisplaySettings& settings) {
   const auto texels = [&](std::span<const glm::vec3> rgb) {
-    return image::tone_mapped_texels(rgb, settings.automatic_stops + settings.exposure,
-                                     settings.view);
+    return image::tone_mapped_texels(
+        rgb, {false, settings.automatic_stops + settings.exposure, settings.view, settings.white});
   };
   return {frame.layers.width, frame.layers.height,
           frame.mixed.empty() ? texels(mixed(frame.layers, mix)) : texels(frame.mixed)};
@@ -152,6 +152,22 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
         result.rgb);
   }
   return result;
+}
+
+std::array<float, 3> white_of(const Frame& frame, const LightMix& mix) {
+  std::vector<double> sums(mix.lights.size());
+  const auto width = static_cast<std::size_t>(frame.layers.width),
+             height = static_cast<std::size_t>(frame.layers.height);
+  for (std::size_t pixel = 0; frame.mixed.empty() && pixel < width * height; ++pixel) {
+    for_each_light(frame.layers, pixel % width, pixel / width,
+                   [&](std::size_t light, float illuminance, const glm::vec3&) {
+                     if (std::isfinite(illuminance)) sums[light] += double{illuminance};
+                   });
+  }
+  for (std::size_t light = 0; light < sums.size(); ++light) {
+    sums[light] *= lux_of(mix.lights[light], mix);
+  }
+  return image::white_of_light(sums, mix);
 }
 
 double automatic_stops(const Frame& frame, const LightMix& mix) {

@@ -2,6 +2,7 @@
 // lights.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -60,8 +61,9 @@ enum class DisplayMode {
 
 struct DisplaySettings {
   DisplayMode mode = DisplayMode::picture;
-  double exposure = 0;         ///< stops on top of
-  double automatic_stops = 0;  ///< what a frame was scaled by of its own accord
+  double exposure = 0;                  ///< stops on top of
+  double automatic_stops = 0;           ///< what a frame was scaled by of its own accord
+  std::array<float, 3> white{1, 1, 1};  ///< as ToneMapping has it
   /// The exposure follows a sky that is moved: from noon to dusk it loses a thousandfold.
   bool adapts = true;
   DisplayView view = ToneMapping{}.view;  ///< of the picture
@@ -82,6 +84,10 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
 
 /// Stops by which `render -o FILE.png` scales this picture of its own accord.
 double automatic_stops(const Frame& frame, const LightMix& mix);
+
+/// The white that `render -o FILE.png` balances this picture to; that of the display for a quick
+/// frame, which does not know its lights.
+std::array<float, 3> white_of(const Frame& frame, const LightMix& mix);
 
 /// Illuminance of the surface that each pixel sees, lux.
 std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& mix);

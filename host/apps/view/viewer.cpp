@@ -289,7 +289,10 @@ class Viewer {
     return true;
   }
 
-  void set_exposure() { display_.automatic_stops = automatic_stops(*frame_, lights_.shown_mix()); }
+  void set_exposure() {
+    display_.automatic_stops = automatic_stops(*frame_, lights_.shown_mix());
+    if (parameters_.white_balance) display_.white = white_of(*frame_, lights_.shown_mix());
+  }
 
   /// Before there is a picture an error ends the walkthrough; later ones are told.
   void take_errors() {

@@ -150,15 +150,19 @@ glm::dvec3 displayed(glm::dvec3 rgb, DisplayView view) {
   return glm::clamp(view == DisplayView::neutral ? neutral(rgb) : standard(rgb), 0.0, 1.0);
 }
 
+glm::dvec3 scaled_to_white(double scale, const ToneMapping& parameters) {
+  return scale / glm::dvec3(parameters.white[0], parameters.white[1], parameters.white[2]);
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> image::tone_mapped_texels(std::span<const glm::vec3> rgb, double exposure,
-                                                    DisplayView view) {
-  check_exposure(exposure);
-  const double scale = std::exp2(exposure);
+std::vector<std::uint8_t> image::tone_mapped_texels(std::span<const glm::vec3> rgb,
+                                                    const ToneMapping& parameters) {
+  check_exposure(parameters.exposure);
+  const glm::dvec3 to_white = scaled_to_white(std::exp2(parameters.exposure), parameters);
   std::vector<std::uint8_t> texels(3 * rgb.size());
   for_each_pixel(rgb.size(), [&](std::size_t pixel) {
-    const glm::dvec3 shown = displayed(scale * glm::dvec3(rgb[pixel]), view);
+    const glm::dvec3 shown = displayed(to_white * glm::dvec3(rgb[pixel]), parameters.view);
     for (int channel = 0; channel < 3; ++channel) {
       texels[3 * pixel + static_cast<std::size_t>(channel)] =
           srgb8_from_linear(static_cast<float>(shown[channel]));
@@ -217,8 +221,7 @@ Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
   display.width = scene_referred.width;
   display.height = scene_referred.height;
   for (const char* channel : {"R", "G", "B"}) display.add(channel);
-  const glm::dvec3 to_white =
-      scale / glm::dvec3(parameters.white[0], parameters.white[1], parameters.white[2]);
+  const glm::dvec3 to_white = scaled_to_white(scale, parameters);
   image::for_each_pixel(root.r.size(), [&](std::size_t pixel) {
     const glm::dvec3 rgb = displayed(to_white * root[pixel], parameters.view);
     for (int channel = 0; channel < 3; ++channel) {

@@ -4,10 +4,13 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 
+#include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
 
 namespace photile::image {
@@ -39,5 +42,11 @@ void for_each_pixel(std::size_t count, const Work& work) {
                       }
                     });
 }
+
+/// Linear Rec.709, at luminance 1, of the light of all lamps together: their own colours by what
+/// each gives. No primary is below a twentieth, so that dividing by it leaves noise in bounds.
+/// White where nothing is lit.
+///   illuminance   of each light, summed over the surfaces that are seen
+std::array<float, 3> white_of_light(std::span<const double> illuminance, const LightMix& mix);
 
 }  // namespace photile::image
