@@ -90,6 +90,22 @@ TEST_CASE("a year of daylight fills its files") {
   CHECK(array.size() > 4 * points * hours);
 }
 
+TEST_CASE("in a given time figures get standard errors, and sDA a verdict") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  const Outcome outcome =
+      succeed(quick("daylight", scene,
+                    {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--for", "1ms",
+                     "--lux", "100000", "-o", folder / "a.json"}));
+  CHECK_THAT(outcome.output, Contains("0.0 +-0% of the points: misses 55% (certain)") &&
+                                 Contains("% below 100 lux, ") && !Contains("warning"));
+  const auto grid = nlohmann::json::parse(folder.read("a.json")).at(0);
+  CHECK(grid["standard_errors"]["mean_lux"] > 0);
+  CHECK(grid["standard_errors"]["mean_lux"] < 0.1 * grid["mean_lux"].get<double>());
+  CHECK(grid["standard_errors"]["sDA"] == 0);
+  CHECK(grid["sensors"][0].contains("DA_error"));
+}
+
 TEST_CASE("blinds close by the hour, as a scene of their own says") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <functional>
 #include <numbers>
+#include <numeric>
+#include <random>
 
 #include "daylight/sky_states.hpp"
 #include "photile/errors.hpp"
@@ -203,6 +205,82 @@ TEST_CASE("of several groups as few close as keep the sun out") {
       {0, 2000, 2000, 2000}, {0, 0, 2000, 2000}, {0, 2000, 0, 2000}, {0, 0, 0, 0}};
   const std::vector<int> closed{0, 1, 1, 2};
   CHECK(blind_schedule(sun, closed, 1, 4) == std::vector<std::size_t>{0, 1, 2, 3});
+}
+
+TEST_CASE("a mean without each of its parts has the standard error of the mean") {
+  const std::vector<double> values{3, 5, 4, 8};  // standard deviation sqrt(14 / 3)
+  const std::vector<double> without{17.0 / 3, 15.0 / 3, 16.0 / 3, 12.0 / 3};
+  CHECK(jackknife_error(5, without, std::vector<double>(4, 0.25)) ==
+        Approx(std::sqrt(14.0 / 3 / 4)));
+  // Two parts, of which one counts thrice: 3 (a - b)^2 / 16 by the formula for parts of any size.
+  CHECK(jackknife_error(4.5, std::vector<double>{6, 4}, std::vector<double>{0.75, 0.25}) ==
+        Approx(std::sqrt(3 * 4.0 / 16)));
+  CHECK(jackknife_error(5, std::vector<double>{5}, std::vector<double>{1}) == 0);
+}
+
+TEST_CASE("stated errors of DA and sDA are the scatter of years") {
+  // DA of the points lies around a half; the light of a round is off by what it has in common, and
+  // by each point's own.
+  constexpr std::size_t count = 60, parts = 8, years = 400;
+  const double common = GENERATE(0.0, 0.03);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<double> found[2], stated[2]{{0}, {0}};
+  for (std::size_t year = 0; year < years; ++year) {
+    std::vector<PointDaylight> points(count);
+    std::vector<std::vector<PointDaylight>> without(parts, points);
+    for (std::size_t part = 0; part < parts; ++part) {
+      const double shared = common * normal(random);
+      for (std::size_t i = 0; i < count; ++i) {
+        const double here = 0.35 + 0.005 * static_cast<double>(i) + shared + 0.03 * normal(random);
+        points[i].autonomy += here / parts;
+        for (std::size_t other = 0; other < parts; ++other) {
+          if (other != part) without[other][i].autonomy += here / (parts - 1);
+        }
+      }
+    }
+    const auto errors = daylight_errors(points, without, std::vector<double>(parts, 1.0 / parts));
+    const RoomDaylight room = room_daylight(points);
+    found[0].push_back(room.autonomy);
+    found[1].push_back(room.spatial_autonomy);
+    stated[0][0] += errors.autonomy * errors.autonomy / years;
+    stated[1][0] += errors.spatial_autonomy * errors.spatial_autonomy / years;
+  }
+  for (int figure = 0; figure < 2; ++figure) {
+    double mean = 0, variance = 0;
+    for (const double value : found[figure]) mean += value / years;
+    for (const double value : found[figure])
+      variance += (value - mean) * (value - mean) / (years - 1);
+    CAPTURE(figure, common);
+    CHECK(std::sqrt(stated[figure][0] / variance) == Approx(1).epsilon(0.15));
+  }
+}
+
+TEST_CASE("rounds of a sky are their mean, with and without a part, and none is another again") {
+  Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
+  scene.portals = {Room::window()};
+  Year year{{}, weather::sky_patches(145), {{{1.8, 0.8, 3.0}, {0, 1, 0}}}, true, {}};
+  year.parameters.measuring.gathering.rays = 16;
+  year.parameters.measuring.repeats = 2;
+  year.parameters.mean_luminance.assign(146, 1.0);
+  SkyRounds rounds;
+  std::vector<double> each;
+  const auto all = [](const std::vector<SkyState>& states) {
+    const DaylightMatrix& matrix = states.front().matrix;
+    return std::accumulate(matrix.from_sky.begin(), matrix.from_sky.end(), 0.0);
+  };
+  for (std::size_t i = 0; i <= SkyRounds::most_parts; ++i) {
+    auto round = sky_states(rounds.year_of_next(year), scene, {}, Progress::none());
+    each.push_back(all(round));
+    rounds.add(std::move(round));
+  }
+  std::vector<double> sorted = each;
+  std::sort(sorted.begin(), sorted.end());
+  CHECK(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end());
+  const double sum = std::accumulate(each.begin(), each.end(), 0.0);
+  CHECK(all(rounds.mean()) == Approx(sum / 9));
+  CHECK(rounds.part_fractions().front() == Approx(2.0 / 9));
+  CHECK(all(rounds.mean(0)) == Approx((sum - each.front() - each.back()) / 7));
 }
 
 TEST_CASE("a closed pane lets through what is asked for") {

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -123,8 +125,8 @@ void take_windows(const DaylightOptions& options, std::span<const measuring::Sen
   std::erase_if(scene.lights, [](const Light& light) { return light.is_sky_patch(); });
 }
 
-void warn_of_darkness(const std::vector<SkyState>& states, Progress& progress) {
-  const std::vector<float>& lux = states.front().matrix.from_sky;
+void warn_of_darkness(const SkyRounds& rounds, Progress& progress) {
+  const std::vector<float> lux = rounds.mean().front().matrix.from_sky;
   if (std::any_of(lux.begin(), lux.end(), [](float value) { return value > 0; })) return;
   progress.note(report::no_sky_warning);
 }
@@ -143,7 +145,35 @@ std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year
   return sky_states(year, scene, groups, progress);
 }
 
+/// Rounds, and after the second, fourth, eighth and so on what is known by then.
+SkyRounds rounds_of(const DaylightOptions& options, const Year& year, Scene& scene,
+                    const std::vector<measuring::SensorGrid>& grids,
+                    const std::function<double()>& elapsed, Progress& progress) {
+  constexpr std::size_t fewest = 4;  // in the shortest time, for an error
+  SkyRounds rounds;
+  rounds.add(states_of(options, year, scene, grids, progress));
+  warn_of_darkness(rounds, progress);
+  QuietProgress quiet(progress);
+  double begin = elapsed(), longest = 0;
+  while (options.seconds > 0 &&
+         (rounds.count() < fewest || elapsed() + longest < options.seconds)) {
+    rounds.add(states_of(options, rounds.year_of_next(year), scene, grids, quiet));
+    if (std::has_single_bit(rounds.count())) {
+      const auto results = daylight_results(options, year, grids, rounds, {}, {});
+      for (const report::GridDaylight& grid : results.grids) {
+        progress.note(fmt::format("{}, {} rounds: {}: {}", format_seconds(elapsed()),
+                                  rounds.count(), grid.grid.name,
+                                  report::autonomy_text(grid, options.asked, rounds.count())));
+      }
+    }
+    longest = std::max(longest, elapsed() - begin);
+    begin = elapsed();
+  }
+  return rounds;
+}
+
 void run_daylight(DaylightOptions& options) {
+  const Stopwatch watch;
   handle_signals();
   RenderOptions& render = options.render;
   check(render.parameters);
@@ -190,11 +220,11 @@ void run_daylight(DaylightOptions& options) {
                      render.load.situation.north_degrees * std::numbers::pi / 180,
                      mean_luminances(year.hours, year.patches)};
   year.parameters.measuring.photons = render.parameters;
-  const std::vector<SkyState> states = states_of(options, year, scene, grids, progress);
-  warn_of_darkness(states, progress);
+  const SkyRounds rounds = rounds_of(
+      options, year, scene, grids, [&] { return watch.seconds(); }, progress);
   const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
   const report::DaylightResults results =
-      daylight_results(options, year, grids, states, lamps, mix);
+      daylight_results(options, year, grids, rounds, lamps, mix);
   write(options, results, year.hours);
   for (const auto& line : report::daylight_lines(results, options.asked)) std::cout << line << '\n';
 }
@@ -283,6 +313,13 @@ void add_daylight_command(CLI::App& photile) {
   options->parameters.gathering.rays = defaults::daylight_rays;
   add_maintenance_option(*command, options->parameters, "Measuring");
   add_sensor_options(*command, options->parameters, "Measuring");
+  command
+      ->add_option("--for", options->seconds,
+                   "add rounds of rays for so long; figures get standard errors, and sDA says when "
+                   "it certainly meets 55% or 75%")
+      ->type_name("TIME")
+      ->transform(duration())
+      ->group("Measuring");
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "direct_rays", "gloss", "quota"});
   command->callback([options] { run_daylight(*options); });

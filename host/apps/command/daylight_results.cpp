@@ -46,13 +46,30 @@ struct LightOfPoints {
   const DaylightMatrix& matrix;
 };
 
+/// The light of a grid's points, the first of which is that of the year's sensors.
+std::vector<PointDaylight> points_of(const DaylightOptions& options, const Year& year,
+                                     const std::vector<float>& lux, const std::vector<float>& sun,
+                                     std::size_t first, std::size_t count) {
+  const std::vector<bool> by_day = daylight_hours(year.hours);
+  const std::size_t hours = year.hours.size();
+  std::vector<PointDaylight> points(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t sensor) {
+    const auto row = [&](const std::vector<float>& all) {
+      return all.empty() ? std::span<const float>()
+                         : std::span(all).subspan((first + sensor) * hours, hours);
+    };
+    points[sensor] = point_daylight(row(lux), row(sun), options.asked.occupied, by_day,
+                                    options.asked.target_lux);
+  });
+  return points;
+}
+
 std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year& year,
                                      const std::vector<measuring::SensorGrid>& grids,
                                      const LightOfPoints& light,
                                      const std::vector<LightIlluminance>& lamps,
                                      const LightMix& mix) {
   const std::vector<bool>& occupied = options.asked.occupied;
-  const std::vector<bool> by_day = daylight_hours(year.hours);
   const std::size_t hours = year.hours.size();
   std::vector<GridDaylight> results;
   std::size_t first = 0;
@@ -69,15 +86,7 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year&
     result.lux = part(light.lux, hours);
     result.sun = part(light.sun, hours);
     result.relative_error = part(light.matrix.relative_error, 1);
-    result.points.resize(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t sensor) {
-      const auto row = [&](const std::vector<float>& all) {
-        return all.empty() ? std::span<const float>()
-                           : std::span(all).subspan(sensor * hours, hours);
-      };
-      result.points[sensor] = point_daylight(row(result.lux), row(result.sun), occupied, by_day,
-                                             options.asked.target_lux);
-    });
+    result.points = points_of(options, year, light.lux, light.sun, first, count);
     result.room = room_daylight(result.points);
     result.lamps = energies_of(options, lamps, mix, occupied, result, first);
     first += count;
@@ -86,28 +95,58 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year&
   return results;
 }
 
+/// Light by the hour of the states in turn, or of the only one.
+std::vector<float> lux_of_year(const Year& year, std::vector<SkyState>& states) {
+  light_hours(year, states);
+  return states.size() == 1 ? std::move(states.front().lux) : scheduled_sky(year, states).lux;
+}
+
+void add_errors(const DaylightOptions& options, const Year& year, const SkyRounds& rounds,
+                std::vector<GridDaylight>& grids) {
+  const std::vector<double> shares = rounds.part_fractions();
+  if (shares.size() < 2) return;
+  std::vector<std::vector<std::vector<PointDaylight>>> without(grids.size());
+  for (std::size_t part = 0; part < shares.size(); ++part) {
+    std::vector<SkyState> states = rounds.mean(part);
+    const std::vector<float> sun = states.front().sun, lux = lux_of_year(year, states);
+    std::size_t first = 0;
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+      const std::size_t count = grids[g].points.size();
+      without[g].push_back(points_of(options, year, lux, sun, first, count));
+      first += count;
+    }
+  }
+  for (std::size_t g = 0; g < grids.size(); ++g) {
+    grids[g].errors = daylight_errors(grids[g].points, without[g], shares);
+  }
+}
+
 }  // namespace
 
 report::DaylightResults daylight_results(const DaylightOptions& options, const Year& year,
                                          const std::vector<measuring::SensorGrid>& grids,
-                                         const std::vector<SkyState>& states,
+                                         const SkyRounds& rounds,
                                          const std::vector<LightIlluminance>& lamps,
                                          const LightMix& mix) {
   report::DaylightResults results;
+  results.rounds = rounds.count();
+  std::vector<SkyState> states = rounds.mean();
+  light_hours(year, states);
   const SkyState& open = states.front();
   if (states.size() == 1) {
     results.grids = results_of(options, year, grids, {open.lux, open.sun, open.matrix}, lamps, mix);
-    return results;
+  } else {
+    const ScheduledSky scheduled = scheduled_sky(year, states);
+    results.state_of_hour = scheduled.state_of_hour;
+    results.grids =
+        results_of(options, year, grids, {scheduled.lux, open.sun, open.matrix}, lamps, mix);
+    for (const SkyState& state : states) {
+      results.states.push_back(
+          {state.name,
+           results_of(options, year, grids, {state.lux, state.sun, state.matrix}, lamps, mix)});
+    }
   }
-  const ScheduledSky scheduled = scheduled_sky(year, states);
-  results.state_of_hour = scheduled.state_of_hour;
-  results.grids =
-      results_of(options, year, grids, {scheduled.lux, open.sun, open.matrix}, lamps, mix);
-  for (const SkyState& state : states) {
-    results.states.push_back(
-        {state.name,
-         results_of(options, year, grids, {state.lux, state.sun, state.matrix}, lamps, mix)});
-  }
+  add_errors(options, year, rounds, results.grids);
   return results;
 }
 

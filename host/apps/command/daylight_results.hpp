@@ -29,6 +29,7 @@ struct DaylightOptions {
   std::vector<std::string> blinds;  ///< a scene's file, or groups of panes
   double lamps_to = 0;              ///< lux that lamps keep; 0 = no lamps
   double lamp_efficacy = defaults::lamp_efficacy;
+  double seconds = 0;  ///< for which rounds are added; 0 = one round
 
   /// Whether blinds are another scene.
   bool blinds_are_scene() const {
@@ -38,11 +39,12 @@ struct DaylightOptions {
 
 /// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
 /// their states.
-///   states   as sky_states has them
+/// Of several rounds figures have standard errors, but for those of a single state.
+///   rounds   of states as sky_states has them
 ///   lamps    lux of each at full power, at the sensors of the year
 report::DaylightResults daylight_results(const DaylightOptions& options, const daylight::Year& year,
                                          const std::vector<measuring::SensorGrid>& grids,
-                                         const std::vector<daylight::SkyState>& states,
+                                         const daylight::SkyRounds& rounds,
                                          const std::vector<LightIlluminance>& lamps,
                                          const LightMix& mix);
 

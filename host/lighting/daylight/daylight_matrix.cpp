@@ -36,6 +36,26 @@ std::vector<float> relative_errors(const std::vector<std::vector<double>>& batch
 
 }  // namespace
 
+DaylightMatrix DaylightMatrix::mean(std::span<const DaylightMatrix* const> of,
+                                    std::span<const double> shares) {
+  DaylightMatrix mean{of.front()->sensors, of.front()->patches, {}, {}, {}};
+  const auto sum = [&](std::vector<float> DaylightMatrix::*member, const auto& term) {
+    std::vector<double> sums((of.front()->*member).size(), 0.0);
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const std::vector<float>& values = of[k]->*member;
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += term(shares[k], double{values[i]});
+    }
+    (mean.*member).assign(sums.begin(), sums.end());
+  };
+  const auto value = [](double share, double one) { return share * one; };
+  sum(&DaylightMatrix::from_sky, value);
+  sum(&DaylightMatrix::straight, value);
+  sum(&DaylightMatrix::relative_error,
+      [](double share, double one) { return share * one * share * one; });
+  for (float& error : mean.relative_error) error = std::sqrt(error);
+  return mean;
+}
+
 DirectLight::DirectLight(const Scene& scene, std::span<const Sensor> sensors)
     : rays_(scene), sensors_(all_in_scene(scene, sensors)) {
   const BoundingSphere bounds = bounding_sphere(scene);

@@ -24,6 +24,10 @@ struct DaylightMatrix {
   double coefficient(std::size_t sensor, std::size_t patch) const {
     return from_sky[sensor * patches + patch];
   }
+
+  /// The mean of matrices of the same sensors, by rays of their own each. `shares` add up to 1.
+  static DaylightMatrix mean(std::span<const DaylightMatrix* const> of,
+                             std::span<const double> shares);
 };
 
 struct MatrixParameters {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -187,6 +188,65 @@ RoomDaylight room_daylight(std::span<const PointDaylight> points) {
     break;
   }
   return room;
+}
+
+double jackknife_error(double all, std::span<const double> without,
+                       std::span<const double> shares) {
+  const auto parts = static_cast<double>(without.size());
+  if (without.size() < 2) return 0;
+  double estimate = parts * all;
+  for (std::size_t g = 0; g < without.size(); ++g) estimate -= (1 - shares[g]) * without[g];
+  double variance = 0;
+  for (std::size_t g = 0; g < without.size(); ++g) {
+    const double times = 1 / shares[g];
+    const double difference = times * all - (times - 1) * without[g] - estimate;
+    variance += difference * difference / (times - 1) / parts;
+  }
+  return std::sqrt(variance);
+}
+
+DaylightErrors daylight_errors(std::span<const PointDaylight> points,
+                               std::span<const std::vector<PointDaylight>> without,
+                               std::span<const double> shares) {
+  std::vector<RoomDaylight> rooms;
+  for (const auto& part : without) rooms.push_back(room_daylight(part));
+  const RoomDaylight room = room_daylight(points);
+  std::vector<double> values(without.size());
+  const auto error_of = [&](double all, const auto& figure) {
+    for (std::size_t g = 0; g < values.size(); ++g) values[g] = figure(g);
+    return jackknife_error(all, values, shares);
+  };
+  DaylightErrors errors;
+  errors.mean_lux = error_of(room.mean_lux, [&](std::size_t g) { return rooms[g].mean_lux; });
+  errors.autonomy = error_of(room.autonomy, [&](std::size_t g) { return rooms[g].autonomy; });
+  for (std::size_t i = 0; i < room.useful.size(); ++i) {
+    errors.useful[i] = error_of(room.useful[i], [&](std::size_t g) { return rooms[g].useful[i]; });
+  }
+  // A sum over points of steps at a half, of normal values: the variance of each step, and of
+  // pairs the first term of their covariance, which the slopes of the steps give.
+  const double share = 1 / static_cast<double>(std::max<std::size_t>(1, points.size()));
+  std::vector<double> slopes(points.size(), 0.0);
+  double steps = 0, own = 0, all = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double error =
+        error_of(points[i].autonomy, [&](std::size_t g) { return without[g][i].autonomy; });
+    errors.point_autonomy.push_back(error);
+    if (!(error > 0)) continue;
+    const double z = (points[i].autonomy - half) / error;
+    const double above = std::erfc(-z / std::numbers::sqrt2) / 2;
+    const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    steps += share * share * above * (1 - above);
+    own += share * share * density * density;
+    slopes[i] = share * density / error;
+    all += slopes[i] * points[i].autonomy;
+  }
+  const double together = error_of(all, [&](std::size_t g) {
+    double sum = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) sum += slopes[i] * without[g][i].autonomy;
+    return sum;
+  });
+  errors.spatial_autonomy = std::sqrt(steps + std::max(0.0, together * together - own));
+  return errors;
 }
 
 std::vector<LampEnergy> lamp_energy(std::span<const double> mean_daylight,

@@ -59,6 +59,25 @@ struct RoomDaylight {
 };
 RoomDaylight room_daylight(std::span<const PointDaylight> points);
 
+/// The standard error of a figure that was made of independent parts, by what it is without each of
+/// them (the delete-m jackknife of Busing, Meijer and van der Leeden, 1999); 0 of a single part.
+///   shares   of the parts in all
+double jackknife_error(double all, std::span<const double> without, std::span<const double> shares);
+
+/// Standard errors of a room's figures, and of the DA of its points.
+struct DaylightErrors {
+  double mean_lux = 0, autonomy = 0, spatial_autonomy = 0;
+  std::array<double, 4> useful{};
+  std::vector<double> point_autonomy;
+};
+
+/// That of sDA counts points whose DA may lie on the other side of a half, each by the probability
+/// that its own error gives, and that errors of points go together as far as they do in the parts.
+///   without   the points without each of the parts
+DaylightErrors daylight_errors(std::span<const PointDaylight> points,
+                               std::span<const std::vector<PointDaylight>> without,
+                               std::span<const double> shares);
+
 /// Lamps that add what daylight lacks.
 struct LampEnergy {
   std::string lamp;

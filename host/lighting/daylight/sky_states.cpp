@@ -4,12 +4,15 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numeric>
 #include <utility>
 
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/scatter.hpp"
 
 namespace photile::daylight {
@@ -113,8 +116,66 @@ SkyState sky_state(const Year& year, const Scene& scene, std::string name, int c
     state.sun = sun_profile(DirectLight(scene, year.sensors), year.hours, year.parameters.north,
                             year.parameters.measuring.maintenance);
   }
-  state.lux = annual_profile(state.matrix, year.hours, year.patches, state.sun);
   return state;
+}
+
+void light_hours(const Year& year, std::vector<SkyState>& states) {
+  for (SkyState& state : states) {
+    state.lux = annual_profile(state.matrix, year.hours, year.patches, state.sun);
+  }
+}
+
+Year SkyRounds::year_of_next(const Year& year) const {
+  Year next = year;
+  if (count_ == 0) return next;
+  next.suns_by_rays = false;
+  std::uint64_t& seed = next.parameters.measuring.photons.seed;
+  // A round's own repeats have the numbers below.
+  seed = trace::seed_of_repeat(seed, static_cast<std::uint32_t>(limits::max_repeats + count_));
+  return next;
+}
+
+void SkyRounds::add(std::vector<SkyState> round) {
+  const std::size_t part = count_ % most_parts, before = count_++ / most_parts;
+  if (before == 0) {
+    parts_.push_back(std::move(round));
+    return;
+  }
+  const double share = 1 / (1 + static_cast<double>(before));
+  for (std::size_t state = 0; state < round.size(); ++state) {
+    DaylightMatrix& mean = parts_[part][state].matrix;
+    mean =
+        DaylightMatrix::mean(std::array{&std::as_const(mean), &std::as_const(round[state].matrix)},
+                             std::array{1 - share, share});
+  }
+}
+
+std::vector<double> SkyRounds::part_fractions() const {
+  std::vector<double> fractions;
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    const std::size_t rounds = (count_ - part + most_parts - 1) / most_parts;
+    fractions.push_back(static_cast<double>(rounds) / static_cast<double>(count_));
+  }
+  return fractions;
+}
+
+std::vector<SkyState> SkyRounds::mean(std::optional<std::size_t> without) const {
+  const std::vector<double> fractions = part_fractions();
+  const double all = without ? 1 - fractions[*without] : 1;
+  std::vector<SkyState> states;
+  for (std::size_t state = 0; state < parts_.front().size(); ++state) {
+    std::vector<const DaylightMatrix*> matrices;
+    std::vector<double> shares;
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      if (part == without) continue;
+      matrices.push_back(&parts_[part][state].matrix);
+      shares.push_back(fractions[part] / all);
+    }
+    const SkyState& first = parts_.front()[state];
+    states.push_back(
+        {first.name, first.closed, DaylightMatrix::mean(matrices, shares), first.sun, {}});
+  }
+  return states;
 }
 
 std::vector<SkyState> sky_states(const Year& year, Scene& scene, std::span<const BlindGroup> groups,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,13 +57,37 @@ struct SkyState {
   std::vector<float> sun, lux;  ///< by sensor, then hour; `sun` empty where it is patches
 };
 
-/// A scene as it is.
+/// A scene as it is, its `lux` left to light_hours.
 SkyState sky_state(const Year& year, const Scene& scene, std::string name, int closed,
                    Progress& progress);
 
-/// A scene without blinds first, with all of them last. Errors: those of materials_with.
+/// A scene without blinds first, with all of them last; `lux` as above. Errors: those of
+/// materials_with.
 std::vector<SkyState> sky_states(const Year& year, Scene& scene, std::span<const BlindGroup> groups,
                                  Progress& progress);
+
+/// What the states give by the hour.
+void light_hours(const Year& year, std::vector<SkyState>& states);
+
+/// The same states again and again, by rays of their own: their mean, and how far it may be off.
+class SkyRounds {
+ public:
+  static constexpr std::size_t most_parts = 8;
+
+  /// The sun of rounds after the first is left out: its rays are always the same.
+  Year year_of_next(const Year& year) const;
+  void add(std::vector<SkyState> round);
+  std::size_t count() const { return count_; }
+
+  /// The rounds are dealt to parts in turn; the fractions that these have of them.
+  std::vector<double> part_fractions() const;
+  /// The mean of all rounds, or of those outside a part; `lux` as above.
+  std::vector<SkyState> mean(std::optional<std::size_t> without = std::nullopt) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<std::vector<SkyState>> parts_;  ///< means
+};
 
 /// The states as blind_schedule has them follow each other.
 struct ScheduledSky {

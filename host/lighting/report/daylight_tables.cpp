@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/foreign_text.hpp"
 
@@ -35,6 +36,12 @@ std::string hours_of(const DaylightAsked& asked) {
   const bool daily = std::count(occupancy.days.begin(), occupancy.days.end(), true) == 7;
   return fmt::format("the hours from {:g} to {:g}{}", occupancy.from, occupancy.to,
                      daily ? "" : fmt::format(" of the days asked for ({} h)", count));
+}
+
+/// "83.9%", with its standard error where there is one.
+std::string percent(double share, std::optional<double> error) {
+  return error ? fmt::format("{:.1f} +-{:.2g}%", 100 * share, 100 * *error)
+               : fmt::format("{:.1f}%", 100 * share);
 }
 
 /// By the hour whether any blinds are closed.
@@ -86,6 +93,12 @@ Json grid_json(const GridDaylight& grid, const DaylightAsked& asked) {
                {"target_lux", room.target_lux},
                {"minimum_target_lux", room.minimum_target_lux}}}};
   if (!grid.sun.empty()) entry["ASE"] = room.sunlight_exposure;
+  if (grid.errors) {
+    entry["standard_errors"] = {{"mean_lux", grid.errors->mean_lux},
+                                {"DA", grid.errors->autonomy},
+                                {"sDA", grid.errors->spatial_autonomy},
+                                {"UDI", useful_json(grid.errors->useful)}};
+  }
   for (const daylight::LampEnergy& lamp : grid.lamps) {
     entry["lamps"].push_back({{"name", lamp.lamp},
                               {"watts", lamp.watts},
@@ -105,11 +118,30 @@ Json grid_json(const GridDaylight& grid, const DaylightAsked& asked) {
          {"UDI", useful_json(point.useful)},
          {"sun_hours", point.sun_hours},
          {"median_lux", point.median_lux}});
+    if (grid.errors) entry["sensors"].back()["DA_error"] = grid.errors->point_autonomy[i];
   }
   return entry;
 }
 
 }  // namespace
+
+std::string autonomy_text(const GridDaylight& grid, const DaylightAsked& asked,
+                          std::size_t rounds) {
+  // IES LM-83-12: nominally accepted, and preferred.
+  constexpr double accepted = 0.55, preferred = 0.75;
+  constexpr std::size_t enough_rounds = 4;  // for an error that can be trusted
+  const double share = grid.room.spatial_autonomy;
+  const std::string text = fmt::format("sDA {:.4g},50%{:<5} ", asked.target_lux, "");
+  if (!grid.errors) return text + percent(share, std::nullopt) + " of the points";
+  const double error = grid.errors->spatial_autonomy;
+  const auto clear_of = [&](double level) { return std::abs(share - level) >= 3 * error; };
+  const bool certain = rounds >= enough_rounds && clear_of(accepted) && clear_of(preferred);
+  return fmt::format("{}{} of the points: {} ({})", text, percent(share, error),
+                     share >= preferred  ? "meets 75%"
+                     : share >= accepted ? "meets 55%"
+                                         : "misses 55%",
+                     certain ? "certain" : "not certain yet");
+}
 
 std::vector<std::string> daylight_lines(const DaylightResults& results,
                                         const DaylightAsked& asked) {
@@ -120,18 +152,24 @@ std::vector<std::string> daylight_lines(const DaylightResults& results,
     lines.push_back(fmt::format("{}: {} points", grid.grid.name, grid.grid.sensors.size()));
     lines.push_back(fmt::format("  annual mean      {:.4g} lux, +-{:.1f}% a point", room.mean_lux,
                                 100 * mean_error(grid)));
-    lines.push_back(fmt::format("  DA {:<13.4g} {:.1f}% of {}", asked.target_lux,
-                                100 * room.autonomy, hours_of(asked)));
-    lines.push_back(fmt::format("  sDA {:.4g},50%{:<5} {:.1f}% of the points", asked.target_lux, "",
-                                100 * room.spatial_autonomy));
+    const auto error = [&](auto&& member) {
+      return grid.errors ? std::optional(member(*grid.errors)) : std::nullopt;
+    };
+    const auto useful = [&](std::size_t i) {
+      return percent(room.useful[i], error([i](const auto& of) { return of.useful[i]; }));
+    };
+    lines.push_back(
+        fmt::format("  DA {:<13.4g} {} of {}", asked.target_lux,
+                    percent(room.autonomy, error([](const auto& of) { return of.autonomy; })),
+                    hours_of(asked)));
+    lines.push_back("  " + autonomy_text(grid, asked, results.rounds));
     if (!grid.sun.empty()) {
       lines.push_back(
           fmt::format("  ASE 1000,250h    {:.1f}% of the points", 100 * room.sunlight_exposure));
     }
-    lines.push_back(fmt::format(
-        "  UDI              {:.1f}% below 100 lux, {:.1f}% to 300, {:.1f}% "
-        "to 3000, {:.1f}% above",
-        100 * room.useful[0], 100 * room.useful[1], 100 * room.useful[2], 100 * room.useful[3]));
+    lines.push_back(
+        fmt::format("  UDI              {} below 100 lux, {} to 300, {} to 3000, {} above",
+                    useful(0), useful(1), useful(2), useful(3)));
     lines.push_back(
         fmt::format("  EN 17037         {}: half of the points have {:.4g} lux in half "
                     "of the daylight hours, 95% have {:.4g}",

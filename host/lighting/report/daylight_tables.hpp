@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct GridDaylight {
   std::vector<float> relative_error;        ///< of each sensor's mean
   std::vector<float> lux, sun;              ///< by sensor, then hour; `sun` may be empty
   std::vector<daylight::LampEnergy> lamps;  ///< empty where there are none
+  /// Where it was made of several rounds.
+  std::optional<daylight::DaylightErrors> errors;
 };
 
 /// One state of the blinds all year.
@@ -28,6 +31,7 @@ struct DaylightState {
 };
 
 struct DaylightResults {
+  std::size_t rounds = 1;           ///< that the figures are means of
   std::vector<GridDaylight> grids;  ///< with blinds, where there are some, as they close
   // Without blinds empty.
   std::vector<DaylightState> states;
@@ -46,6 +50,10 @@ inline constexpr const char* no_sky_warning =
     "warning: no light of the sky reaches any point: the room has no opening and no pane of glass; "
     "leave out what closes its windows, or make it of glass (KHR_materials_transmission in glTF, d "
     "below 1 or illum 4 in MTL)";
+
+/// "sDA 300,50% 62.1 +-0.8%: meets 55% (certain)": which of the two levels of IES LM-83 are met,
+/// 55% or 75% of the points, and whether three standard errors leave a doubt.
+std::string autonomy_text(const GridDaylight& grid, const DaylightAsked& asked, std::size_t rounds);
 
 std::vector<std::string> daylight_lines(const DaylightResults& results, const DaylightAsked& asked);
 /// With a column for the state of the blinds where there are some.
