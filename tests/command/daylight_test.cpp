@@ -1,5 +1,6 @@
 // `photile daylight`, daylight factors and skies of other hours on the command line.
 #include <catch2/catch.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -38,10 +39,16 @@ std::vector<std::string> quick(const std::string& command, const std::string& sc
 TEST_CASE("a year of daylight fills its files") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
-  const Outcome outcome = succeed(
-      quick("daylight", scene,
-            {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to", "500",
-             "-o", folder / "a.csv", "-o", folder / "a.json", "--honeybee", folder / "bee"}));
+  const Outcome outcome =
+      succeed(quick("daylight", scene,
+                    {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to",
+                     "500", "-o", folder / "a.csv", "-o", folder / "a.json", "-o", folder / "a.svg",
+                     "-o", folder / "a.html", "--honeybee", folder / "bee"}));
+  CHECK_THAT(folder.read("a-1.svg"), Contains("working plane: DA 300 lux"));
+  CHECK_THAT(folder.read("a-2.svg"), Contains("working plane: UDI 100 to 3000 lux"));
+  CHECK_THAT(folder.read("a.html"),
+             Contains("A year of daylight: open.obj") && Contains("<h2>working plane</h2>") &&
+                 Contains("DA 300 lux") && Contains("year.epw") && !Contains("Key figures"));
   CHECK_THAT(outcome.output, Contains("sDA 300") && Contains("ASE") && Contains("UDI") &&
                                  Contains("EN 17037") && Contains("kWh"));
   const auto record = nlohmann::json::parse(folder.read("a.json"));
@@ -104,6 +111,32 @@ TEST_CASE("in a given time figures get standard errors, and sDA a verdict") {
   CHECK(grid["standard_errors"]["mean_lux"] < 0.1 * grid["mean_lux"].get<double>());
   CHECK(grid["standard_errors"]["sDA"] == 0);
   CHECK(grid["sensors"][0].contains("DA_error"));
+}
+
+TEST_CASE("lamps take the watts that their files state, others those of an efficacy") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  folder.write("spot.ies",
+               "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 25\n"
+               "0 45 90\n0\n1000 707.107 0\n");
+  folder.write("lamps.json", R"({"name": "new", "file": "spot.ies", "position": [0, 0.9, 0]})");
+  const auto watts = [&](const std::string& efficacy) {
+    succeed(quick("daylight", scene,
+                  {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to",
+                   "500", "--lamp-efficacy", efficacy, "--luminaires", folder / "lamps.json", "-o",
+                   folder / "a.json"}));
+    std::map<std::string, double> found;
+    const auto record = nlohmann::json::parse(folder.read("a.json"));
+    for (const auto& lamp : record.at(0).at("lamps")) {
+      found[lamp["name"]] = lamp["watts"];
+    }
+    return found;
+  };
+  auto some = watts("50"), fewer = watts("100");
+  CHECK(some.at("new") == Approx(25));
+  CHECK(fewer.at("new") == Approx(25));
+  CHECK(some.at("left") > 0);
+  CHECK(fewer.at("left") == Approx(some.at("left") / 2));
 }
 
 TEST_CASE("blinds close by the hour, as a scene of their own says") {

@@ -165,6 +165,13 @@ TEST_CASE("the maintenance factor and --light scale what is measured") {
   };
   const std::string plain = run("plain.json", {});
   CHECK(ratio_of(run("old.json", {"--maintenance", "0.8"}), plain) == Approx(0.8));
+  CHECK(ratio_of(run("parts.json", {"--maintenance", "LLMF=0.9,LMF=80%"}), plain) == Approx(0.72));
+  for (const char* const wrong : {"0", "2", "LLMF=0.9,DIRT=1", "LLMF=1.2", "LLMF", "LLMF=0"}) {
+    CHECK_THAT(
+        only_error(run_photile(measure(scene, {"--plane", "floor+0.5", "--maintenance", wrong})),
+                   2),
+        Catch::Contains("--maintenance") && Catch::Contains("LLMF=0.9"));
+  }
   CHECK(ratio_of(run("same.json", {"--light", "left=x2", "--light", "right=x2"}), plain) ==
         Approx(2).epsilon(1e-5));
   CHECK(run("again.json", {}) == plain);
@@ -219,17 +226,25 @@ TEST_CASE("a report has the project, glare and a year beside its figures, and li
                     "illuminance": {"value": 300, "standard_error": 2}},
                    {"name": "desk <2>", "position": [1, 1.2, 0],
                     "ugr": {"value": 21.4, "standard_error": 0.1},
-                    "illuminance": {"value": 320, "standard_error": 2}}]})");
+                    "illuminance": {"value": 320, "standard_error": 2}}],
+                    "plane": {"origin": [-1, 1.2, 1], "u": [3, 0, 0], "v": [0, 0, -2],
+                              "columns": 3, "rows": 2}})");
   folder.write("year.json",
                R"([{"name": "desks", "mean_lux": 812.3, "DA": 0.61, "sDA": 0.8, "ASE": 0.07,
-                    "EN 17037": {"target_lux": 310, "minimum_target_lux": 120}}])");
+                    "EN 17037": {"target_lux": 310, "minimum_target_lux": 120},
+                    "target_lux": 300, "plane": {"origin": [0, 0, 0], "u": [1, 0, 0],
+                      "v": [0, 0, -1], "columns": 2, "rows": 1},
+                    "sensors": [{"position": [0.25, 0, -0.5], "DA": 0.2, "UDI": {
+                      "100 to 300": 0.1, "300 to 3000": 0.5}}]}])");
+  folder.write("logo.png", "\x89PNG\r\n");
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--plane", "floor+0.75", "--wall-band", "0.2"});
     return run_photile(measure(scene, more));
   };
   const Outcome outcome =
       with({"--target", "office-desk", "--project", "Office <1>", "--client", "C & Co", "--include",
-            folder / "glare.json", "--include", folder / "year.json", "-o", folder / "a.html"});
+            folder / "glare.json", "--include", folder / "year.json", "--logo", folder / "logo.png",
+            "--maintenance", "LLMF=0.9,LMF=0.95", "-o", folder / "a.html"});
   INFO(outcome.errors);
   REQUIRE(outcome.exit_code == 0);
   CHECK_THAT(outcome.output, Contains("desk <2>: UGR 21.4, at most 19: NOT MET"));
@@ -238,12 +253,26 @@ TEST_CASE("a report has the project, glare and a year beside its figures, and li
                        Contains("signature") && Contains("<h2>Glare</h2>") &&
                        Contains("desk &lt;2&gt;") && Contains("<h2>A year of daylight</h2>") &&
                        Contains("80.0%") && Contains("310 lux"));
+  CHECK_THAT(page, Contains("DA 300 lux") && Contains("UDI 100 to 3000 lux") &&
+                       Contains("the highest UGR") && Contains("class=\"logo\"") &&
+                       Contains("0.855 = LLMF 0.9 x LMF 0.95"));
   const auto refusal = [&](std::vector<std::string> more, int code) {
     return only_error(with(std::move(more)), code);
   };
   CHECK_THAT(refusal({"--project", "x"}, 2), Contains("--project") && Contains("-o FILE.html"));
   CHECK_THAT(refusal({"--include", folder.write("b.json", "{}"), "-o", folder / "b.html"}, 3),
              Contains("b.json") && Contains("photile glare"));
+  for (
+      const char* const plane :
+      {"1", R"({"origin": [0, 0, 0], "u": [0, 0, 0], "v": [0, 0, 1], "columns": 1, "rows": 1})",
+       R"({"origin": [0, 0, 0], "u": [1, 0, 0], "v": [0, 0, 1], "columns": 99999, "rows": 99999})"}) {
+    const std::string file =
+        folder.write("plane.json", std::string(R"({"observers": [], "plane": )") + plane + "}");
+    CHECK_THAT(refusal({"--include", file, "-o", folder / "b.html"}, 3), Contains("plane.json"));
+  }
+  CHECK_THAT(refusal({"--logo", folder / "year.json", "-o", folder / "b.html"}, 3),
+             Contains("year.json") && Contains("PNG"));
+  CHECK_THAT(refusal({"--logo", folder / "logo.png"}, 2), Contains("-o FILE.html"));
 }
 
 TEST_CASE("a report describes the luminaires, their energy and the room, in two languages") {

@@ -260,6 +260,8 @@ TEST_CASE("walls, ceilings, cylinders and surroundings have requirements of thei
   CHECK(judge(grid(GridRole::cylindrical, even), desk)[0].required == 150);
   CHECK(judge(grid(GridRole::surroundings, even), desk)[0].required == 300);
   CHECK(judge(grid(GridRole::surroundings, even), desk)[1].required == 0.40);
+  CHECK(judge(grid(GridRole::background, even), desk)[0].required == 100);
+  CHECK(judge(grid(GridRole::background, even), desk)[1].required == 0.10);
   CHECK(judge(grid(GridRole::other, even), desk).empty());
   CHECK(mean_of_surroundings(750) == 500);
   CHECK(mean_of_surroundings(300) == 200);

@@ -351,6 +351,37 @@ TEST_CASE("a task has a band of surroundings around it") {
   }
 }
 
+TEST_CASE("the background is a band around the surroundings as far as the room reaches") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "desk.json";
+  std::ofstream(file) << R"({"name": "desk", "origin": [1, 0.8, 2], "u": [2, 0, 0],
+      "v": [0, 0, -1], "surroundings": 0.5, "background": 3})";
+  auto grids = read_planes(file);
+  REQUIRE(grids.size() == 3);
+  SensorGrid& background = grids[2];
+  CHECK(background.name == "desk background");
+  CHECK(background.role == GridRole::background);
+  // 9 x 8 m: 0.2 x 5^log10(9) = 0.93 m, of which ten go into 9 m.
+  CHECK(background.layout->columns == 10);
+  keep_in_room(room_on_a_slab(), {2, 0.9, 1.5}, background);
+  CHECK(background.role == GridRole::background);
+  REQUIRE_FALSE(background.sensors.empty());
+  bool far = false;
+  for (const Sensor& sensor : background.sensors) {
+    const glm::dvec3& p = sensor.position;
+    CHECK((p.x > 0 && p.x < 4 && p.z > 0 && p.z < 6));
+    CHECK_FALSE((p.x > 0.5 && p.x < 3.5 && p.z > 0.5 && p.z < 2.5));
+    far = far || p.z > 4;
+  }
+  CHECK(far);
+  const double area = glm::length(background.layout->u) * glm::length(background.layout->v);
+  CHECK(area < 30);  // the room's 24 m2, rounded up to cells
+  SensorGrid open = grids[2];
+  const std::size_t all = open.sensors.size();
+  keep_in_room(room_like_an_l(), {1, 0.9, 1}, open);  // which has no ceiling
+  CHECK(open.sensors.size() == all);
+}
+
 TEST_CASE("a band of more cells than memory holds is refused") {
   const TemporaryFolder folder;
   const auto file = folder.path / "desk.json";

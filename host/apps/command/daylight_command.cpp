@@ -15,6 +15,8 @@
 #include "command/daylight_results.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
+#include "command/report_contents.hpp"
+#include "command/run_record.hpp"
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
@@ -26,8 +28,13 @@
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/sensors.hpp"
 #include "report/honeybee_files.hpp"
+#include "report/included_results.hpp"
+#include "report/plan_drawing.hpp"
+#include "report/plan_lines.hpp"
+#include "report/report.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::app {
@@ -59,9 +66,8 @@ std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, cons
 }
 
 /// The scene's own lamps at the points; daylight leaves them out.
-std::vector<LightIlluminance> lamps_of(const DaylightOptions& options, const Scene& scene,
-                                       std::span<const Sensor> sensors, const LightMix& mix,
-                                       Progress& progress) {
+YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
+                   std::span<const Sensor> sensors, const LightMix& mix, Progress& progress) {
   if (!(options.lamps_to > 0) || scene.lights.empty()) return {};
   std::vector<Device> devices = devices_for(options.render, progress);
   MeasuringParameters parameters = options.parameters;
@@ -73,21 +79,81 @@ std::vector<LightIlluminance> lamps_of(const DaylightOptions& options, const Sce
       return group.name == light.light && !scene.lights[group.lights.front()].is_distant();
     });
   });
-  return found;
+  YearLamps lamps{std::move(found), {}};
+  const std::vector<double> watts = watts_of(scene, mix, options.lamp_efficacy);
+  for (const LightIlluminance& lamp : lamps.lux) {
+    for (std::size_t i = 0; i < watts.size(); ++i) {
+      if (mix.lights[i].name == lamp.light) lamps.watts.push_back(watts[i]);
+    }
+  }
+  return lamps;
 }
 
-void write(const DaylightOptions& options, const report::DaylightResults& results,
-           const std::vector<SkyHour>& hours) {
+/// A report of the year alone, as that of photile measure includes it.
+report::ReportText pages_of(const DaylightOptions& options, const Scene& scene,
+                            const nlohmann::ordered_json& record, std::size_t rounds) {
+  report::IncludedResults shown;
+  report::include_result(nlohmann::json::parse(record.dump()), std::nullopt, shown);
+  const RayScene rays(scene);
+  for (report::ReportMap& map : shown.maps) {
+    map.surroundings = report::surroundings_of(rays, *map.values.grid.layout);
+  }
+  report::ReportText text;
+  text.title = scene.source.filename().string();
+  text.subject = "A year of daylight";
+  text.tables = std::move(shown.tables);
+  text.maps = std::move(shown.maps);
+  text.facts = {
+      {"weather", options.render.load.situation.weather.filename().string()},
+      {"sky", fmt::format("{} patches", options.patches)},
+      {"measured", fmt::format("{} times with {} rays a point",
+                               rounds * static_cast<std::size_t>(options.parameters.repeats),
+                               options.parameters.gathering.rays)},
+      {"maintenance factor", fmt::format("{:.3g}", options.parameters.maintenance)},
+      {"seed", std::to_string(options.render.parameters.seed)},
+      {"program", "photile " + version_number()},
+      {"date", today()}};
+  return text;
+}
+
+void write(const DaylightOptions& options, const Scene& scene,
+           const report::DaylightResults& results, const std::vector<SkyHour>& hours) {
+  const auto record = report::daylight_json(results, options.asked);
+  const report::ReportText pages = pages_of(options, scene, record, results.rounds);
   for (const std::filesystem::path file : options.outputs) {
-    write_file(file, file.extension() == ".csv"
-                         ? report::daylight_csv(results)
-                         : json_text(report::daylight_json(results, options.asked)));
+    if (file.extension() == ".csv") write_file(file, report::daylight_csv(results));
+    if (file.extension() == ".json") write_file(file, json_text(record));
+    if (file.extension() == ".svg") {
+      const auto names = plan_names(file, pages.maps.size());
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        const report::ReportMap& map = pages.maps[i];
+        write_file(names[i], report::plan_svg(map.values, map.values.total(), map.colours,
+                                              report::PlanSize::whole, map.surroundings));
+      }
+    }
+    if (file.extension() != ".html" && file.extension() != ".pdf") continue;
+    const std::string page = report::report_html({}, pages, {}, {});
+    write_file(file, file.extension() == ".pdf" ? report::pdf_of(page) : page);
   }
   if (options.honeybee.empty()) return;
   const std::filesystem::path folder = options.honeybee;
   for (const auto& [name, content] : report::annual_files(results, hours)) {
     make_folder((folder / name).parent_path());
     write_file(folder / name, content);
+  }
+}
+
+/// DA and UDI of each plane.
+void note_plans(const DaylightOptions& options, const std::vector<measuring::SensorGrid>& grids) {
+  const auto planes = static_cast<std::size_t>(std::count_if(
+      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
+  for (const std::filesystem::path file : options.outputs) {
+    if (file.extension() != ".svg") continue;
+    if (planes == 0) {
+      throw UsageError(fmt::format("{}: points have no plan; give a plane, by --plane or --grid",
+                                   file.string()));
+    }
+    for (const auto& name : plan_names(file, 2 * planes)) note_output(name);
   }
 }
 
@@ -159,7 +225,7 @@ SkyRounds rounds_of(const DaylightOptions& options, const Year& year, Scene& sce
          (rounds.count() < fewest || elapsed() + longest < options.seconds)) {
     rounds.add(states_of(options, rounds.year_of_next(year), scene, grids, quiet));
     if (std::has_single_bit(rounds.count())) {
-      const auto results = daylight_results(options, year, grids, rounds, {}, {});
+      const auto results = daylight_results(options, year, grids, rounds);
       for (const report::GridDaylight& grid : results.grids) {
         progress.note(fmt::format("{}, {} rounds: {}: {}", format_seconds(elapsed()),
                                   rounds.count(), grid.grid.name,
@@ -207,6 +273,7 @@ void run_daylight(DaylightOptions& options) {
       note_output(folder / name);
     }
   }
+  note_plans(options, grids);
   take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(
@@ -223,9 +290,8 @@ void run_daylight(DaylightOptions& options) {
   const SkyRounds rounds = rounds_of(
       options, year, scene, grids, [&] { return watch.seconds(); }, progress);
   const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
-  const report::DaylightResults results =
-      daylight_results(options, year, grids, rounds, lamps, mix);
-  write(options, results, year.hours);
+  const report::DaylightResults results = daylight_results(options, year, grids, rounds, lamps);
+  write(options, scene, results, year.hours);
   for (const auto& line : report::daylight_lines(results, options.asked)) std::cout << line << '\n';
 }
 
@@ -282,7 +348,9 @@ void add_year(CLI::App& command, DaylightOptions& options) {
       ->type_name("LUX")
       ->transform(positive_number())
       ->group("Year");
-  command.add_option("--lamp-efficacy", options.lamp_efficacy, "lm/W of the scene's lamps")
+  command
+      .add_option("--lamp-efficacy", options.lamp_efficacy,
+                  "lm/W of lamps whose photometric files state no power")
       ->type_name("X")
       ->transform(positive_number())
       ->capture_default_str()
@@ -297,9 +365,10 @@ void add_daylight_command(CLI::App& photile) {
       "daylight", "A year of daylight at points: autonomy, glare of the sun, energy of lamps");
   command
       ->add_option("-o,--output", options->outputs,
-                   "table of the points: .csv or .json; repeatable")
+                   "table of the points (.csv, .json), plans of DA and UDI (.svg) or a report "
+                   "(.html, .pdf); repeatable")
       ->type_name("FILE")
-      ->check(file_ending_in({".csv", ".json"}))
+      ->check(file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}))
       ->allow_extra_args(false)
       ->group("Output");
   command

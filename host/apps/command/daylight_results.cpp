@@ -15,28 +15,22 @@ using report::GridDaylight;
 namespace {
 
 /// What the lamps over a grid use in a year.
-std::vector<LampEnergy> energies_of(const DaylightOptions& options,
-                                    const std::vector<LightIlluminance>& lamps, const LightMix& mix,
+std::vector<LampEnergy> energies_of(const DaylightOptions& options, const YearLamps& lamps,
                                     const std::vector<bool>& occupied, const GridDaylight& grid,
                                     std::size_t first) {
-  if (lamps.empty()) return {};
+  if (lamps.lux.empty()) return {};
   const std::size_t count = grid.grid.sensors.size(), hours = occupied.size();
-  std::vector<double> mean(hours, 0.0), of_lamp, watts;
+  std::vector<double> mean(hours, 0.0), of_lamp;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < count * hours; ++i)
     mean[i % hours] += double{grid.lux[i]} / static_cast<double>(count);
-  for (const LightIlluminance& lamp : lamps) {
+  for (const LightIlluminance& lamp : lamps.lux) {
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) sum += lamp.sensors[first + i].value;
     names.push_back(lamp.light);
     of_lamp.push_back(sum / static_cast<double>(count));
-    for (const MixedLight& light : mix.lights) {
-      if (light.name != lamp.light) continue;
-      const double lumens = light.power * (light.unit == PowerUnit::lumen ? 1 : mix.lumen_per_watt);
-      watts.push_back(lumens / options.lamp_efficacy);
-    }
   }
-  return lamp_energy(mean, occupied, names, of_lamp, watts, options.lamps_to);
+  return lamp_energy(mean, occupied, names, of_lamp, lamps.watts, options.lamps_to);
 }
 
 /// Light of all points.
@@ -66,9 +60,7 @@ std::vector<PointDaylight> points_of(const DaylightOptions& options, const Year&
 
 std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year& year,
                                      const std::vector<measuring::SensorGrid>& grids,
-                                     const LightOfPoints& light,
-                                     const std::vector<LightIlluminance>& lamps,
-                                     const LightMix& mix) {
+                                     const LightOfPoints& light, const YearLamps& lamps) {
   const std::vector<bool>& occupied = options.asked.occupied;
   const std::size_t hours = year.hours.size();
   std::vector<GridDaylight> results;
@@ -88,7 +80,7 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year&
     result.relative_error = part(light.matrix.relative_error, 1);
     result.points = points_of(options, year, light.lux, light.sun, first, count);
     result.room = room_daylight(result.points);
-    result.lamps = energies_of(options, lamps, mix, occupied, result, first);
+    result.lamps = energies_of(options, lamps, occupied, result, first);
     first += count;
     results.push_back(std::move(result));
   }
@@ -125,25 +117,22 @@ void add_errors(const DaylightOptions& options, const Year& year, const SkyRound
 
 report::DaylightResults daylight_results(const DaylightOptions& options, const Year& year,
                                          const std::vector<measuring::SensorGrid>& grids,
-                                         const SkyRounds& rounds,
-                                         const std::vector<LightIlluminance>& lamps,
-                                         const LightMix& mix) {
+                                         const SkyRounds& rounds, const YearLamps& lamps) {
   report::DaylightResults results;
   results.rounds = rounds.count();
   std::vector<SkyState> states = rounds.mean();
   light_hours(year, states);
   const SkyState& open = states.front();
   if (states.size() == 1) {
-    results.grids = results_of(options, year, grids, {open.lux, open.sun, open.matrix}, lamps, mix);
+    results.grids = results_of(options, year, grids, {open.lux, open.sun, open.matrix}, lamps);
   } else {
     const ScheduledSky scheduled = scheduled_sky(year, states);
     results.state_of_hour = scheduled.state_of_hour;
-    results.grids =
-        results_of(options, year, grids, {scheduled.lux, open.sun, open.matrix}, lamps, mix);
+    results.grids = results_of(options, year, grids, {scheduled.lux, open.sun, open.matrix}, lamps);
     for (const SkyState& state : states) {
       results.states.push_back(
           {state.name,
-           results_of(options, year, grids, {state.lux, state.sun, state.matrix}, lamps, mix)});
+           results_of(options, year, grids, {state.lux, state.sun, state.matrix}, lamps)});
     }
   }
   add_errors(options, year, rounds, results.grids);

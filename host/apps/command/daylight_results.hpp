@@ -18,7 +18,7 @@ struct DaylightOptions {
   RenderOptions render;
   MeasuringParameters parameters;
   PlaceOptions places;
-  std::vector<std::string> outputs;  ///< .csv, .json
+  std::vector<std::string> outputs;  ///< .csv, .json, .svg, .html, .pdf
   std::string honeybee;              ///< folder, "" = none
   int patches = defaults::sky_patches;
   double ground = defaults::ground_reflectance;
@@ -37,15 +37,19 @@ struct DaylightOptions {
   }
 };
 
+/// The scene's lamps at full power.
+struct YearLamps {
+  std::vector<LightIlluminance> lux;  ///< of each, at the sensors of the year
+  std::vector<double> watts;          ///< that each takes
+};
+
 /// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
 /// their states.
 /// Of several rounds figures have standard errors, but for those of a single state.
 ///   rounds   of states as sky_states has them
-///   lamps    lux of each at full power, at the sensors of the year
 report::DaylightResults daylight_results(const DaylightOptions& options, const daylight::Year& year,
                                          const std::vector<measuring::SensorGrid>& grids,
                                          const daylight::SkyRounds& rounds,
-                                         const std::vector<LightIlluminance>& lamps,
-                                         const LightMix& mix);
+                                         const YearLamps& lamps = {});
 
 }  // namespace photile::app

@@ -44,7 +44,9 @@ struct GlareOptions {
   std::string target;                ///< "" = none
 };
 
+///   plane   is set to that of the observers of --grid
 std::vector<glare::Observer> observers_of(const GlareOptions& options, const Scene& scene,
+                                          std::optional<measuring::PlaneLayout>& plane,
                                           Progress& progress) {
   const auto axes = trace::PlanAxes::in_world(scene);
   std::vector<glare::Observer> all;
@@ -70,6 +72,7 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
     measuring::SensorGrid grid = plane_of(options.plane, scene);
     clear_of_furniture(options.plane, scene, grid, progress);
     grid.name = "point";
+    plane = grid.layout;
     add(glare::observers_on(grid, axes, options.directions));
   }
   if (2 * all.size() > limits::max_sensors) {
@@ -106,6 +109,7 @@ std::optional<measuring::Judgement> judged(const GlareOptions& options,
 }
 
 Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& mix,
+              const std::optional<measuring::PlaneLayout>& plane,
               std::span<const glare::ObserverGlare> all) {
   const MeasuringParameters& measuring = options.parameters.measuring;
   Json record{{"photile", version_number()},
@@ -124,6 +128,7 @@ Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& m
                         {"highest_ugr", judgement->measured.value},
                         {"met", judgement->met()}};
   }
+  if (plane) record["plane"] = report::plane_json(*plane);
   record["observers"] = report::glare_json(all);
   return record;
 }
@@ -153,12 +158,13 @@ void check_outputs_of(const GlareOptions& options) {
 }
 
 void write_outputs(const GlareOptions& options, const Scene& scene, const LightMix& mix,
+                   const std::optional<measuring::PlaneLayout>& plane,
                    std::span<const glare::ObserverGlare> all) {
   for (const std::string& file : options.outputs) {
     if (ends_in(file, ".csv")) {
       write_file(file, report::glare_csv(all));
     } else {
-      write_file(file, json_text(run_json(options, scene, mix, all)));
+      write_file(file, json_text(run_json(options, scene, mix, plane, all)));
     }
   }
 }
@@ -181,7 +187,8 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   tell_scene(scene, mix, progress);
-  const std::vector<glare::Observer> observers = observers_of(options, scene, progress);
+  std::optional<measuring::PlaneLayout> plane;
+  const std::vector<glare::Observer> observers = observers_of(options, scene, plane, progress);
   std::vector<Device> devices = devices_for(render, progress);
 
   glare::GlareParameters& parameters = options.parameters;
@@ -201,7 +208,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   const auto all =
       glare::measure_glare(scene, observers, mix, coverage_of(options, scene, observers.front()),
                            devices, parameters, keep, progress);
-  write_outputs(options, scene, mix, all);
+  write_outputs(options, scene, mix, plane, all);
   for (const auto& line : report::glare_lines(all)) std::cout << line << '\n';
   if (const auto judgement = judged(options, all)) {
     std::cout << fmt::format("target {}: {}\n", options.target,

@@ -222,7 +222,7 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
                   "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)")
       ->type_name("NAME|VALUES")
       ->group("Measuring");
-  add_maintenance_option(command, options.parameters, "Measuring");
+  add_maintenance_option(command, options.parameters, "Measuring", &options.outputs.maintenance);
   add_sensor_options(command, options.parameters, "Measuring");
 }
 

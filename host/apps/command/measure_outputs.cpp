@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -80,20 +79,14 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
   return record;
 }
 
-/// Such as 2026-11-23.
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
-}
-
-std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run) {
+std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run,
+                                                          const std::string& maintenance) {
   const MeasuringParameters& parameters = run.parameters;
   const bool planar = parameters.gathering.response == SensorResponse::planar;
   std::vector<std::pair<std::string, std::string>> facts{
       {"illuminance", planar ? "planar" : "cylindrical"},
-      {"maintenance factor", fmt::format("{:g}", parameters.maintenance)},
+      {"maintenance factor", fmt::format("{:.3g}{}", parameters.maintenance,
+                                         maintenance.empty() ? "" : " = " + maintenance)},
       {"measured",
        fmt::format("{} times with {} rays a point", parameters.repeats, parameters.gathering.rays)},
       {"light by", parameters.by_paths
@@ -110,6 +103,17 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run)
   return facts;
 }
 
+/// As a page holds it. Errors: those of read_input_text; InputError for another kind of file.
+std::string logo_of(const std::filesystem::path& file) {
+  note_input(file);
+  const std::string bytes = read_input_text(file);
+  const bool png = bytes.starts_with("\x89PNG"), jpeg = bytes.starts_with("\xff\xd8");
+  if (!png && !jpeg) {
+    throw InputError(file.string() + ": a logo is a PNG or a JPEG; save it as one");
+  }
+  return fmt::format("data:image/{};base64,{}", png ? "png" : "jpeg", report::base64(bytes));
+}
+
 /// The surroundings of each grid.
 std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measurement& measurement,
                                                       const MeasureRun& run) {
@@ -121,18 +125,6 @@ std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measureme
                                   : report::PlanSurroundings());
   }
   return surroundings;
-}
-
-/// The file of each plane's plan.
-std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
-                                              std::size_t planes) {
-  if (planes <= 1) return std::vector(planes, file);
-  std::vector<std::filesystem::path> names;
-  for (std::size_t i = 1; i <= planes; ++i) {
-    names.push_back(file);
-    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
-  }
-  return names;
 }
 
 }  // namespace
@@ -165,6 +157,9 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
   const auto text = [&](const char* name, std::string& value, const char* what) {
     command.add_option(name, value, what)->type_name("TEXT")->group("Output");
   };
+  command.add_option("--logo", options.logo, "of the designer, PNG or JPEG, for the report's head")
+      ->type_name("FILE")
+      ->group("Output");
   text("--project", options.project.name, "name of the project, for the report's head");
   text("--client", options.project.client, "for whom the report is; it ends with lines to sign on");
   text("--designer", options.project.designer, "who answers for it");
@@ -181,6 +176,7 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
       colours_(options.false_colour.of(unit_)),
       honeybee_(options.honeybee),
       picture_(options.picture),
+      maintenance_(options.maintenance),
       results_(options.results.begin(), options.results.end()),
       project_(options.project),
       language_(options.language) {
@@ -215,6 +211,8 @@ MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
   };
   only_in_reports("--picture", !picture_.empty());
   only_in_reports("--include", !results_.empty());
+  only_in_reports("--logo", !options.logo.empty());
+  if (!options.logo.empty()) logo_ = logo_of(options.logo);
   only_in_reports("--project, --client and --designer", project_.said());
   if (!picture_.empty()) note_input(picture_);
   for (const auto& file : results_) note_input(file);
@@ -284,12 +282,13 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
       report::parts_of(run.scene, lumens_of(run.scene, run.mix));
   report::ReportText text{
       run.scene.source.filename().string(),
-      facts_of(run),
+      facts_of(run, maintenance_),
       run.requirement,
       {lamp_schedule(run.scene, run.mix), list_of_parts(parts), reflectances(run.scene)},
       run.included.glare,
       project_};
   text.language = language_;
+  text.logo = logo_;
   text.sheets = data_sheets(parts);
   text.rendering = least_rendering(parts);
   double area = 0;
@@ -302,6 +301,11 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
   text.energy = energy_of(parts, area, measurement.front().total().statistics.mean.value,
                           run.included.kilowatt_hours);
   text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
+  text.maps = run.included.maps;
+  const RayScene rays(run.scene);
+  for (report::ReportMap& map : text.maps) {
+    map.surroundings = report::surroundings_of(rays, *map.values.grid.layout);
+  }
   if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
   const std::string page = report::report_html(measurement, text, colours_, surroundings);
   for (const auto& file : html_) write_file(file, page);

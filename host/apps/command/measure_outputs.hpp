@@ -26,6 +26,8 @@ struct MeasureOutputOptions {
   FalseColourOptions false_colour;
   std::string honeybee;              ///< folder, "" = none
   std::string picture;               ///< EXR for the report, "" = none
+  std::string logo;                  ///< PNG or JPEG for the report, "" = none
+  std::string maintenance;           ///< parts of the factor, "" = not said
   std::vector<std::string> results;  ///< JSON files for the report
   report::ReportProject project;
   std::string language = "en";   ///< of the report
@@ -84,6 +86,7 @@ class MeasureOutputs {
   std::string unit_;
   report::FalseColour colours_;
   std::filesystem::path honeybee_, picture_;
+  std::string logo_, maintenance_;
   std::vector<std::filesystem::path> results_;
   report::ReportProject project_;
   std::string language_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -58,6 +59,24 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
 
 }  // namespace
 
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
+}
+
+std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
+                                              std::size_t planes) {
+  if (planes <= 1) return std::vector(planes, file);
+  std::vector<std::filesystem::path> names;
+  for (std::size_t i = 1; i <= planes; ++i) {
+    names.push_back(file);
+    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
+  }
+  return names;
+}
+
 std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
   // Radiant watts would be read as those of the mains.
   const LightGroups groups = light_groups_of(scene);
@@ -66,6 +85,27 @@ std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
     if (mix.lights[groups.group_of[i]].unit == PowerUnit::watt) lumens[i] *= mix.lumen_per_watt;
   }
   return lumens;
+}
+
+std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy) {
+  const LightGroups groups = light_groups_of(scene);
+  const std::vector<double> lumens = lumens_of(scene, mix);
+  std::vector<double> stated(mix.lights.size()), all(mix.lights.size());
+  std::vector<bool> known(mix.lights.size(), true);
+  for (std::size_t i = 0; i < lumens.size(); ++i) {
+    const std::uint32_t group = groups.group_of[i], file = scene.lights[i].distribution;
+    const IntensityDistribution* const lamp = file == none ? nullptr : &scene.distributions[file];
+    all[group] += lumens[i];
+    if (lamp != nullptr && lamp->data().watts > 0) {
+      stated[group] += lamp->data().watts * lumens[i] / lamp->flux();
+    } else {
+      known[group] = false;
+    }
+  }
+  for (std::size_t group = 0; group < all.size(); ++group) {
+    if (!known[group]) stated[group] = all[group] / efficacy;
+  }
+  return stated;
 }
 
 double least_rendering(const std::vector<report::Part>& parts) {

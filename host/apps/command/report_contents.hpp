@@ -18,6 +18,16 @@ namespace photile::app {
 /// world and powers. Lights of the sky have no position.
 report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 
+/// Such as 2026-11-23.
+std::string today();
+
+/// The file of each of several plans: numbered where they are more than one.
+std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file, std::size_t plans);
+
+/// W that each layer of the mix takes from the mains: in proportion to its lumens what its
+/// luminaires' files state, and where one of them states nothing by an efficacy (lm/W).
+std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy);
+
 /// lm of each of the scene's lights.
 std::vector<double> lumens_of(const Scene& scene, const LightMix& mix);
 

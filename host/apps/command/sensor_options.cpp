@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <sstream>
 #include <utility>
 
 #include "command/validators.hpp"
@@ -66,7 +69,15 @@ void note_places(const PlaceOptions& options) {
 std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene) {
   std::vector<measuring::SensorGrid> grids;
   for (const auto& file : options.planes) {
-    for (auto& grid : measuring::read_planes(file)) grids.push_back(std::move(grid));
+    glm::dvec3 task(0.0);
+    for (auto& grid : measuring::read_planes(file)) {
+      const measuring::PlaneLayout& layout = *grid.layout;
+      if (grid.role == measuring::GridRole::task) {
+        task = layout.origin + 0.5 * (layout.u + layout.v) + 0.05 * layout.normal();  // off a top
+      }
+      if (grid.role == measuring::GridRole::background) keep_in_room(scene, task, grid);
+      if (!grid.sensors.empty()) grids.push_back(std::move(grid));
+    }
   }
   for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
   if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
@@ -128,14 +139,52 @@ void add_sensor_options(CLI::App& command, MeasuringParameters& parameters,
       ->group(group);
 }
 
+namespace {
+
+/// 0 where `text` is no factor or no list of parts.
+double maintenance_of(const std::string& text, std::string& parts) {
+  if (text.find('=') == std::string::npos) {
+    const double whole = parse_share(text).value_or(0);
+    return whole <= 1 ? whole : 0;
+  }
+  double product = 1;
+  std::istringstream list(text);
+  for (std::string part; std::getline(list, part, ',');) {
+    const std::size_t equals = part.find('=');
+    const std::string name = part.substr(0, equals);
+    constexpr std::array names{"LLMF", "LSF", "LMF", "RSMF", "RMF"};
+    const auto share =
+        equals == std::string::npos ? std::nullopt : parse_share(part.substr(equals + 1));
+    if (std::find(names.begin(), names.end(), name) == names.end() || !share || *share > 1)
+      return 0;
+    product *= *share;
+    parts += fmt::format("{}{} {:g}", parts.empty() ? "" : " x ", name, *share);
+  }
+  return product;
+}
+
+}  // namespace
+
 void add_maintenance_option(CLI::App& command, MeasuringParameters& parameters,
-                            const std::string& group) {
+                            const std::string& group, std::string* parts) {
   command
-      .add_option("--maintenance", parameters.maintenance,
-                  "factor of all values for ageing and dirt, above 0 up to 1")
-      ->type_name("X")
-      ->transform(share_up_to(1))
-      ->capture_default_str()
+      .add_option_function<std::string>(
+          "--maintenance",
+          [&parameters, parts](const std::string& text) {
+            std::string told;
+            parameters.maintenance = maintenance_of(text, told);
+            if (!(parameters.maintenance > 0)) {
+              throw UsageError(fmt::format(
+                  "--maintenance {}: use a factor above 0 up to 1, or its parts, such as "
+                  "LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94",
+                  text));
+            }
+            if (parts != nullptr) *parts = told;
+          },
+          "factor of all values for ageing and dirt, above 0 up to 1, or its parts by CIE 97, such "
+          "as LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94")
+      ->type_name("X|PARTS")
+      ->default_str("1")
       ->group(group);
 }
 

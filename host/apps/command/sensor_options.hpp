@@ -61,8 +61,9 @@ void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
 void add_sensor_options(CLI::App& command, MeasuringParameters& parameters,
                         const std::string& group);
 
-/// Adds --maintenance.
+/// Adds --maintenance: a factor, or its parts by the names of CIE 97, whose product it is.
+///   parts   is told these, "LLMF 0.9 x LMF 0.95", where they are given; null = of no interest
 void add_maintenance_option(CLI::App& command, MeasuringParameters& parameters,
-                            const std::string& group);
+                            const std::string& group, std::string* parts = nullptr);
 
 }  // namespace photile::app

@@ -13,8 +13,9 @@ namespace photile::measuring {
 namespace {
 
 constexpr double two_errors = 2;
-constexpr double uniformity_of_surfaces = 0.10;      // walls, ceilings, cylindrical
+constexpr double uniformity_of_surfaces = 0.10;      // walls, ceilings, cylindrical, background
 constexpr double uniformity_of_surroundings = 0.40;  // of the immediate ones
+constexpr double background_share = 1.0 / 3;         // of the immediate surroundings' mean
 
 constexpr bool unconfirmed = false;
 
@@ -138,6 +139,9 @@ std::vector<Judgement> judge(const GridValues& values, const Requirement& requir
       if (!(requirement.mean > 0)) break;
       add(all, values, "Em", mean_of_surroundings(requirement.mean), figures.mean);
       add(all, values, "Uo", uniformity_of_surroundings, figures.uniformity);
+      break;
+    case GridRole::background:
+      surface(mean_of_surroundings(requirement.mean) * background_share);
       break;
     case GridRole::wall:
       surface(requirement.wall);

@@ -47,7 +47,8 @@ struct Judgement {
 
 /// Judges the mean and, on tasks and their surroundings, the uniformity: walls, ceilings and
 /// cylindrical illuminance have a uniformity of 0.10, the immediate surroundings 0.40 and the mean
-/// of table 2 of the standard. Grids of another role are not judged.
+/// of table 2 of the standard, the background a third of that and 0.10. Grids of another role are
+/// not judged.
 std::vector<Judgement> judge(const GridValues& values, const Requirement& requirement);
 
 /// All grids' judgements under a heading, that of `glare` where it is known, and what a program

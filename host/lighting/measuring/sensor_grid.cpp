@@ -109,22 +109,28 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
   return grid_on_plane(plane.text("name", name), std::move(layout));
 }
 
-/// The band of so many metres around a task, as a grid of cells like the task's.
-SensorGrid surroundings_of(const JsonObject& plane, const SensorGrid& task) {
-  const double band = plane.metres("surroundings");
-  const PlaneLayout& inner = *task.layout;
+/// The band of so many metres, by a key, around an area. Its cells are as wide as the area's, those
+/// of a background as EN 12464-1 has them for a rectangle of its size.
+SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayout& inner,
+                       GridRole role) {
+  const double band = plane.metres(key);
   const double across = glm::length(inner.u), along = glm::length(inner.v);
   const glm::dvec3 u = inner.u / across, v = inner.v / along;
+  const double outer_across = across + 2 * band, outer_along = along + 2 * band;
   PlaneLayout outer;
   outer.origin = inner.origin - band * (u + v);
-  outer.u = (across + 2 * band) * u;
-  outer.v = (along + 2 * band) * v;
-  const double spacing = std::min(inner.spacing(), band);
-  const double columns = std::max(1.0, std::round((across + 2 * band) / spacing));
-  const double rows = std::max(1.0, std::round((along + 2 * band) / spacing));
-  if (!(columns * rows <= 2.0 * limits::max_sensors)) {  // of which the task is a part
-    plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
+  outer.u = outer_across * u;
+  outer.v = outer_along * v;
+  double spacing = std::min(inner.spacing(), band);
+  if (role == GridRole::background) {
+    spacing = std::min(band, outer_across / points_of_en12464(outer_across, outer_along).columns);
   }
+  const double columns = std::max(1.0, std::round(outer_across / spacing));
+  const double rows = std::max(1.0, std::round(outer_along / spacing));
+  const auto too_many = [&] {
+    plane.refuse(fmt::format("'{}' makes more than {} points", key, limits::max_sensors));
+  };
+  if (!(columns * rows <= 2.0 * limits::max_sensors)) too_many();  // the area is a part
   outer.columns = static_cast<int>(columns);
   outer.rows = static_cast<int>(rows);
   const auto cells =
@@ -135,8 +141,9 @@ SensorGrid surroundings_of(const JsonObject& plane, const SensorGrid& task) {
     if (x > 0 && x < across && y > 0 && y < along) continue;
     outer.cells.push_back(cell);
   }
-  SensorGrid grid = grid_on_plane(task.name + " surroundings", std::move(outer));
-  grid.role = GridRole::surroundings;
+  if (outer.cells.size() > limits::max_sensors) too_many();
+  SensorGrid grid = grid_on_plane(key, std::move(outer));
+  grid.role = role;
   return grid;
 }
 
@@ -151,14 +158,16 @@ std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
     const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
     const JsonObject plane(
         list[i], fmt::format("{}: plane {}", file.string(), i + 1),
-        {"name", "origin", "u", "v", "spacing", "columns", "rows", "surroundings"});
+        {"name", "origin", "u", "v", "spacing", "columns", "rows", "surroundings", "background"});
     grids.push_back(grid_of(plane, file.stem().string() + number));
-    if (!plane.has("surroundings")) continue;
-    SensorGrid around = surroundings_of(plane, grids.back());
-    if (around.sensors.size() > limits::max_sensors) {
-      plane.refuse(fmt::format("'surroundings' makes more than {} points", limits::max_sensors));
+    const std::string task = grids.back().name;
+    for (const auto& [key, role] : {std::pair("surroundings", GridRole::surroundings),
+                                    std::pair("background", GridRole::background)}) {
+      if (!plane.has(key)) continue;
+      SensorGrid band = band_around(plane, key, *grids.back().layout, role);
+      band.name = task + " " + key;
+      grids.push_back(std::move(band));
     }
-    grids.push_back(std::move(around));
   }
   return grids;
 }

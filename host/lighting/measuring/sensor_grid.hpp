@@ -39,7 +39,7 @@ struct BlankPoint {
 };
 
 /// What a grid is of, for the requirements of standards.
-enum class GridRole { task, surroundings, wall, ceiling, cylindrical, other };
+enum class GridRole { task, surroundings, background, wall, ceiling, cylindrical, other };
 
 struct SensorGrid {
   std::string name;
@@ -67,7 +67,8 @@ PointCounts points_of_en12464(double u, double v);
 /// Reads a JSON object {"name", "origin", "u", "v"} with either "spacing" or "columns" and "rows",
 /// or a list of such: a rectangle from a corner along two sides at a right angle, metres in the
 /// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. With
-/// "surroundings" the band of so many metres around it is a grid of its own. Errors: InputError
+/// "surroundings" the band of so many metres around it is a grid of its own, and with "background"
+/// the one around that; a task comes before its bands. Errors: InputError
 /// naming the file, the plane and the key.
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file);
 

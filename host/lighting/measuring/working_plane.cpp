@@ -98,6 +98,40 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   return grid;
 }
 
+void keep_in_room(const Scene& scene, const glm::dvec3& place, SensorGrid& grid) {
+  const trace::PlanAxes axes;
+  const RayScene rays(scene);
+  const auto room = trace::Room::around(rays, axes, position_in_scene(scene, place));
+  if (!room) return;
+  PlaneLayout layout = *grid.layout;
+  std::erase_if(layout.cells, [&](std::uint32_t cell) {
+    return !room->holds(axes.plan(position_in_scene(scene, layout.middle_of(cell))));
+  });
+  // The rectangle around what is left.
+  const auto columns = static_cast<std::uint32_t>(layout.columns);
+  std::uint32_t left = columns, right = 0, low = static_cast<std::uint32_t>(layout.rows), high = 0;
+  for (const std::uint32_t cell : layout.cells) {
+    left = std::min(left, cell % columns);
+    right = std::max(right, cell % columns);
+    low = std::min(low, cell / columns);
+    high = std::max(high, cell / columns);
+  }
+  if (!layout.cells.empty()) {
+    const glm::dvec3 u = layout.u / double(layout.columns), v = layout.v / double(layout.rows);
+    layout.columns = static_cast<int>(right - left + 1);
+    layout.rows = static_cast<int>(high - low + 1);
+    layout.origin += double(left) * u + double(low) * v;
+    layout.u = double(layout.columns) * u;
+    layout.v = double(layout.rows) * v;
+    for (std::uint32_t& cell : layout.cells) {
+      cell = (cell / columns - low) * (right - left + 1) + cell % columns - left;
+    }
+  }
+  const GridRole role = grid.role;
+  grid = grid_on_plane(grid.name, std::move(layout));
+  grid.role = role;
+}
+
 namespace {
 
 constexpr double before_surface = 1e-3;  // metres that sensors lie before it

@@ -52,6 +52,10 @@ WorkingPlane parse_working_plane(const std::string& text);
 /// UsageError where the given point is in no room.
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
 
+/// Leaves out the points that are not in the room around a place in the file's world; all stay
+/// where that is in none.
+void keep_in_room(const Scene& scene, const glm::dvec3& place, SensorGrid& grid);
+
 /// A grid on each of four walls, at the sides of the upright rectangle around the room's plan, from
 /// the floor to the ceiling, facing into the room; names say by the compass where the wall lies:
 /// "north wall". Points with no wall there, or glass, are

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/foreign_text.hpp"
+#include "report/tables.hpp"
 
 namespace photile::report {
 namespace {
@@ -92,6 +93,7 @@ Json grid_json(const GridDaylight& grid, const DaylightAsked& asked) {
               {{"level", room.level},
                {"target_lux", room.target_lux},
                {"minimum_target_lux", room.minimum_target_lux}}}};
+  if (grid.grid.layout) entry["plane"] = plane_json(*grid.grid.layout);
   if (!grid.sun.empty()) entry["ASE"] = room.sunlight_exposure;
   if (grid.errors) {
     entry["standard_errors"] = {{"mean_lux", grid.errors->mean_lux},

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 
 namespace photile::report {
 namespace {
@@ -86,7 +90,104 @@ ReportTable daylight_table(const json& grids) {
   return table;
 }
 
+/// Errors: std::domain_error where it is no plane; those of JSON.
+measuring::PlaneLayout layout_of(const json& plane) {
+  const auto vector = [&](const char* key) {
+    const json& of = plane.at(key);
+    return glm::dvec3(of.at(0).get<double>(), of.at(1).get<double>(), of.at(2).get<double>());
+  };
+  measuring::PlaneLayout layout{vector("origin"),
+                                vector("u"),
+                                vector("v"),
+                                plane.at("columns").get<int>(),
+                                plane.at("rows").get<int>(),
+                                {}};
+  const double sides = glm::length(layout.u) * glm::length(layout.v);
+  const bool sound = sides > 0 && std::isfinite(sides) && layout.columns > 0 && layout.rows > 0 &&
+                     double{1} * layout.columns * layout.rows <= limits::max_sensors;
+  if (!sound) throw std::domain_error("no plane");
+  return layout;
+}
+
+/// Values of points on a plane by the cells that they lie in; of several in one the highest.
+///   entries   with "position"
+///   value     of an entry, none where it has none
+template <class Value>
+ReportMap map_of(const json& plane, const std::string& grid, const std::string& figure,
+                 FalseColour colours, const json& entries, const Value& value) {
+  measuring::PlaneLayout layout = layout_of(plane);
+  const glm::dvec3 u = layout.u / glm::dot(layout.u, layout.u);
+  const glm::dvec3 v = layout.v / glm::dot(layout.v, layout.v);
+  std::map<std::uint32_t, double> values;
+  for (const json& entry : entries) {
+    const std::optional<double> found = value(entry);
+    const json& p = entry.at("position");
+    const glm::dvec3 from =
+        glm::dvec3(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()) -
+        layout.origin;
+    const double column = glm::dot(from, u) * layout.columns;
+    const double row = glm::dot(from, v) * layout.rows;
+    if (!found || !(column >= 0 && column < layout.columns && row >= 0 && row < layout.rows))
+      continue;
+    const auto cell = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(layout.columns) +
+                      static_cast<std::uint32_t>(column);
+    const auto [place, is_first] = values.emplace(cell, *found);
+    if (!is_first) place->second = std::max(place->second, *found);
+  }
+  measuring::LightValues light{figure, {}, {}};
+  for (const auto& [cell, one] : values) {
+    layout.cells.push_back(cell);
+    light.sensors.push_back({one, 0});
+  }
+  ReportMap map{{measuring::grid_on_plane(grid, std::move(layout)), {std::move(light)}},
+                std::move(colours)};
+  return map;
+}
+
+void add_daylight_maps(const json& grid, IncludedResults& results) {
+  if (!grid.contains("plane")) return;
+  FalseColour percent;
+  percent.scale = 100;
+  percent.label = "%";
+  const auto add = [&](const std::string& figure, const auto& share) {
+    results.maps.push_back(map_of(
+        grid["plane"], grid.at("name").get<std::string>(), figure, percent, grid.at("sensors"),
+        [&](const json& sensor) { return std::optional(100 * share(sensor)); }));
+  };
+  add(fmt::format("DA {:g} lux", grid.at("target_lux").get<double>()),
+      [](const json& sensor) { return sensor.at("DA").get<double>(); });
+  add("UDI 100 to 3000 lux", [](const json& sensor) {
+    const json& useful = sensor.at("UDI");
+    return useful.at("100 to 300").get<double>() + useful.at("300 to 3000").get<double>();
+  });
+}
+
+void add_glare_map(const json& record, IncludedResults& results) {
+  if (!record.contains("plane")) return;
+  FalseColour ratings;
+  ratings.scale = 30;
+  ratings.label = "UGR";
+  results.maps.push_back(map_of(record["plane"], "observers", "the highest UGR", ratings,
+                                record.at("observers"), ugr_of));
+}
+
 }  // namespace
+
+void include_result(const json& content, const std::optional<measuring::Requirement>& requirement,
+                    IncludedResults& results) {
+  if (content.is_array()) {
+    results.tables.push_back(daylight_table(content));
+    for (const json& grid : content) add_daylight_maps(grid, results);
+    for (const json& lamp : content.empty() ? json() : content[0].value("lamps", json())) {
+      results.kilowatt_hours += lamp.at("kilowatt_hours").get<double>();
+    }
+    return;
+  }
+  const json& observers = content.at("observers");
+  results.tables.push_back(glare_table(observers.get<std::vector<json>>()));
+  add_glare_map(content, results);
+  if (requirement) judge_glare(observers, *requirement, results);
+}
 
 IncludedResults included_results(std::span<const std::filesystem::path> files,
                                  const std::optional<measuring::Requirement>& requirement) {
@@ -94,17 +195,8 @@ IncludedResults included_results(std::span<const std::filesystem::path> files,
   for (const std::filesystem::path& file : files) {
     const json content = read_input_json(file);
     try {
-      if (content.is_array()) {
-        results.tables.push_back(daylight_table(content));
-        for (const json& lamp : content.empty() ? json() : content[0].value("lamps", json())) {
-          results.kilowatt_hours += lamp.at("kilowatt_hours").get<double>();
-        }
-        continue;
-      }
-      const json& observers = content.at("observers");
-      results.tables.push_back(glare_table(observers.get<std::vector<json>>()));
-      if (requirement) judge_glare(observers, *requirement, results);
-    } catch (const json::exception&) {  // its text means something to programmers alone
+      include_result(content, requirement, results);
+    } catch (const std::exception&) {  // its text means something to programmers alone
       throw InputError(fmt::format(
           "{}: is no result of a year or of observers; give what photile glare or daylight has "
           "written by -o FILE.json",

@@ -36,6 +36,7 @@ th { border-bottom: 1px solid #222; } th:first-child, td:first-child { text-alig
 figure { display: inline-block; width: 48%; margin: 0 1% 0.8em 0; vertical-align: top; }
 img { max-width: 100%; } figcaption { color: #777; }
 .title figure { float: right; width: 52%; margin: 0 0 1em 1em; } .title h2 { clear: none; }
+.title .logo { float: right; max-width: 45mm; max-height: 18mm; }
 .about { width: 45%; } .about dt { width: 11em; } .about dd { margin-left: 11em; }
 .end { clear: both; }
 .texts th, .texts td { text-align: left; } .target td { white-space: nowrap; }
@@ -43,6 +44,7 @@ img { max-width: 100%; } figcaption { color: #777; }
 .sign td { text-align: left; width: 33%; padding-right: 3em; padding-top: 1.6em; }
 .sign .line { border-top: 1px solid #222; color: #777; padding-top: 0.15em; }
 .lights .plan { display: inline-block; width: 32%; }
+.maps .plan { display: inline-block; width: 48%; } .maps svg { width: 100%; height: auto; }
 .sheet { display: inline-block; width: 48%; margin: 0 1% 1em 0; vertical-align: top; }
 dl { margin: 0.3em 0; }
 dt { float: left; clear: left; width: 13em; color: #777; } dd { margin: 0 0 0.2em 13em; }
@@ -50,7 +52,7 @@ dt { float: left; clear: left; width: 13em; color: #777; } dd { margin: 0 0 0.2e
 @media print {
   body { margin: 0; max-width: none; font-size: 8.5pt; }
   h2 { break-after: avoid; } .plan, tr, figure, .sheet { break-inside: avoid; }
-  .grid, .title + section { break-before: page; }
+  .grid, .grid + .maps, .title + .pictures { break-before: page; }
   .plan svg { max-width: none; } .lights svg { height: 36mm; width: auto; }
 }
 )";
@@ -80,9 +82,13 @@ class Page {
 
   std::string title(const measuring::Measurement& measurement) const {
     const bool named = !report_.project.name.empty();
-    std::string text = fmt::format(
-        "<section class=\"title\">\n<h1>{}</h1>\n",
-        escaped_xml(named ? report_.project.name : said("Illuminance") + ": " + report_.title));
+    std::string text = "<section class=\"title\">\n";
+    if (!report_.logo.empty()) {
+      text += fmt::format("<img class=\"logo\" alt=\"\" src=\"{}\"/>\n", report_.logo);
+    }
+    text += fmt::format(
+        "<h1>{}</h1>\n",
+        escaped_xml(named ? report_.project.name : said(report_.subject) + ": " + report_.title));
     std::vector<std::pair<std::string, std::string>> about;
     if (report_.project.said()) {
       about = {{"project", report_.project.name},
@@ -98,7 +104,11 @@ class Page {
     if (!report_.room.empty()) text += heading("Room") + list(report_.room);
     if (!report_.energy.empty()) text += heading("Energy") + list(report_.energy);
     text += "</div>\n<div class=\"end\"></div>\n";
-    text += report_.requirement ? target(measurement, *report_.requirement) : summary(measurement);
+    if (report_.requirement) {
+      text += target(measurement, *report_.requirement);
+    } else if (!measurement.empty()) {
+      text += summary(measurement);
+    }
     if (report_.project.said()) text += sign();
     return text + "</section>\n";
   }
@@ -161,6 +171,22 @@ class Page {
       text += "</tr>\n";
     }
     return text + "</table>\n";
+  }
+
+  /// Side by side, under the name of their grid.
+  std::string maps() const {
+    std::string text, grid;
+    for (const ReportMap& map : report_.maps) {
+      if (grid != map.values.grid.name) {
+        grid = map.values.grid.name;
+        text += fmt::format("<h2>{}</h2>\n", escaped_xml(said(grid)));
+      }
+      text +=
+          "<div class=\"plan\">\n" +
+          plan_svg(map.values, map.values.total(), map.colours, PlanSize::small, map.surroundings) +
+          "</div>\n";
+    }
+    return text.empty() ? text : "<section class=\"maps\">\n" + text + "</section>\n";
   }
 
   std::string sheets() const {
@@ -345,9 +371,12 @@ std::string report_html(const measuring::Measurement& measurement, const ReportT
   for (std::size_t grid = 0; grid < measurement.size(); ++grid) {
     html += page.grid(measurement[grid], colours, surroundings[grid]);
   }
-  html += "<section class=\"grid\">\n";
-  for (const ReportTable& table : text.tables) html += page.table(table);
-  html += page.sheets() + page.heading("How it was measured") + page.list(text.facts);
+  std::string tables;
+  for (const ReportTable& table : text.tables) tables += page.table(table);
+  if (measurement.empty()) html += std::exchange(tables, {});
+  html += page.maps() + (tables.empty() ? "<section>\n" : "<section class=\"grid\">\n") + tables +
+          page.sheets();
+  html += page.heading("How it was measured") + page.list(text.facts);
   return html + "</section>\n</body>\n</html>\n";
 }
 

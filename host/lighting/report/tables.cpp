@@ -24,6 +24,8 @@ Json statistics_json(const measuring::GridStatistics& statistics) {
           {"Ud", measured_json(statistics.diversity)}};
 }
 
+}  // namespace
+
 Json plane_json(const measuring::PlaneLayout& layout) {
   return {{"origin", vector_json(layout.origin)},
           {"u", vector_json(layout.u)},
@@ -32,6 +34,8 @@ Json plane_json(const measuring::PlaneLayout& layout) {
           {"rows", layout.rows},
           {"cells", layout.cells}};
 }
+
+namespace {
 
 Json sensor_json(const measuring::GridValues& values, std::size_t sensor) {
   const Sensor& place = values.grid.sensors[sensor];

@@ -60,6 +60,9 @@ inline nlohmann::ordered_json measured_json(const Measured& measured) {
   return {{"value", measured.value}, {"standard_error", measured.standard_error}};
 }
 
+/// A rectangle of cells, as JSON has it.
+nlohmann::ordered_json plane_json(const measuring::PlaneLayout& layout);
+
 /// Rows in columns that are as wide as their widest text, two blanks apart; the first is aligned to
 /// the left, all others to the right.
 std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows);

@@ -7,7 +7,7 @@ namespace photile::report {
 namespace {
 
 /// English and German. A further language is a further column, and a name in `languages`.
-constexpr std::array<std::array<std::string_view, 2>, 86> table{{
+constexpr std::array<std::array<std::string_view, 2>, 91> table{{
     {"Illuminance", "Beleuchtungsst\u00e4rke"},
     {"project", "Projekt"},
     {"client", "Auftraggeber"},
@@ -98,6 +98,11 @@ constexpr std::array<std::array<std::string_view, 2>, 86> table{{
     {"errors", "Fehler"},
     {"program", "Programm"},
     {"mood", "Lichtszene"},
+    {"observers", "Beobachter"},
+    {"the highest UGR", "h\u00f6chster UGR"},
+    {"grid", "Raster"},
+    {"weather", "Wetterdaten"},
+    {"sky", "Himmel"},
 }};
 
 }  // namespace
