@@ -34,6 +34,7 @@
 #include "report/included_results.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/plan_lines.hpp"
+#include "report/printing.hpp"
 #include "report/report.hpp"
 #include "weather/weather_file.hpp"
 

@@ -20,6 +20,7 @@
 #include "report/honeybee_files.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/plan_lines.hpp"
+#include "report/printing.hpp"
 #include "report/report.hpp"
 #include "report/tables.hpp"
 #include "report/words.hpp"

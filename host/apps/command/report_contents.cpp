@@ -17,7 +17,7 @@
 #include "photile/light_layers.hpp"
 #include "report/false_colour.hpp"
 #include "report/plan_lines.hpp"
-#include "report/report.hpp"
+#include "report/printing.hpp"
 #include "report/tables.hpp"
 #include "scene/surface_models.hpp"
 #include "view/moods.hpp"

@@ -18,7 +18,7 @@
 #include "publish/room_mesh.hpp"
 #include "publish/sections.hpp"
 #include "report/palette.hpp"
-#include "report/report.hpp"
+#include "report/printing.hpp"
 #include "scene/light_emission.hpp"
 #include "trace/distant_light.hpp"
 #include "weather/sky_patches.hpp"

@@ -76,8 +76,12 @@ ReportTable daylight_table(const json& grids) {
       {"grid", "mean, lux", "DA", "sDA", "ASE", "EN 17037: half of the area", "95% of it"},
       {}};
   for (const json& grid : grids) {
-    const auto share = [&](const char* key) {
-      return grid.contains(key) ? fmt::format("{:.1f}%", 100 * grid[key].get<double>()) : "";
+    const json errors = grid.value("standard_errors", json::object());
+    const auto share = [&](const char* key) -> std::string {
+      if (!grid.contains(key)) return "";
+      const double value = 100 * grid[key].get<double>();
+      if (!errors.contains(key)) return fmt::format("{:.1f}%", value);
+      return fmt::format("{:.1f} \u00b1 {:.2g}%", value, 100 * errors[key].get<double>());
     };
     const auto lux = [&](const char* key) {
       return fmt::format("{:.0f} lux", grid.at("EN 17037").at(key).get<double>());

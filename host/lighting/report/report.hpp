@@ -1,10 +1,8 @@
-// A measurement as pages for people who plan light, and HTML pages as PDF.
+// A measurement as pages for people who plan light.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -78,27 +76,5 @@ struct ReportText {
 std::string report_html(const measuring::Measurement& measurement, const ReportText& text,
                         const FalseColour& colours,
                         const std::vector<PlanSurroundings>& surroundings);
-
-/// The page as PDF, on the paper that its style names, by WeasyPrint in a process of its own
-/// (Debian's package weasyprint). Errors: OutputError where it is missing or fails.
-std::string pdf_of(const std::string& html);
-
-/// RFC 4648, for files within a page.
-std::string base64(std::string_view bytes);
-
-/// Among the system's temporary files; removed with what it holds at the end.
-class ScratchFolder {
- public:
-  /// Errors: OutputError.
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace photile::report
