@@ -87,13 +87,10 @@ def wrapped(command, width=110):
 
 
 def picture_in(folder, name):
-    """A picture that a command left, or a page of a PDF: report.pdf gives report-1.png and report-last.png."""
+    """A picture that a command left, or a page of a PDF: report.pdf gives report-1.png."""
     file = folder / name
     if "-" in name and (pdf := folder / (name.rsplit("-", 1)[0] + ".pdf")).is_file():
         page = name.rsplit("-", 1)[1].removesuffix(".png")
-        if page == "last":
-            told = subprocess.run(["pdfinfo", pdf], check=True, text=True, capture_output=True).stdout
-            page = re.search(r"Pages:\s+(\d+)", told)[1]
         subprocess.run(["pdftoppm", "-png", "-r", "120", "-f", page, "-l", page, "-singlefile", pdf,
                         file.with_suffix("")], check=True)
     if not file.is_file():

@@ -26,7 +26,7 @@ SIX = """[{"name": "window_row", "file": "panel.ies", "position": [3, 2.795, 3.7
   "count": [3, 1], "spacing": [2, 0]}]
 """
 DESKS = """{"name": "desks", "origin": [2.2, 0.75, 4.1], "u": [1.6, 0, 0], "v": [0, 0, -3.4],
- "surroundings": 0.5}
+ "surroundings": 0.4, "background": 3}
 """
 EYES = """# four who sit, and look over their screens
 1.98 1.2 1.5   1 0 0
@@ -60,20 +60,25 @@ STEPS = (
          {"six.svg": "Six panels in two rows"}, PLANE),
     Step("That is enough for the whole room, and as even as one may ask. The first plan was the lumen method by eye; the "
          "second is what it takes at the end of the maintenance cycle.\n\n"
-         "## With furniture\n\nThe furnished file has four desks. Their tops are the task, the half metre around "
-         "them is its surroundings:", files={"desks.json": DESKS}),
+         "## With furniture\n\nThe furnished file has four desks. Their tops are the task, 0.4 m around "
+         "them its surroundings (the standard's half metre would reach into the shelf), and what the room has up to three "
+         "metres beyond that the background:", files={"desks.json": DESKS}),
     Step("Four people sit there. Does the lighting dazzle them?", files={"eyes.pts": EYES}),
     Step("", f"photile glare office.gltf {LAMPS} --observers eyes.pts --ratings ugr --target office-desk "
          "-o glare.json", {}, ("observer", "eyes", "target")),
     Step("It does not: prisms dim the panels towards the horizon, and all four see less than the 19 that the standard "
          "allows. `photile ies panel.ies --ugr-table` would have said so before any room was there. An opal panel of the "
-         "same lumens would be worth the same commands: another `file` in `lamps.json`.\n\n"
-         "## Daylight\n\nHow much of the daylight outside reaches the desks under an overcast sky?",
+         "same lumens would be worth the same commands: another `file` in `lamps.json`.\n\nAnd elsewhere in the room? "
+         "Observers at the grid of EN 12464-1 who look four ways, for a map in the report:",
+         f"photile glare office.gltf {LAMPS} --grid -o everywhere.json", {}, ("highest",)),
+    Step("## Daylight\n\nHow much of the daylight outside reaches the desks under an overcast sky?",
          f"photile measure office.gltf {SURFACES} --grid desks.json --daylight-factor", {},
          ("desks", "DF", "all lights")),
     Step("The window row of desks has several times what the inner one has, so the two rows of lamps earn their own "
-         "switches. And over a year, with lamps that are dimmed to what daylight lacks of 500 lux?",
-         f"photile daylight office.gltf {LAMPS} --weather year.epw --grid desks.json --lamps-to 500 -o year.json",
+         "switches. And over a year, with lamps that are dimmed to what daylight lacks of 500 lux? Ten seconds of rays "
+         "give the figures errors:",
+         f"photile daylight office.gltf {LAMPS} --weather year.epw --grid desks.json --lamps-to 500 "
+         "--for 10s -o year.json",
          {}, ("desks", "sDA", "ASE", "DA", "UDI", "EN", "window_row", "inner_row", "lamps", "mean")),
     Step("EN 17037 calls that medium, and daylight saves nine tenths of the lamps' energy. But half of the points have more "
          "than 250 hours of sun a year (ASE): these windows need blinds, and glare by daylight is to be rated with "
@@ -86,17 +91,20 @@ STEPS = (
          f"photile render office.gltf {LAMPS} --size 960x640 -o office.exr"),
     Step("Moods are kept in the window, or written by hand beside the scene; a power of 0 is off:",
          files={"office.moods.json": MOODS}),
-    Step("", "photile relight office.exr --mood presentation -o presentation.png",
-         {"presentation.png": "Presentation: the inner row warm and dimmed, the window row nearly off"}),
-    Step("A mood that names a lamp which is not there is refused, with the likest names.\n\n## The report\n\nOne command measures the task, its surroundings, walls, ceiling and faces, and brings all of "
-         "it together:",
+    Step("", "photile relight office.exr --sheet moods.png",
+         {"moods.png": "Both moods with one exposure and one white"}),
+    Step("A mood that names a lamp which is not there is refused, with the likest names.\n\n## The report\n\nOne command measures the task, its surroundings, the background, walls, ceiling and faces, and brings all of "
+         "it together, with the maintenance factor by its parts:",
          f"photile measure office.gltf {LAMPS} --grid desks.json --walls --ceiling --cylindrical-at floor+1.2 "
-         "--maintenance 0.8 --target office-desk -s auto --picture office.exr --include glare.json --include year.json "
+         "--maintenance LLMF=0.92,LSF=1,LMF=0.92,RSMF=0.945 --target office-desk -s auto --picture office.exr "
+         "--include glare.json --include everywhere.json --include year.json "
          "--project 'Office 3.07' --client 'The Client Ltd' --designer 'A. Designer' -o report.html -o report.pdf",
          {"report-1.png": "The first page of report.pdf"}, ("target", *FIGURES)),
-    Step("All is met: the report may be handed over. Its pages hold each mood in its colours and in lux, plans with lamps and "
-         "furniture, the observers' glare, the year, the schedule of lamps, reflectances, and settings with seed, version "
-         "and date, from which the same figures come again. It ends with lines to sign on:", pictures={"report-last.png": "The last page"}),
+    Step("All is met: the report may be handed over, and signed on its first page. A page for each grid has its figures, and "
+         "its plan at a scale with furniture, luminaires and isolines; then come maps of glare and of the year:",
+         pictures={"report-3.png": "The desks, at 1:40", "report-12.png": "UGR, daylight autonomy and useful daylight"}),
+    Step("The last pages hold the schedule of lamps, the list of parts, reflectances, data sheets, and settings with seed, "
+         "version and date, from which the same figures come again."),
 )
 
 

@@ -207,6 +207,14 @@ TEST_CASE("white balance makes the light of all lamps white in PNGs, and changes
   CHECK(blue_over_red(write(warm, "off.png", "off")) < 0.6 * plain);
   CHECK(blue_over_red(write(warm, "on.png", "")) == Approx(plain).epsilon(0.05));
   CHECK(write(warm, "off.exr", "off").channels == write(warm, "on.exr", "").channels);
+  // A sheet has the white of the lamps as rendered: a warm mood is seen to be warm.
+  succeed({"relight", picture, "--light", "left=6504K", "--light", "right=6504K", "-o",
+           folder / "white.exr"});
+  folder.write("white.moods.json", R"({"photile_moods": 1, "moods": {
+      "warm": {"left": {"kelvin": 2700}, "right": {"kelvin": 2700}}, "as it is": {}}})");
+  const std::vector<std::string> sheet{"relight", folder / "white.exr", "--sheet"};
+  CHECK(blue_over_red(write(sheet, "sheet.png", "")) ==
+        Approx(blue_over_red(write(sheet, "as_it_is.png", "off"))).epsilon(0.01));
 }
 
 TEST_CASE("layers of 11 bits are near to those of 24, in less room, and lossy ones in less still") {

@@ -50,27 +50,24 @@ void print_lights(const LightMix& mix) {
   for (const std::string& line : sky_summary(mix)) std::cout << line << '\n';
 }
 
-/// The picture in each mood, all with one exposure and one white. Errors: those of mood_of_picture.
+/// The picture in each mood, all with one exposure and the white of the lamps as rendered. Errors:
+/// those of mood_of_picture.
 void write_sheet(const RelightOptions& options, const std::vector<LightChange>& changes) {
   const std::filesystem::path file = moods_of_picture(options.moods_file, options.input);
   const std::vector<std::string> names =
       options.moods.empty() ? view::Moods(file).names() : options.moods;
   if (names.empty()) throw UsageError(file.string() + ": there are no moods for a contact sheet");
   std::vector<Image> pictures;
-  glm::vec3 white(0.0f);
   for (const std::string& mood : names) {
     const auto asked = mood_of_picture({mood, file.string()}, options.input);
     const auto picture = relit_picture(options.input, joined(asked, changes));
     pictures.push_back(picture->root());
-    const ToneMapping shown = shown_as(options.pictures, *picture);
-    white += glm::vec3(shown.white[0], shown.white[1], shown.white[2]);
     throw_if_stop_requested();
   }
   std::vector<const Image*> all;
   for (const Image& picture : pictures) all.push_back(&picture);
-  ToneMapping shared = with_one_exposure(options.pictures.tone_mapping, all);
-  white /= static_cast<float>(names.size());
-  shared.white = {white.r, white.g, white.b};
+  const ToneMapping shared =
+      with_one_exposure(shown_as(options.pictures, *relit_picture(options.input, {})), all);
   walk::ContactSheet sheet(static_cast<int>(names.size()), pictures[0].width, pictures[0].height);
   for (std::size_t i = 0; i < names.size(); ++i) {
     sheet.add(static_cast<int>(i), tone_map(pictures[i], shared), names[i]);

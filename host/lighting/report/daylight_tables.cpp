@@ -41,8 +41,9 @@ std::string hours_of(const DaylightAsked& asked) {
 
 /// "83.9%", with its standard error where there is one.
 std::string percent(double share, std::optional<double> error) {
-  return error ? fmt::format("{:.1f} +-{:.2g}%", 100 * share, 100 * *error)
-               : fmt::format("{:.1f}%", 100 * share);
+  if (!error) return fmt::format("{:.1f}%", 100 * share);
+  constexpr double least = 5e-5;  // of a per cent: what is less says nothing
+  return fmt::format("{:.1f} +-{:.1g}%", 100 * share, 100 * *error < least ? 0 : 100 * *error);
 }
 
 /// By the hour whether any blinds are closed.
