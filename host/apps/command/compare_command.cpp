@@ -205,12 +205,14 @@ void run_compare(const CompareOptions& options) {
   throw_if_stop_requested();
   if (!options.picture.empty()) {
     const auto unit = first.whole.attributes.find("photile.units");
-    write_png(
-        options.picture,
-        report::draw_comparison(first.whole, second.whole,
-                                {first.name, second.name,
-                                 unit == first.whole.attributes.end() ? "luminance" : unit->second,
-                                 options.scale, options.tone_mapping}));
+    PictureOptions display;  // one white: that of the first, where its lights are known
+    display.tone_mapping = options.tone_mapping;
+    write_png(options.picture,
+              report::draw_comparison(
+                  first.whole, second.whole,
+                  {first.name, second.name,
+                   unit == first.whole.attributes.end() ? "luminance" : unit->second, options.scale,
+                   first.layers ? shown_as(display, *first.layers) : options.tone_mapping}));
   }
   if (moods) {
     const report::LevelComparison levels =

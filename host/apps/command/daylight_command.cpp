@@ -28,12 +28,10 @@
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
-#include "photile/ray_scene.hpp"
 #include "photile/sensors.hpp"
 #include "report/honeybee_files.hpp"
 #include "report/included_results.hpp"
 #include "report/plan_drawing.hpp"
-#include "report/plan_lines.hpp"
 #include "report/printing.hpp"
 #include "report/report.hpp"
 #include "weather/weather_file.hpp"
@@ -95,10 +93,7 @@ report::ReportText pages_of(const DaylightOptions& options, const Scene& scene,
                             const nlohmann::ordered_json& record, std::size_t rounds) {
   report::IncludedResults shown;
   report::include_result(nlohmann::json::parse(record.dump()), std::nullopt, shown);
-  const RayScene rays(scene);
-  for (report::ReportMap& map : shown.maps) {
-    map.surroundings = report::surroundings_of(rays, *map.values.grid.layout);
-  }
+  add_surroundings(scene, shown.maps);
   report::ReportText text;
   text.title = scene.source.filename().string();
   text.subject = "A year of daylight";
@@ -141,20 +136,6 @@ void write(const DaylightOptions& options, const Scene& scene,
   for (const auto& [name, content] : report::annual_files(results, hours)) {
     make_folder((folder / name).parent_path());
     write_file(folder / name, content);
-  }
-}
-
-/// DA and UDI of each plane.
-void note_plans(const DaylightOptions& options, const std::vector<measuring::SensorGrid>& grids) {
-  const auto planes = static_cast<std::size_t>(std::count_if(
-      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
-  for (const std::filesystem::path file : options.outputs) {
-    if (file.extension() != ".svg") continue;
-    if (planes == 0) {
-      throw UsageError(fmt::format("{}: points have no plan; give a plane, by --plane or --grid",
-                                   file.string()));
-    }
-    for (const auto& name : plan_names(file, 2 * planes)) note_output(name);
   }
 }
 
@@ -274,7 +255,11 @@ void run_daylight(DaylightOptions& options) {
       note_output(folder / name);
     }
   }
-  note_plans(options, grids);
+  const auto planes = static_cast<std::size_t>(std::count_if(
+      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
+  for (const std::filesystem::path file : options.outputs) {
+    if (file.extension() == ".svg") note_plans(file, 2 * planes);  // DA and UDI
+  }
   take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(

@@ -226,14 +226,7 @@ void MeasureOutputs::check_names(const std::vector<measuring::SensorGrid>& grids
   }
   const auto planes = static_cast<std::size_t>(std::count_if(
       grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
-  for (const auto& file : svg_) {
-    if (planes == 0) {
-      throw UsageError(fmt::format("{}: points have no plan; measure a plane, by --plane or --grid",
-                                   file.string()));
-    }
-    if (planes == 1) continue;  // noted under its own name
-    for (const auto& name : plan_names(file, planes)) note_output(name);
-  }
+  for (const auto& file : svg_) note_plans(file, planes);
 }
 
 void MeasureOutputs::check_moods(const std::filesystem::path& moods) const {
@@ -303,10 +296,7 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
                           run.included.kilowatt_hours);
   text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
   text.maps = run.included.maps;
-  const RayScene rays(run.scene);
-  for (report::ReportMap& map : text.maps) {
-    map.surroundings = report::surroundings_of(rays, *map.values.grid.layout);
-  }
+  add_surroundings(run.scene, text.maps);
   if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
   const std::string page = report::report_html(measurement, text, colours_, surroundings);
   for (const auto& file : html_) write_file(file, page);

@@ -12,9 +12,12 @@
 
 #include "command/scene_report.hpp"
 #include "command/terminal_progress.hpp"
+#include "common/files.hpp"
+#include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/ray_scene.hpp"
 #include "report/false_colour.hpp"
 #include "report/plan_lines.hpp"
 #include "report/printing.hpp"
@@ -85,6 +88,22 @@ std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
     if (mix.lights[groups.group_of[i]].unit == PowerUnit::watt) lumens[i] *= mix.lumen_per_watt;
   }
   return lumens;
+}
+
+void note_plans(const std::filesystem::path& file, std::size_t plans) {
+  if (plans == 0) {
+    throw UsageError(
+        fmt::format("{}: points have no plan; give a plane, by --plane or --grid", file.string()));
+  }
+  if (plans == 1) return;
+  for (const auto& name : plan_names(file, plans)) note_output(name);
+}
+
+void add_surroundings(const Scene& scene, std::vector<report::ReportMap>& maps) {
+  const RayScene rays(scene);
+  for (report::ReportMap& map : maps) {
+    map.surroundings = report::surroundings_of(rays, *map.values.grid.layout);
+  }
 }
 
 std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy) {

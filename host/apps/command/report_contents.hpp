@@ -24,6 +24,13 @@ std::string today();
 /// The file of each of several plans: numbered where they are more than one.
 std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file, std::size_t plans);
 
+/// Notes them for check_outputs, which knows the file of one plan already. Errors: UsageError where
+/// there is nothing to draw; those of note_output.
+void note_plans(const std::filesystem::path& file, std::size_t plans);
+
+/// What is around the planes of maps.
+void add_surroundings(const Scene& scene, std::vector<report::ReportMap>& maps);
+
 /// W that each layer of the mix takes from the mains: in proportion to its lumens what its
 /// luminaires' files state, and where one of them states nothing by an efficacy (lm/W).
 std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy);

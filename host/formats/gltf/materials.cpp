@@ -145,7 +145,7 @@ MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
   if (unsaid) {
     model.base_color = glm::dvec3(scene::missing_albedo);
     model.metallic = model.specular_factor = 0;
-    warn("the file says nothing of its surface; it is matt grey (0.5)");
+    warn("the file says nothing of its surface; it is matt grey (0.5); --reflectance sets another");
     return model;
   }
   model.base_color = glm::clamp(rgb_of(pbr.baseColorFactor, glm::dvec3(1.0)), 0.0, 1.0);

@@ -152,6 +152,7 @@ void add_daylight_maps(const json& grid, IncludedResults& results) {
   if (!grid.contains("plane")) return;
   FalseColour percent;
   percent.scale = 100;
+  percent.steps = 10;
   percent.label = "%";
   const auto add = [&](const std::string& figure, const auto& share) {
     results.maps.push_back(map_of(
@@ -169,7 +170,7 @@ void add_daylight_maps(const json& grid, IncludedResults& results) {
 void add_glare_map(const json& record, IncludedResults& results) {
   if (!record.contains("plane")) return;
   FalseColour ratings;
-  ratings.scale = 30;
+  ratings.scale = 32;
   ratings.label = "UGR";
   results.maps.push_back(map_of(record["plane"], "observers", "the highest UGR", ratings,
                                 record.at("observers"), ugr_of));
