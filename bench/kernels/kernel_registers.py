@@ -52,8 +52,6 @@ VARIANTS = [
     *((f"{lanes} lanes, k = {k}, {'clipped' if clipped else 'disc'}", "estimate/estimate.cl",
        "estimate_by_selection", estimate(k, lanes, **({"CLIPPED": 1} if clipped else {})), lanes)
       for lanes in (32, 64) for k, clipped in ((50, False), (50, True), (1000, True))),
-    *((f"{lanes} lanes, k = 50, disc, distances in private memory", "estimate/estimate.cl", "estimate_by_selection",
-       estimate(50, lanes, PRIVATE_DISTANCES=1), lanes) for lanes in (32, 64)),
     *((f"{lanes} lanes, k = 50, clipped, glossy", "estimate/estimate.cl", "estimate_by_selection",
        estimate(50, lanes, **GLOSSY), lanes) for lanes in (32, 64)),
     *((f"{lanes} lanes, k = 50, clipped, 20 lights", "estimate/estimate.cl", "estimate_by_selection",

@@ -30,25 +30,30 @@ std::vector<EstimateTuning> tunings_of(const DeviceInfo& device) {
     if (width == shipped.vector_width) return;
     tunings.push_back(shipped);
     tunings.back().vector_width = width;
-    if (lanes) tunings.back().work_group_size = width;
+    if (lanes) {
+      tunings.back().work_group_size = width;
+      tunings.back().shuffles = shipped.shuffles && width <= estimate::warp_width;
+    }
   };
   if (lanes) {
     for (const int width : estimate::lane_widths) add_width(width);
-    tunings.push_back(shipped);
-    tunings.back().private_distances = true;
+    if (shipped.shuffles) {
+      tunings.push_back(tunings.back());
+      tunings.back().vector_width = tunings.back().work_group_size = estimate::warp_width;
+    }
     tunings.push_back(shipped_tuning(device, EstimateStrategy::select));
   } else {
     for (const int width : estimate::vector_widths) add_width(width);
   }
   tunings.push_back(shipped);
-  tunings.back().hits_per_item = 1;
+  tunings.back().hits_per_item = lanes ? 4 : 1;
   return tunings;
 }
 
 /// "lanes 32 x 4": the width, and the hits in turn.
 std::string name_of(const EstimateTuning& tuning) {
   return fmt::format("{} {} x {}{}", photile::name_of(tuning.strategy), tuning.vector_width,
-                     tuning.hits_per_item, tuning.private_distances ? ", private" : "");
+                     tuning.hits_per_item, tuning.shuffles ? ", shuffles" : "");
 }
 
 class StrategiesBench {
@@ -121,7 +126,7 @@ class StrategiesBench {
     for (Case& one : cases) {
       faults_ += check.count_faults(fmt::format("{}, {}", row.dump(), one.name), one.estimator,
                                     one.estimates);
-      row[one.name] = std::round(1e9 * one.least / static_cast<double>(hits.size()));
+      row[one.name] = std::round(1e11 * one.least / static_cast<double>(hits.size())) / 100;
     }
   }
 

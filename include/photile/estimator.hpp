@@ -38,15 +38,17 @@ struct EstimateTuning {
   int hits_per_item = 1;
   /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
   int work_group_size = 64;
-  /// `lanes` only: whether each keeps its distances in private memory, not in local. The same bits.
-  bool private_distances = false;
+  /// `lanes` of 16 or 32 on NVIDIA's devices of compute capability 8.0 and later: whether they
+  /// exchange values by shuffles in place of local memory and barriers. The same bits.
+  bool shuffles = false;
 
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
 };
 
 /// What estimators use unless asked for another: vector width 16 on every CPU, whatever its own
-/// width, so that pictures agree in every bit between CPUs; elsewhere `lanes`, of as many
-/// work-items as the device runs in step, or of 32 where it does not say.
+/// width, so that pictures agree in every bit between CPUs; elsewhere `lanes`: of 16 work-items
+/// where they have shuffles, else of as many as the device runs in step, or of 32 where it does not
+/// say.
 EstimateTuning shipped_tuning(const DeviceInfo& device);
 
 /// With this strategy, as wide as suits it on the device.

@@ -29,7 +29,7 @@ __kernel WORKER_GROUP void estimate_by_selection(
     __global const PhotileSurfaceNode* surface_nodes,
     __global const PhotileSurfaceLeaf* surface_leaves, __global float* irradiance,
     __global float* radiance, __global ushort* slot_light, __global uint* slots_taken) {
-  WORKER_SPACE WorkerMemory memory;
+  WORKER_MEMORY(WorkerMemory, memory);
   const PhotonRecords records = {query.record_stride, record_photon, record_position,
                                  record_flux,         record_light,  record_incoming};
   const Surface surface = {surface_nodes, surface_leaves, query.least_cosine};
@@ -50,6 +50,6 @@ __kernel WORKER_GROUP void estimate_by_selection(
     Candidates candidates;
     begin_candidates(&candidates, &query, grid, cell_start, record_position, record_normal, &hit);
     expected = estimate_hit(&candidates, &records, grid, &surface, &hit, &query, expected, &empty,
-                            &estimates, &memory);
+                            &estimates, memory);
   }
 }

@@ -31,8 +31,8 @@ __kernel WORKER_GROUP void nearest_by_selection(
     __global const uint* cell_start, __global const uint* record_photon,
     __global const float* record_position, __global const float* record_normal,
     __global uint* neighbours, __global float* squared_radius) {
-  WORKER_SPACE WorkerMemory memory;
-  WORKER_SPACE uint listed;
+  WORKER_MEMORY(WorkerMemory, memory);
+  WORKER_MEMORY(uint, listed);
   const uint k = query.k;
   for (uint h = WORKER; h < query.hit_count; h += WORKERS) {
     const uint index = query.first_hit + h;
@@ -46,26 +46,26 @@ __kernel WORKER_GROUP void nearest_by_selection(
     begin_candidates(&candidates, &query, grid, cell_start, record_position, record_normal, &hit);
     Chunks chunks;
     Neighbourhood near;
-    find_neighbourhood(&candidates, &chunks, k, k, query.radius, 0.0f, grid, &near, &memory);
+    find_neighbourhood(&candidates, &chunks, k, k, query.radius, 0.0f, grid, &near, memory);
 
     __global uint* list = neighbours + (size_t)index * k;
     simd_float farther = 0.0f;  // negative, so that the smallest is the farthest
     synchronise_lanes();        // all have read the count of the list before
-    if (LANE == 0) listed = 0;
+    if (LANE == 0) *listed = 0;
     Walk walk;
     begin_walk(&walk, &candidates);
     do {
-      next_chunks(&candidates, &walk, &chunks, &memory);
+      next_chunks(&candidates, &walk, &chunks, memory);
       for (uint i = 0; i < chunks.count; ++i) {
-        const simd_float d = kept_distances(&chunks, &memory, i);
+        const simd_float d = kept_distances(&chunks, memory, i);
         const simd_int is_near = d < near.below;
-        list_lanes(record_photon, kept_record(&chunks, &memory, i), is_near, list, &listed);
+        list_lanes(record_photon, kept_record(&chunks, memory, i), is_near, list, listed);
         farther = select(farther, -d, is_near & (-d < farther));
       }
     } while (walk.row < candidates.block.height);
-    float farthest = -smallest_lane(farther, &memory);
+    float farthest = -smallest_lane(farther, memory);
     if (near.tied > 0) {
-      list_tied(&candidates, &near, record_photon, listed, list);
+      list_tied(&candidates, &near, record_photon, *listed, list);
       farthest = near.below;
     }
     // The k-th is the farthest of the neighbours.

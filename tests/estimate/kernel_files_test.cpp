@@ -34,9 +34,11 @@ std::filesystem::path kernel_root() { return std::filesystem::path(source_folder
 /// The compiler's call but for its output: `mode` says what it is to do.
 std::string clang_command(const std::string& mode, const std::string& options,
                           const std::string& file) {
+  // Shuffles are instructions of NVIDIA's processors.
+  const bool shuffles = options.find("SHUFFLES") != std::string::npos;
   return fmt::format(
-      "'{}' -x cl -cl-std=CL1.2 {} -Wall -Werror -Wno-unused-function -I '{}' -I '{}' {} '{}'",
-      PHOTILE_CLANG, mode, kernel_root().string(),
+      "'{}' -x cl -cl-std=CL1.2 {}{} -Wall -Werror -Wno-unused-function -I '{}' -I '{}' {} '{}'",
+      PHOTILE_CLANG, shuffles ? "-target nvptx64-nvidia-nvcl " : "", mode, kernel_root().string(),
       (std::filesystem::path(source_folder()) / "include").string(), options,
       (kernel_root() / file).string());
 }
@@ -60,9 +62,11 @@ std::vector<EstimateTuning> all_tunings() {
     tunings.push_back({.strategy = EstimateStrategy::select, .vector_width = width});
   }
   for (const int width : estimate::lane_widths) {
-    tunings.push_back({.strategy = EstimateStrategy::lanes,
-                       .vector_width = width,
-                       .private_distances = width == 32});
+    tunings.push_back({.strategy = EstimateStrategy::lanes, .vector_width = width});
+  }
+  for (const int width : {16, 32}) {
+    tunings.push_back(
+        {.strategy = EstimateStrategy::lanes, .vector_width = width, .shuffles = true});
   }
   return tunings;
 }

@@ -15,6 +15,9 @@ inline std::vector<EstimateTuning> tunings_of(const DeviceInfo& device) {
   for (const EstimateStrategy strategy : all_estimate_strategies) {
     if (strategy == EstimateStrategy::lanes && shipped != strategy) continue;
     tunings.push_back(shipped_tuning(device, strategy));
+    if (!tunings.back().shuffles) continue;
+    tunings.push_back(tunings.back());
+    tunings.back().shuffles = false;
   }
   return tunings;
 }

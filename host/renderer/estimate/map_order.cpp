@@ -1,7 +1,9 @@
 #include "estimate/map_order.hpp"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
-#include <numeric>
 
 namespace photile::estimate {
 namespace {
@@ -11,9 +13,9 @@ template <class T>
 std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> order,
                       std::size_t first = 0) {
   if (values.empty()) return {};
-  std::vector<T> result;
-  result.reserve(order.size());
-  for (const std::uint32_t i : order) result.push_back(values[first + i]);
+  std::vector<T> result(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(),
+                    [&](std::size_t i) { result[i] = values[first + order[i]]; });
   return result;
 }
 
@@ -21,10 +23,13 @@ std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_
 
 std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps) {
   if (std::is_sorted(maps.begin(), maps.end())) return {};
+  // All cores sort: a GPU waits for it. No two keys are equal, which makes it stable.
+  std::vector<std::uint64_t> keys(maps.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = std::uint64_t{maps[i]} << 32 | i;
+  tbb::parallel_sort(keys);
   std::vector<std::uint32_t> order(maps.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return maps[a] < maps[b]; });
+  std::transform(keys.begin(), keys.end(), order.begin(),
+                 [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
   return order;
 }
 

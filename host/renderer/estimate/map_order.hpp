@@ -1,6 +1,9 @@
 // Hits in the order of the maps they lie on.
 #pragma once
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,11 +32,9 @@ template <class T>
 void restore_rows(std::vector<T>& values, std::span<const std::uint32_t> order, std::size_t width) {
   if (values.empty()) return;
   std::vector<T> restored(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t j = 0; j < width; ++j) {
-      restored[order[i] * width + j] = values[i * width + j];
-    }
-  }
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+    std::copy_n(&values[i * width], width, &restored[order[i] * width]);
+  });
   values = std::move(restored);
 }
 

@@ -25,17 +25,17 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
   EstimateTuning tuning;
   tuning.strategy = strategy;
   if (strategy == EstimateStrategy::lanes) {
-    // docs/kernels.md says by what arithmetic; no card has run them.
-    constexpr int usual_width = 32;
+    // Measured on one card: docs/kernels.md#defaults-of-each-kind-of-device.
+    constexpr int usual_width = 32, width_of_shuffles = 16;
     const auto& widths = estimate::lane_widths;
     const auto in_step = static_cast<int>(device.lanes);
     const bool is_width = std::find(widths.begin(), widths.end(), in_step) != widths.end();
-    int width = is_width ? in_step : usual_width;
+    tuning.shuffles = device.compute_capability >= 80;
+    int width = tuning.shuffles ? width_of_shuffles : is_width ? in_step : usual_width;
     while (width > widths.front() && static_cast<unsigned>(width) > device.max_work_group_size) {
       width /= 2;
     }
     tuning.vector_width = tuning.work_group_size = width;
-    tuning.hits_per_item = 4;
   } else if (device.type == DeviceType::cpu) {
     tuning.vector_width = 16;
     tuning.hits_per_item = 16;
@@ -55,6 +55,10 @@ std::string tuning_problem(const EstimateTuning& tuning) {
     }
   } else if (!is_one_of(vector_widths)) {
     return fmt::format("vector width {}: must be 1, 4, 8 or 16", tuning.vector_width);
+  }
+  if (tuning.shuffles && tuning.vector_width > warp_width) {
+    return fmt::format("shuffles among {} lanes: must be at most {}", tuning.vector_width,
+                       warp_width);
   }
   if (tuning.hits_per_item < 1 || tuning.hits_per_item > max_hits_per_item) {
     return fmt::format("{} hits per work-item: must be between 1 and {}", tuning.hits_per_item,
@@ -82,6 +86,13 @@ int rounded_up(int value, int multiple) { return (value + multiple - 1) / multip
 
 constexpr int least_capacity = 256;
 
+/// Work-items of a group where it may hold several that estimate hits of their own, or several
+/// teams of lanes with shuffles.
+constexpr std::size_t usual_group = 64;
+
+/// Local memory that a group of every device with shuffles may have.
+constexpr std::size_t max_local_bytes_of_shuffles = 48u << 10;
+
 /// Distances kept for a hit: a block holds some 3 k candidates in chunks that are four fifths full,
 /// and several times as many where a map holds more than one surface. Chunks of one are counted,
 /// too.
@@ -108,7 +119,10 @@ device::Defines Specialisation::defines() const {
   device::Defines defines;
   const bool lanes = strategy == EstimateStrategy::lanes;
   if (lanes) defines.set("LANES");
-  if (private_distances) defines.set("PRIVATE_DISTANCES");
+  if (shuffles) {
+    defines.set("SHUFFLES");
+    defines.set("GROUP_SIZE", static_cast<long long>(work_group_size));
+  }
   defines.set("VECTOR_WIDTH", static_cast<long long>(vector_width));
   defines.set("CAPACITY", static_cast<long long>(capacity));
   // Lanes list the near records of a hit all at once.
@@ -122,9 +136,9 @@ device::Defines Specialisation::defines() const {
 
 std::size_t Specialisation::work_items(std::uint32_t hits) const {
   const auto divisor = static_cast<std::uint32_t>(hits_per_item);
-  const std::size_t items = hits / divisor + (hits % divisor != 0);
-  return strategy == EstimateStrategy::lanes ? items * static_cast<std::size_t>(vector_width)
-                                             : items;
+  const std::size_t workers = hits / divisor + (hits % divisor != 0);
+  return strategy == EstimateStrategy::lanes ? workers * static_cast<std::size_t>(vector_width)
+                                             : workers;
 }
 
 std::uint32_t Specialisation::nearest_items(std::uint32_t hits) const {
@@ -138,8 +152,7 @@ std::size_t Specialisation::private_bytes() const {
   const auto width = static_cast<std::size_t>(vector_width);
   const bool listed = needs.glossy || needs.many_lights();
   if (strategy == EstimateStrategy::lanes) {
-    const std::size_t kept = private_distances ? static_cast<std::size_t>(capacity) / width : 0;
-    return kept * sizeof(float) + (needs.many_lights() ? 0 : sums.private_bytes());
+    return needs.many_lights() ? 0 : sums.private_bytes();
   }
   std::size_t bytes = sums.private_bytes();
   bytes += static_cast<std::size_t>(capacity) * sizeof(float) +
@@ -161,11 +174,10 @@ std::size_t Specialisation::local_bytes() const {
   const std::size_t flux = many_lights ? width : 1;
   const std::size_t radiance = many_lights && needs.glossy ? width : 1;
   constexpr std::size_t word = sizeof(std::uint32_t);
-  const std::size_t words = 5 * (width + PHOTILE_LANE_COLUMNS) + (private_distances ? 1 : kept) +
-                            chunks + ballot + near + 4 * flux + 3 * radiance +
-                            sums.table_bytes() / word + 1 + PHOTILE_SURFACE_STACK +
-                            PHOTILE_LEAF_QUEUE + PHOTILE_SURFACE_WIDTH;
-  return words * word;
+  const std::size_t words = 5 * (width + PHOTILE_LANE_COLUMNS) + kept + chunks + ballot + near +
+                            4 * flux + 3 * radiance + sums.table_bytes() / word + 1 +
+                            PHOTILE_SURFACE_STACK + PHOTILE_LEAF_QUEUE + PHOTILE_SURFACE_WIDTH;
+  return work_group_size / width * words * word;
 }
 
 Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs, int neighbours) {
@@ -176,17 +188,23 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
   choice.neighbours = neighbours;
   choice.needs = needs;
   choice.sums = LightSums(needs, static_cast<std::uint32_t>(neighbours));
-  choice.work_group_size = static_cast<std::size_t>(tuning.work_group_size);
-  choice.private_distances = choice.strategy == EstimateStrategy::lanes && tuning.private_distances;
+  const bool lanes = choice.strategy == EstimateStrategy::lanes;
+  choice.work_group_size =
+      static_cast<std::size_t>(lanes ? tuning.vector_width : tuning.work_group_size);
+  choice.shuffles = lanes && tuning.shuffles;
   if (choice.local_bytes() > max_local_bytes) {
     choice.strategy = EstimateStrategy::select;
     choice.vector_width = 1;
-    choice.private_distances = false;
+    choice.shuffles = false;
     choice.capacity = capacity_for(neighbours, choice.strategy, choice.vector_width);
+    choice.work_group_size = usual_group;
   }
   choice.hits_per_item = tuning.hits_per_item;
   if (choice.strategy == EstimateStrategy::lanes) {
-    choice.work_group_size = static_cast<std::size_t>(choice.vector_width);
+    while (choice.shuffles && choice.work_group_size < usual_group &&
+           2 * choice.local_bytes() <= max_local_bytes_of_shuffles) {
+      choice.work_group_size *= 2;
+    }
     return choice;
   }
   bound_group(choice);
@@ -196,8 +214,9 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
 Specialisation independent_of_k(Specialisation choice) {
   choice.strategy = EstimateStrategy::select;
   choice.vector_width = 1;
-  choice.private_distances = false;
+  choice.shuffles = false;
   choice.capacity = least_capacity;
+  choice.work_group_size = usual_group;
   bound_group(choice);
   return choice;
 }

@@ -15,6 +15,7 @@ namespace photile::estimate {
 
 inline constexpr std::array vector_widths = {1, 4, 8, 16};
 inline constexpr std::array lane_widths = {16, 32, 64};  ///< of EstimateStrategy::lanes
+inline constexpr int warp_width = 32;                    ///< of NVIDIA's devices
 inline constexpr int max_hits_per_item = 64;
 inline constexpr int max_work_group_size = 256;
 
@@ -51,7 +52,7 @@ struct Specialisation {
   /// Distances kept, in private memory by `select`, in local by `lanes`.
   int capacity = 256;
   int neighbours = 1;              ///< k
-  bool private_distances = false;  ///< `lanes` keep them in private memory
+  bool shuffles = false;           ///< `lanes` exchange values by instructions of NVIDIA's
   int hits_per_item = 1;           ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
   SceneNeeds needs;
