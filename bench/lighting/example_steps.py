@@ -67,7 +67,7 @@ def kept_output_of(photile, command, folder):
 
 
 def quick(command):
-    command = re.sub(r" --size \S+", "", command)
+    command = re.sub(r" --size \S+", "", command).replace(" --for 10s", " --for 1s")
     return " ".join([command, *(less for word, less in QUICK.items() if command.split()[1] == word)])
 
 

@@ -63,6 +63,32 @@ TEST_CASE("a frame is shown as a picture of the same light is written") {
   }
 }
 
+TEST_CASE("a quick frame has the white of its lamps' powers, another that of their illuminance") {
+  LightMix mix = mix_of(10, 30);
+  mix.lights[0].color = {2.0f, 0.8f, 0.03f};
+  const auto check = [&](const Frame& frame, double first, double second) {
+    const glm::dvec3 sum = first * glm::dvec3(mix.lights[0].color * mix.lights[0].tint) +
+                           second * glm::dvec3(mix.lights[1].color * mix.lights[1].tint);
+    const auto white = white_of(frame, mix);
+    for (int channel = 0; channel < 3; ++channel) {
+      CHECK(double{white[static_cast<std::size_t>(channel)]} ==
+            Approx(sum[channel] / luminance(sum)));
+    }
+  };
+  Frame quick;
+  quick.mixed.emplace_back(1.0f);
+  check(quick, 10, 30);
+  const Frame frame = two_pixels();
+  double lux[2]{};
+  for (int light = 0; light < 2; ++light) {
+    for (int pixel = 0; pixel < 2; ++pixel) {
+      lux[light] +=
+          readings_at(frame, mix, pixel, 0)[static_cast<std::size_t>(light)].illuminance.value;
+    }
+  }
+  check(frame, lux[0], lux[1]);
+}
+
 TEST_CASE("a reading has each light's part of luminance and illuminance") {
   const auto readings = readings_at(two_pixels(), mix_of(10, 100), 0, 0);
   CHECK(readings[0].illuminance.value == Approx(30));

@@ -165,6 +165,7 @@ std::array<float, 3> white_of(const Frame& frame, const LightMix& mix) {
                    });
   }
   for (std::size_t light = 0; light < sums.size(); ++light) {
+    if (!frame.mixed.empty()) sums[light] = 1;
     sums[light] *= lux_of(mix.lights[light], mix);
   }
   return image::white_of_light(sums, mix);
