@@ -17,6 +17,11 @@ namespace {
 /// Hits of a pixel that are compared with each other, at most.
 constexpr std::size_t most_compared = 64;
 
+/// Estimates on surface so near to the one that shows them, in widths, would show their blur there,
+/// as on a bright wall behind a sconce of brass.
+/// Where the reflection is less than this part of what is seen, it does not show.
+constexpr double near_widths = 2, faint_reflection = 0.4;
+
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t pixels_per_task = 64;
 
@@ -48,6 +53,14 @@ double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t>
   return weights > 0 ? variance / (weights * weights) : 0.0;
 }
 
+/// Whether one of these lies so near to a place.
+bool any_near(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
+              const glm::vec3& place, double near) {
+  return std::any_of(chosen.begin(), chosen.end(), [&](std::uint32_t hit) {
+    return double{glm::distance(hits.position[hit], place)} < near;
+  });
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
@@ -57,29 +70,33 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
   const auto [low, high] = std::minmax_element(reflected.pixel.begin(), reflected.pixel.end());
   const auto count = static_cast<std::size_t>(runs);
   const std::size_t first = *low / count, pixels = *high / count - first + 1;
-  std::vector<double> seen_weight(pixels, 0.0);
-  for (std::size_t hit = 0; hit < seen.size(); ++hit) {
-    const std::size_t pixel = seen.pixel[hit] / count;
-    if (pixel >= first && pixel < first + pixels)
-      seen_weight[pixel - first] += weight_of(seen, hit);
-  }
   const IndexRows hits_of = trace::by_pixel(
       reflected.size(), first, pixels, [&](std::size_t i) { return reflected.pixel[i] / count; });
+  const IndexRows seen_of = rows_of(pixels, [&](const auto& put) {
+    for (std::uint32_t hit = 0; hit < seen.size(); ++hit) {
+      const std::size_t pixel = seen.pixel[hit] / count;
+      if (pixel >= first && pixel < first + pixels) put(pixel - first, hit);
+    }
+  });
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, pixels, pixels_per_task),
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
           const std::span<const std::uint32_t> hits = hits_of.of(pixel);
+          const std::span<const std::uint32_t> shown_by = seen_of.of(pixel);
           const double weight = sum_of_weights(reflected, hits);
-          const double tolerated =
-              defaults::tolerated_reflection_noise * (weight + seen_weight[pixel]);
+          const double all = weight + sum_of_weights(seen, shown_by);
+          const double tolerated = defaults::tolerated_reflection_noise * all;
           const double of_estimates = weight * noise.noise;
           if (of_estimates > tolerated &&
               of_estimates * std::sqrt(relative_variance(reflected, hits, noise.width)) >
                   tolerated) {
             continue;
           }
-          for (const std::uint32_t hit : hits) suits[hit] = 1;
+          const double near = weight > faint_reflection * all ? near_widths * noise.width : 0.0;
+          for (const std::uint32_t hit : hits) {
+            suits[hit] = any_near(seen, shown_by, reflected.position[hit], near) ? 0 : 1;
+          }
         }
       });
   return suits;

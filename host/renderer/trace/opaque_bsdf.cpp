@@ -17,6 +17,9 @@ constexpr float narrow_lobe_alpha = 0.3f, faint_lobe_albedo = 0.25f;
 
 /// Rays that follow the lobe of a metal; narrower lobes than this scatter so much less.
 constexpr float most_lobe_rays = 8, scattering_lobe_alpha = 0.04f;
+/// A lobe over a dark base is most of what is seen, however little it reflects: it has half as many
+/// as a metal whose whole reflection it is.
+constexpr float rays_of_share = 0.5f;
 
 }  // namespace
 
@@ -83,7 +86,8 @@ bool OpaqueBsdf::lobe_suits_rays() const {
 int OpaqueBsdf::lobe_rays() const {
   if (!lobe_) return 0;
   const float scatters = std::min(1.0f, surface_.alpha / scattering_lobe_alpha);
-  return std::max(1, static_cast<int>(std::lround(most_lobe_rays * scatters * lobe_->albedo)));
+  const float part = std::max(lobe_->albedo, rays_of_share * lobe_->fraction);
+  return std::max(1, static_cast<int>(std::lround(most_lobe_rays * scatters * part)));
 }
 
 glm::vec3 OpaqueBsdf::base_reflectance() const {
