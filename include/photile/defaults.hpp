@@ -105,9 +105,6 @@ inline constexpr float least_glass_fraction = 0.02f;
 /// What counts less than this in its sample goes on by chance, and counts this much then. A smooth
 /// dielectric seen from the front reflects 0.04, and is always followed.
 inline constexpr float least_lobe_weight = 0.02f;
-/// Noise of photons in a pixel's reflections, relative, that is not seen: about what rays of lobes
-/// leave.
-inline constexpr double tolerated_reflection_noise = 0.1;
 /// Runs of a pixel's samples, whose scatter is their error.
 inline constexpr int runs_of_samples = 4;
 

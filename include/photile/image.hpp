@@ -99,7 +99,8 @@ double automatic_exposure(std::span<const Image* const> scene_referred);
 ToneMapping with_one_exposure(ToneMapping parameters, std::span<const Image* const> scene_referred);
 
 /// Root R, G, B to display-referred values in [0,1], still linear; `write_png` applies the sRGB
-/// curve. Every pixel keeps its hue. NaN and negative values count as 0.
+/// curve. Every pixel keeps its hue, but those on the border of a lamp or a window, which become a
+/// mix of what is displayed on both sides of it. NaN and negative values count as 0.
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters);
 
 /// Errors of a picture. Pixels that see a light, more than 20 times as bright as the reference's

@@ -133,6 +133,28 @@ TEST_CASE("the neutral view keeps order and hue and never exceeds white") {
   }
 }
 
+TEST_CASE("a pixel on the border of a lamp shows the part of it that the lamp fills") {
+  // Columns: a wall, a border that the lamp fills by a quarter, and the lamp.
+  const double wall = 0.2, lamp = 16, border = 0.75 * wall + 0.25 * lamp;
+  Image image = filled(6, glm::vec3(0.0f));
+  image.width = 3;
+  image.height = 2;
+  for (std::size_t y = 0; y < 2; ++y) {
+    set(image, 3 * y, glm::vec3(static_cast<float>(wall)));
+    set(image, 3 * y + 1, glm::vec3(static_cast<float>(border)));
+    set(image, 3 * y + 2, glm::vec3(static_cast<float>(lamp)));
+  }
+  ToneMapping manual = standard;
+  manual.automatic_exposure = false;
+  const Image shown = tone_map(image, manual);
+  CHECK(at(shown, 1).g == Approx(0.75 * wall + 0.25).epsilon(1e-5));
+  CHECK(at(shown, 0).g == Approx(wall));
+  CHECK(at(shown, 2).g == 1.0f);
+  // Without a lamp beside them bright pixels are white.
+  for (std::size_t y = 0; y < 2; ++y) set(image, 3 * y + 2, glm::vec3(3.9f));
+  CHECK(at(tone_map(image, manual), 1).g == 1.0f);
+}
+
 TEST_CASE("tone mapping gives values in [0,1] for every float") {
   using Limits = std::numeric_limits<float>;
   const float awkward[] = {0.0f,

@@ -116,7 +116,7 @@ TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF'
   CHECK_VERDICT(mean_is(radiance, 1.0, 0.06));
 }
 
-TEST_CASE("gloss by rays: lobes read at gathered nodes what walls reflect of their own light") {
+TEST_CASE("gloss by rays: lobes read, where nodes gather, what walls reflect of their own light") {
   const auto [albedo, f0, alpha] = GENERATE(
       table<double, double, double>({{0.0, 0.9, 0.04}, {0.0, 0.9, 0.25}, {0.2, 0.2, 0.1}}));
   CAPTURE(albedo, f0, alpha);
@@ -137,10 +137,9 @@ TEST_CASE("gloss by rays: lobes read at gathered nodes what walls reflect of the
     RenderParameters parameters = with_rays(seed);
     parameters.light_map_rays = 16;
     parameters.film.samples_per_pixel = 64;
-    if (albedo > 0) {  // few nodes lie on the plate, and share the photons that they see
-      parameters.light_map_rays = 64;
-      parameters.photons.emitted_photons = 200'000;
-    }
+    // Few nodes lie on the plate, or are seen in it, and share the photons that they see.
+    parameters.photons.emitted_photons = 200'000;
+    if (albedo > 0) parameters.light_map_rays = 64;
     const RenderResult result = render(scene, camera, device(), parameters);
     radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
   }
@@ -167,14 +166,12 @@ TEST_CASE(
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.05));
 }
 
-TEST_CASE("gloss by rays: one sample of rough metal or black coat has no confetti") {
+TEST_CASE("gloss by rays: one sample of rough metal shows what it reflects without confetti") {
   // Its lobe looks half at a white ceiling, half at a black one: one ray would give all or nothing,
-  // with a relative variance of 1; of seven and of four it is a seventh and a quarter at most.
-  const auto [f0, most] = GENERATE(table<float, double>({{0.9f, 0.2}, {0.04f, 0.3}}));
-  CAPTURE(f0);
+  // with a relative variance of 1.
   SceneBuilder builder;
   builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 9, 0}, 1,
-               builder.add(glossy(glm::vec3(0.0f), glm::vec3(f0), 0.05f)));
+               builder.add(glossy(glm::vec3(0.0f), glm::vec3(0.9f), 0.05f)));
   builder.grid({0, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.8f))));
   builder.grid({-3, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   Scene scene = builder.build();
@@ -194,7 +191,7 @@ TEST_CASE("gloss by rays: one sample of rough metal or black coat has no confett
   const double relative_variance = squares * count / (sum * sum) - 1;
   CAPTURE(relative_variance, sum / count);
   CHECK(sum > 0);
-  CHECK(relative_variance < most);
+  CHECK(relative_variance < 0.3);
 }
 
 TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does") {
@@ -308,27 +305,27 @@ bool all_suit(const PrimaryHits& seen, const PrimaryHits& reflected, double nois
 }
 
 TEST_CASE("photons suit reflections that count little beside the surface that shows them") {
-  // A share of 1 / (1 + 9) of the pixel's light: noise of 99% is 9.9% there, of 101% is 10.1%.
+  // A share of 1 / (1 + 9) of the pixel's light: noise of 89% is 8.9% there, of 91% is 9.1%.
   const PrimaryHits base = hits_in_a_row(16, 0.0, 0.45), faint = hits_in_a_row(16, 0.0, 0.05);
-  CHECK(all_suit(base, faint, 0.99));
-  CHECK_FALSE(all_suit(base, faint, 1.01));
+  CHECK(all_suit(base, faint, 0.89));
+  CHECK_FALSE(all_suit(base, faint, 0.91));
   // On black it is all that the pixel shows.
-  CHECK_FALSE(all_suit(hits_in_a_row(16, 0.0, 0.0), faint, 0.101));
-  CHECK_FALSE(all_suit({}, faint, 0.101));
-  CHECK(all_suit({}, faint, 0.099));
+  CHECK_FALSE(all_suit(hits_in_a_row(16, 0.0, 0.0), faint, 0.091));
+  CHECK_FALSE(all_suit({}, faint, 0.091));
+  CHECK(all_suit({}, faint, 0.089));
 }
 
 TEST_CASE("photons suit reflections of many independent estimates, whose noise averages out") {
   // 16 of them have a quarter of the noise of one.
-  CHECK(all_suit({}, hits_in_a_row(16, 0.1, 0.7), 4 * 0.099));
-  CHECK_FALSE(all_suit({}, hits_in_a_row(16, 0.1, 0.7), 4 * 0.101));
+  CHECK(all_suit({}, hits_in_a_row(16, 0.1, 0.7), 4 * 0.089));
+  CHECK_FALSE(all_suit({}, hits_in_a_row(16, 0.1, 0.7), 4 * 0.091));
   // Hits that err alike are of no use.
-  CHECK_FALSE(all_suit({}, hits_in_a_row(16, 0.0001, 0.7), 0.101));
+  CHECK_FALSE(all_suit({}, hits_in_a_row(16, 0.0001, 0.7), 0.091));
   // Four pairs, far from each other: as four.
   PrimaryHits pairs = hits_in_a_row(8, 0.0, 0.7);
   for (std::size_t i = 0; i < 8; ++i) pairs.position[i].x = static_cast<float>(i / 2);
-  CHECK(all_suit({}, pairs, 2 * 0.099));
-  CHECK_FALSE(all_suit({}, pairs, 2 * 0.101));
+  CHECK(all_suit({}, pairs, 2 * 0.089));
+  CHECK_FALSE(all_suit({}, pairs, 2 * 0.091));
 }
 
 TEST_CASE("photons do not suit strong reflections of what is near") {
@@ -349,7 +346,7 @@ TEST_CASE("photons suit reflections pixel by pixel") {
   PrimaryHits seen = hits_in_a_row(1, 0.0, 99.0);
   reflected.pixel[0] = 4;  // where nothing else is seen
   const std::vector<std::uint8_t> suits =
-      cache::suits_photons(seen, reflected, 1, {.width = 0.1, .noise = 0.11});
+      cache::suits_photons(seen, reflected, 1, {.width = 0.1, .noise = 0.1});
   CHECK(suits == std::vector<std::uint8_t>{0, 1});
   CHECK(cache::suits_photons(seen, {}, 1, {.width = 0.1, .noise = 0.1}).empty());
 }

@@ -197,6 +197,18 @@ TEST_CASE("Without a coat the opaque BSDF is Lambertian") {
   CHECK(photile_opaque_bsdf(diffuse, 0.0f, 0.0f, 0.9f, 5.0f) == diffuse);
 }
 
+TEST_CASE("Rays follow a lobe by its part of what is seen, and by what it reflects") {
+  const auto rays_of = [](float albedo, float f0, float alpha) {
+    const Scene scene = plate(glossy(glm::vec3(albedo), glm::vec3(f0), alpha), 2);
+    const glm::vec3 direction(0, 0, -1);
+    return OpaqueBsdf(scene, surface_hit(scene, {0, 0.3f, 0.3f}, direction), direction).lobe_rays();
+  };
+  CHECK(rays_of(0.0f, 0.9f, 0.2f) == 7);   // of 8 that a perfect metal has
+  CHECK(rays_of(0.8f, 0.04f, 0.2f) == 1);  // a twentieth of what is seen
+  CHECK(rays_of(0.0f, 0.04f, 0.2f) == 4);  // all of it
+  CHECK(rays_of(0.0f, 0.04f, 0.005f) < 4);  // narrower ones scatter less
+}
+
 TEST_CASE("Directions are drawn with the density that the opaque BSDF claims") {
   constexpr int samples = 200'000, rings = 16, sectors = 16, fine = 24;
   for (const Material& material :

@@ -17,6 +17,10 @@ namespace {
 /// Hits of a pixel that are compared with each other, at most.
 constexpr std::size_t most_compared = 64;
 
+/// Noise of photons in a pixel's reflections, relative, that is not seen: about what rays of lobes
+/// leave. Less than that of 100 photons, so that what mirrors of metal show is clean.
+constexpr double tolerated_noise = 0.09;
+
 /// Estimates on surface so near to the one that shows them, in widths, would show their blur there,
 /// as on a bright wall behind a sconce of brass.
 /// Where the reflection is less than this part of what is seen, it does not show.
@@ -53,11 +57,11 @@ double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t>
   return weights > 0 ? variance / (weights * weights) : 0.0;
 }
 
-/// Whether one of these lies so near to a place.
+/// Whether one of these lies so near to a position.
 bool any_near(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
-              const glm::vec3& place, double near) {
+              const glm::vec3& position, double near) {
   return std::any_of(chosen.begin(), chosen.end(), [&](std::uint32_t hit) {
-    return double{glm::distance(hits.position[hit], place)} < near;
+    return double{glm::distance(hits.position[hit], position)} < near;
   });
 }
 
@@ -86,7 +90,7 @@ std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHi
           const std::span<const std::uint32_t> shown_by = seen_of.of(pixel);
           const double weight = sum_of_weights(reflected, hits);
           const double all = weight + sum_of_weights(seen, shown_by);
-          const double tolerated = defaults::tolerated_reflection_noise * all;
+          const double tolerated = tolerated_noise * all;
           const double of_estimates = weight * noise.noise;
           if (of_estimates > tolerated &&
               of_estimates * std::sqrt(relative_variance(reflected, hits, noise.width)) >

@@ -150,6 +150,32 @@ glm::dvec3 displayed(glm::dvec3 rgb, DisplayView view) {
   return glm::clamp(view == DisplayView::neutral ? neutral(rgb) : standard(rgb), 0.0, 1.0);
 }
 
+double largest_of(const glm::dvec3& rgb) { return std::max({rgb.r, rgb.g, rgb.b}); }
+
+/// What a pixel of an image shows in [0,1]. On the border of a lamp or a window, where one sample
+/// of many makes a pixel white and borders would be staircases, the two sides are mixed as they are
+/// displayed: in the parts of which the pixel's light is the mix, taken from the brightest and the
+/// darkest of the pixels around.
+///   light   (x, y) of pixels in multiples of white
+template <class Light>
+glm::dvec3 shown(const Light& light, int width, int height, int x, int y, DisplayView view) {
+  constexpr double least_of_light = 4;  // multiples of white: highlights seldom are as bright
+  const glm::dvec3 own = light(x, y);
+  glm::dvec3 dark = own, bright = own;
+  const double here = largest_of(own);
+  if (!(here > 1.0)) return displayed(own, view);
+  for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j)
+    for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i) {
+      const glm::dvec3 other = light(i, j);
+      if (largest_of(other) < largest_of(dark)) dark = other;
+      if (largest_of(other) > largest_of(bright)) bright = other;
+    }
+  const double least = std::max(0.0, largest_of(dark)), most = largest_of(bright);
+  if (!(most > least_of_light) || !(least < 1.0) || !std::isfinite(most))
+    return displayed(own, view);
+  return glm::mix(displayed(dark, view), displayed(bright, view), (here - least) / (most - least));
+}
+
 glm::dvec3 scaled_to_white(double scale, const ToneMapping& parameters) {
   return scale / glm::dvec3(parameters.white[0], parameters.white[1], parameters.white[2]);
 }
@@ -222,8 +248,14 @@ Image tone_map(const Image& scene_referred, const ToneMapping& parameters) {
   display.height = scene_referred.height;
   for (const char* channel : {"R", "G", "B"}) display.add(channel);
   const glm::dvec3 to_white = scaled_to_white(scale, parameters);
+  const auto row = static_cast<std::size_t>(display.width);
+  const auto light = [&](int x, int y) {
+    return to_white * root[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)];
+  };
   image::for_each_pixel(root.r.size(), [&](std::size_t pixel) {
-    const glm::dvec3 rgb = displayed(to_white * root[pixel], parameters.view);
+    const glm::dvec3 rgb =
+        shown(light, display.width, display.height, static_cast<int>(pixel % row),
+              static_cast<int>(pixel / row), parameters.view);
     for (int channel = 0; channel < 3; ++channel) {
       display.channels[static_cast<std::size_t>(channel)][pixel] = static_cast<float>(rgb[channel]);
     }
