@@ -45,6 +45,15 @@ for bench in "${programs[@]}"; do
   [[ $bench =~ ^(angle|borders|scale)$ ]] || extra+=("${repeats[@]}")
   "$benches/photile_bench_$bench" --output "$results/$bench.json" "${options[@]}" "${extra[@]}"
 done
+# Lists by libraries of Python, where those and photile's module can be imported.
+if PYTHONPATH=$PWD/build/release/python /usr/bin/python3 -c 'import photile, scipy' 2> /dev/null; then
+  sizes=()
+  [[ ${options[*]} == *--quick* ]] && sizes=(--photons 2000 --queries 4096 --repeats 1)
+  PYTHONPATH=$PWD/build/release/python /usr/bin/python3 bench/rivals/python_neighbours.py \
+    --output "$results/python_neighbours.json" "${sizes[@]}"
+else
+  echo "bench/run_all.sh: lists by Python's libraries are left out: install scipy, pykdtree and open3d, and build photile's module" >&2
+fi
 bench/kernels/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
 if [[ $results == docs/benchmarks ]]; then
   for section in borders area angle; do bench/kernels/report_$section.py; done
