@@ -38,7 +38,6 @@ STAGES = {
     "count_pass": "counting",
     "add_counters": "counting",
     "counted": "counting",
-    "bin_of": "selection",
     "edge_above": "selection",
     "reach_for": "block of cells",
     "block_within": "block of cells",

@@ -37,7 +37,7 @@ MUTANTS = (
            "within.x * (1 - within.y),", "(1 - within.x) * within.y,",
            (("cache", "Light maps give back light that varies linearly*"),)),
     Mutant("estimates depend on the hits before", "kernels/estimate/neighbourhood.clh",
-           "max(walk->record, start - start % VECTOR_WIDTH)", "max(walk->record, start)",
+           "max(walk->chunk, chunk_begin(start))", "max(walk->chunk, start)",
            (("cache", "What was looked at before changes no bit of a picture"),)),
 
     # Physics of photons

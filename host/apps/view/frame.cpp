@@ -90,7 +90,8 @@ DisplayedFrame tone_mapped(const Frame& frame, const LightMix& mix,
                            const DisplaySettings& settings) {
   const auto texels = [&](std::span<const glm::vec3> rgb) {
     return image::tone_mapped_texels(
-        rgb, {false, settings.automatic_stops + settings.exposure, settings.view, settings.white});
+        rgb, frame.layers.width,
+        {false, settings.automatic_stops + settings.exposure, settings.view, settings.white});
   };
   return {frame.layers.width, frame.layers.height,
           frame.mixed.empty() ? texels(mixed(frame.layers, mix)) : texels(frame.mixed)};
