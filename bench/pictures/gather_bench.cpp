@@ -152,8 +152,9 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
     maps.emplace(rays, std::span(&device, 1), parameters_of(sizes.gathered_photons, 100));
   });
   const PrimaryHits many = visible_points(rays, sizes.timed_points);
-  for (const auto& [gathering, looks] : {std::pair{144, 96}, std::pair{25, 32}, std::pair{324, 216},
-                                         std::pair{144, 0}, std::pair{0, 96}}) {
+  for (const auto& [gathering, light_samples] :
+       {std::pair{144, 96}, std::pair{25, 32}, std::pair{324, 216}, std::pair{144, 0},
+        std::pair{0, 96}}) {
     cache::IrradianceGatherParameters parameters;
     parameters.rays = gathering;
     parameters.light_samples = light_samples;
