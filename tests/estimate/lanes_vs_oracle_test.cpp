@@ -139,6 +139,17 @@ TEST_CASE("every kind of estimate is the oracle's for k of 1 to 1,000", "[slow][
                                                  << kind.name << ", k = " << neighbours) {
           check(kind, tuning, neighbours, 61);
         }
+        if (!tuning.shuffles) continue;
+        DYNAMIC_SECTION("bits of shuffles and of local memory, " << kind.name
+                                                                 << ", k = " << neighbours) {
+          const Subject subject(kind, 61);
+          const Estimates shuffled = subject.estimate(tuning, neighbours, kind.area);
+          EstimateTuning without = tuning;
+          without.shuffles = false;
+          const Estimates plain = subject.estimate(without, neighbours, kind.area);
+          CHECK(shuffled.irradiance == plain.irradiance);
+          CHECK(shuffled.radiance == plain.radiance);
+        }
       }
     }
   }
@@ -170,20 +181,6 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
   CHECK(relative_difference(of_lanes.irradiance, of_vectors.irradiance) <= bound);
   // Another order it is: equal bits would say that one backend was compared with itself.
   CHECK(relative_difference(of_lanes.irradiance, of_vectors.irradiance) > 0);
-}
-
-TEST_CASE("shuffles give the bits of local memory", "[slow][device]") {
-  EstimateTuning tuning = shipped_tuning(device().info());
-  if (!tuning.shuffles) return;  // Catch2 of this version cannot skip; CPUs have none
-  // At k = 1,000 a block does not fit and is walked again.
-  for (const int neighbours : {50, 1000}) {
-    const Subject subject({"several lights", 3}, 61);
-    tuning.shuffles = true;
-    const Estimates shuffled = subject.estimate(tuning, neighbours, AreaMode::clipped);
-    tuning.shuffles = false;
-    CHECK(subject.estimate(tuning, neighbours, AreaMode::clipped).irradiance ==
-          shuffled.irradiance);
-  }
 }
 
 TEST_CASE("lanes that take hits in turn estimate the bits of each alone", "[slow]") {

@@ -212,9 +212,9 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
   for (const std::string& line : sky_summary(mix)) lines.push_back(line);
   for (const MixedLight& group : mix.lights) {
     if (group.members.empty()) continue;
-    lines.push_back(fmt::format("group: {}: {}, {}", group.name,
-                                counted(group.members.size(), "light"),
-                                format_power_in_lumens(group.power, group.unit, mix.lumen_per_watt)));
+    lines.push_back(
+        fmt::format("group: {}: {}, {}", group.name, counted(group.members.size(), "light"),
+                    format_power_in_lumens(group.power, group.unit, mix.lumen_per_watt)));
   }
   return lines;
 }

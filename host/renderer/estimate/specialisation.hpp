@@ -51,9 +51,9 @@ struct Specialisation {
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; work-items of `lanes`: 16, 32 or 64
   /// Distances kept, in private memory by `select`, in local by `lanes`.
   int capacity = 256;
-  int neighbours = 1;              ///< k
-  bool shuffles = false;           ///< `lanes` exchange values by instructions of NVIDIA's
-  int hits_per_item = 1;           ///< neighbouring hits that a work-item estimates in turn
+  int neighbours = 1;     ///< k
+  bool shuffles = false;  ///< `lanes` exchange values by instructions of NVIDIA's
+  int hits_per_item = 1;  ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
   SceneNeeds needs;
   LightSums sums;
