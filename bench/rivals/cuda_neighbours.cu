@@ -19,11 +19,15 @@
 // events and of one build, the second, by the host's clock. "wrong" counts those of 256 queries
 // where the squared distance to the k-th point or the sum of the squared distances differs from
 // brute force in double precision by more than rounding. Photons count into photile's sums with
-// their flux; here with the squared distance that is at hand, which favours the rivals. Points are
-// in Morton order. Rows of one k run in a child process: where one fails, hangs or crashes the rest
-// goes on in the next.
+// their flux; here with the squared distance that is at hand, which favours the rivals. Points and
+// queries are in Morton order.
+//
+// Variants that were slower on an H200 than one of their kind that is here are left out (all are in
+// results/cuda): lists in registers and sorted ones, builders by surface area, edge length or
+// radix, splits of x, y and z in turns, and leaves of 1, 4 and 64 points.
+//
+// Each structure runs in a child process: where one fails, hangs or crashes the rest goes on.
 #include <cuda_runtime.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,10 +41,10 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -139,8 +143,8 @@ Points read_npy(const std::string& file) {
   return points;
 }
 
-/// Indices along the Morton curve through the bounding box, 10 bits an axis.
-std::vector<std::uint32_t> morton_order(const Points& points) {
+/// Along the Morton curve through the bounding box, 10 bits an axis.
+Points in_morton_order(const Points& points) {
   float low[3] = {points[0].x, points[0].y, points[0].z}, high[3] = {low[0], low[1], low[2]};
   for (const float3& point : points) {
     const float c[3] = {point.x, point.y, point.z};
@@ -161,10 +165,6 @@ std::vector<std::uint32_t> morton_order(const Points& points) {
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });
-  return order;
-}
-
-Points in_order(const Points& points, const std::vector<std::uint32_t>& order) {
   Points sorted;
   for (const std::uint32_t i : order) sorted.push_back(points[i]);
   return sorted;
@@ -202,37 +202,16 @@ std::vector<std::vector<double>> nearest(const Points& points, const Points& que
 // Searches: each answers a query with the squared distance to the k-th point, or R squared where
 // fewer lie within R, and the sum of the squared distances.
 
-template <class List, int k>
-__host__ __device__ float2 answer(const List& list) {
+template <int k>
+__host__ __device__ float2 answer(const cukd::HeapCandidateList<k>& list) {
   float sum = 0;
-  // The fixed list lies in registers, which no loop can index; a heap does not, and an unrolled
-  // loop would bring it there.
-  constexpr int unrolled = std::is_same_v<List, cukd::FixedCandidateList<k>> ? k : 1;
-#pragma unroll unrolled
+  // A heap lies in memory: an unrolled loop would bring it into registers.
+#pragma unroll 1
   for (int i = 0; i < k; ++i) {
     if (list.get_pointID(i) >= 0) sum += list.get_dist2(i);
   }
   return {list.maxRadius2(), sum};
 }
-
-/// The sorted list of cuBQL, with the interface of those of cudaKDTree.
-template <int k>
-struct LinearList {
-  cuBQL::knn::Candidate candidates[k];
-  cuBQL::knn::Result result;
-  __host__ __device__ explicit LinearList(float radius) : result{0, radius * radius} {}
-  __host__ __device__ float processCandidate(int id, float squared) {
-    // The library's own function takes every point while the list is not full, those beyond R too.
-    if (squared < result.sqrDistMax)
-      cuBQL::knn::insert_linear(candidates, k, {id, squared}, result);
-    return result.sqrDistMax;
-  }
-  __host__ __device__ float maxRadius2() const { return result.sqrDistMax; }
-  __host__ __device__ float get_dist2(int i) const { return candidates[i].sqrDist; }
-  __host__ __device__ int get_pointID(int i) const {
-    return i < result.numFound ? candidates[i].primID : -1;
-  }
-};
 
 /// A point that stores the axis of its split: without it cudaKDTree splits x, y and z in turns,
 /// also where the points lie on a plane.
@@ -254,57 +233,57 @@ struct PointAndAxisTraits : cukd::default_data_traits<float3> {
   static inline __host__ __device__ void set_dim(PointAndAxis& p, int axis) { p.axis = axis; }
 };
 
-void set_point(float3& data, const float3& point) { data = point; }
-void set_point(PointAndAxis& data, const float3& point) { data = {point, 0}; }
-
 enum class Traversal { stack, stack_free, closest_corner };
-constexpr const char* traversal_names[] = {"stack", "stack-free", "closest-corner"};
+using Wide4 = cuBQL::WideBVH<float, 3, 4>;
+using Wide8 = cuBQL::WideBVH<float, 3, 8>;
 
-template <class Data, class Traits, class List, int k, Traversal traversal>
+template <int k, Traversal traversal>
 struct BalancedSearch {
-  const Data* nodes;
+  const PointAndAxis* nodes;
   int count;
   cukd::box_t<float3> bounds;
   __host__ __device__ float2 operator()(const float3& query, float radius) const {
+    using List = cukd::HeapCandidateList<k>;
     List list(radius);
     if constexpr (traversal == Traversal::stack) {
-      cukd::stackBased::knn<List, Data, Traits>(list, query, nodes, count);
+      cukd::stackBased::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, nodes, count);
     } else if constexpr (traversal == Traversal::stack_free) {
-      cukd::stackFree::knn<List, Data, Traits>(list, query, nodes, count);
+      cukd::stackFree::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, nodes, count);
     } else {
-      cukd::cct::knn<List, Data, Traits>(list, query, bounds, nodes, count);
+      cukd::cct::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, bounds, nodes, count);
     }
-    return answer<List, k>(list);
+    return answer<k>(list);
   }
 };
 
-template <class List, int k, Traversal traversal>
+template <int k, Traversal traversal>
 struct SpatialSearch {
   cukd::SpatialKDTree<float3> tree;
   __host__ __device__ float2 operator()(const float3& query, float radius) const {
+    using List = cukd::HeapCandidateList<k>;
     List list(radius);
     if constexpr (traversal == Traversal::stack) {
       cukd::stackBased::knn<List, float3>(list, tree, query);
     } else {
       cukd::cct::knn<List, float3>(list, tree, query);
     }
-    return answer<List, k>(list);
+    return answer<k>(list);
   }
 };
 
-template <class Bvh, class List, int k>
+template <class Bvh, int k>
 struct BvhSearch {
   Bvh bvh;
   const cuBQL::vec3f* points;
   __host__ __device__ float2 operator()(const float3& query, float radius) const {
-    List list(radius);
+    cukd::HeapCandidateList<k> list(radius);
     const cuBQL::vec3f at(query.x, query.y, query.z);
     const cuBQL::vec3f* const all = points;
     const auto visit = [&list, all, at](std::uint32_t id) -> float {
       return list.processCandidate(static_cast<int>(id), cuBQL::fSqrDistance_rd(all[id], at));
     };
     cuBQL::shrinkingRadiusQuery::forEachPrim(visit, bvh, at, radius * radius);
-    return answer<List, k>(list);
+    return answer<k>(list);
   }
 };
 
@@ -316,29 +295,30 @@ struct Cloud {
   int size() const { return static_cast<int>(host.size()); }
 };
 
-template <class Data, class Traits>
 class Balanced {
  public:
-  explicit Balanced(const Cloud& cloud) : host_(cloud.host.size()) {
-    for (std::size_t i = 0; i < host_.size(); ++i) set_point(host_[i], cloud.host[i]);
+  Balanced(const Cloud& cloud, int) {
+    for (const float3& point : cloud.host) host_.push_back({point, 0});
     if (!cloud.device) return;
-    nodes_ = std::make_unique<DeviceArray<Data>>(host_);
+    nodes_ = std::make_unique<DeviceArray<PointAndAxis>>(host_);
     box_ = std::make_unique<DeviceArray<cukd::box_t<float3>>>(1);
   }
   void build() {
     const int count = static_cast<int>(host_.size());
-    if (!nodes_) return cukd::buildTree_host<Data, Traits>(host_.data(), count, &bounds_);
-    cukd::buildTree<Data, Traits>(nodes_->data(), count, box_->data());
+    if (!nodes_) {
+      return cukd::buildTree_host<PointAndAxis, PointAndAxisTraits>(host_.data(), count, &bounds_);
+    }
+    cukd::buildTree<PointAndAxis, PointAndAxisTraits>(nodes_->data(), count, box_->data());
     bounds_ = box_->read()[0];
   }
-  template <class List, int k, Traversal traversal>
-  BalancedSearch<Data, Traits, List, k, traversal> search() const {
+  template <int k, Traversal traversal>
+  BalancedSearch<k, traversal> search() const {
     return {nodes_ ? nodes_->data() : host_.data(), static_cast<int>(host_.size()), bounds_};
   }
 
  private:
-  std::vector<Data> host_;
-  std::unique_ptr<DeviceArray<Data>> nodes_;
+  std::vector<PointAndAxis> host_;
+  std::unique_ptr<DeviceArray<PointAndAxis>> nodes_;
   std::unique_ptr<DeviceArray<cukd::box_t<float3>>> box_;
   cukd::box_t<float3> bounds_{};
 };
@@ -349,17 +329,21 @@ class Spatial {
   ~Spatial() { release(); }
   void build() {
     release();
-    cukd::buildTree(tree, const_cast<float3*>(cloud_.device), cloud_.size(),
+    cukd::buildTree(tree_, const_cast<float3*>(cloud_.device), cloud_.size(),
                     cukd::BuildConfig{leaf_});
   }
-  cukd::SpatialKDTree<float3> tree{};
+  template <int k, Traversal traversal>
+  SpatialSearch<k, traversal> search() const {
+    return {tree_};
+  }
 
  private:
   void release() {
-    if (tree.nodes) cukd::free(tree);
+    if (tree_.nodes) cukd::free(tree_);
   }
-  const Cloud& cloud_;
+  Cloud cloud_;
   int leaf_;
+  cukd::SpatialKDTree<float3> tree_{};
 };
 
 /// Memory of the device's pool. That of cuBQL itself would free null pointers, which its wide
@@ -378,17 +362,12 @@ __global__ void make_boxes(const cuBQL::vec3f* points, int count, cuBQL::box3f* 
   if (i < count) boxes[i] = cuBQL::box3f().including(points[i]);
 }
 
-enum class Builder { spatial_median, area, edges, radix };
-constexpr const char* builder_names[] = {"spatial median", "surface area", "edge length", "radix"};
-
 template <class Bvh>
 class CubqlBvh {
  public:
-  CubqlBvh(const Cloud& cloud, Builder builder, int leaf) : cloud_(cloud), builder_(builder) {
+  CubqlBvh(const Cloud& cloud, int leaf) : cloud_(cloud) {
     static_assert(sizeof(cuBQL::vec3f) == sizeof(float3));
     config_.makeLeafThreshold = leaf;
-    if (builder == Builder::area) config_.enableSAH();
-    if (builder == Builder::edges) config_.enableELH();
     if (cloud.device) boxes_ = std::make_unique<DeviceArray<cuBQL::box3f>>(cloud.host.size());
   }
   ~CubqlBvh() { release(); }
@@ -403,16 +382,10 @@ class CubqlBvh {
     }
     make_boxes<<<(count + 255) / 256, 256>>>(points(), cloud_.size(), boxes_->data());
     CHECK(cudaGetLastError());
-    if constexpr (std::is_same_v<Bvh, cuBQL::bvh3f>) {
-      if (builder_ == Builder::radix) {
-        cuBQL::cuda::radixBuilder(bvh_, boxes_->data(), count, config_, 0, memory_);
-        return;
-      }
-    }
     cuBQL::gpuBuilder(bvh_, boxes_->data(), count, config_, 0, memory_);
   }
-  template <class List, int k>
-  BvhSearch<Bvh, List, k> search() const {
+  template <int k, Traversal>
+  BvhSearch<Bvh, k> search() const {
     return {bvh_, points()};
   }
 
@@ -429,8 +402,7 @@ class CubqlBvh {
       cuBQL::cpu::freeBVH(bvh_);
     }
   }
-  const Cloud& cloud_;
-  Builder builder_;
+  Cloud cloud_;
   cuBQL::BuildConfig config_;
   PoolMemory memory_;
   std::unique_ptr<DeviceArray<cuBQL::box3f>> boxes_;
@@ -446,8 +418,8 @@ __global__ void answer_queries(Search search, const float3* queries, int count, 
   if (i < count) answers[i] = search(queries[i], radius);
 }
 
-/// Seconds of `run` on the device: a warm-up, then seven, or fewer where all take longer than three
-/// seconds.
+/// Seconds of `run` on the device, ascending: a warm-up, then seven, or fewer where all take longer
+/// than three seconds.
 std::vector<double> device_seconds(const std::function<void()>& run) {
   cudaEvent_t start, stop;
   CHECK(cudaEventCreate(&start));
@@ -465,195 +437,155 @@ std::vector<double> device_seconds(const std::function<void()>& run) {
     spent += milliseconds * 1e-3;
     if (i > 0) seconds.push_back(milliseconds * 1e-3);
   }
-  CHECK(cudaEventDestroy(start));
-  CHECK(cudaEventDestroy(stop));
   std::sort(seconds.begin(), seconds.end());
   return seconds;
 }
 
-struct Queries {
-  Points host;
-  std::vector<std::size_t> checked;  ///< indices of those whose answers brute force knows
-  const float3* device = nullptr;
-};
-
 struct Workload {
   std::string name;
-  Points photons;
-  Queries morton, given;                     ///< the same queries in two orders
-  std::vector<std::vector<double>> nearest;  ///< of the checked queries
-};
-
-struct Measured {
-  double build = 0;             ///< seconds
-  std::vector<double> seconds;  ///< ascending
-  std::size_t wrong = 0;
-};
-
-struct Setting {
-  const Cloud& cloud;
-  const Workload& workload;
-  const Queries& queries;
+  Points photons, queries;
+  std::vector<std::size_t> checked;          ///< queries whose answers brute force knows
+  std::vector<std::vector<double>> nearest;  ///< squared distances of these
   int k;
   float radius;
-  int block;
 };
 
-std::size_t count_wrong(const Setting& s, const std::vector<float2>& answers) {
+std::size_t count_wrong(const Workload& work, const std::vector<float2>& answers) {
   // A squared distance is a sum of rounded products of rounded differences; a sum of k numbers adds
   // k roundings.
   constexpr double rounding = 1.0 / (1 << 24);
-  const double bound = static_cast<double>(s.radius) * s.radius;
+  const double bound = static_cast<double>(work.radius) * work.radius;
   std::size_t wrong = 0;
-  for (std::size_t i = 0; i < s.queries.checked.size(); ++i) {
+  for (std::size_t i = 0; i < work.checked.size(); ++i) {
+    const std::vector<double>& nearest = work.nearest[i];
     double sum = 0, last = bound;
     int found = 0;
-    for (; found < s.k && s.workload.nearest[i][static_cast<std::size_t>(found)] < bound; ++found) {
-      last = s.workload.nearest[i][static_cast<std::size_t>(found)];
+    for (; found < work.k && nearest[static_cast<std::size_t>(found)] < bound; ++found) {
+      last = nearest[static_cast<std::size_t>(found)];
       sum += last;
     }
-    if (found < s.k) last = bound;
-    const float2 got = answers[s.queries.checked[i]];
+    if (found < work.k) last = bound;
+    const float2 got = answers[work.checked[i]];
     if (!(std::abs(got.x - last) <= 8 * rounding * last) ||
-        !(std::abs(got.y - sum) <= (s.k + 8) * rounding * sum)) {
+        !(std::abs(got.y - sum) <= (work.k + 8) * rounding * sum)) {
       ++wrong;
     }
   }
   return wrong;
 }
 
-template <class Structure, class Search>
-Measured measure(const Setting& s, Structure& structure, const Search& make_search) {
-  Measured measured;
-  const int count = static_cast<int>(s.queries.host.size());
-  for (int i = 0; i < (s.cloud.device ? 2 : 1); ++i) {  // the first build loads kernels
-    const Clock::time_point start = Clock::now();
-    structure.build();
-    if (s.cloud.device) CHECK(cudaDeviceSynchronize());
-    measured.build = seconds_since(start);
-    // What a library did not look at: its answers are checked all the same.
-    const cudaError_t left = s.cloud.device ? cudaGetLastError() : cudaSuccess;
-    if (left != cudaSuccess) std::fprintf(stderr, "(build: %s) ", cudaGetErrorString(left));
-  }
-  const auto search = make_search();
-  if (!s.cloud.device) {
-    const Clock::time_point start = Clock::now();
-    std::vector<float2> answers;
-    for (const float3& query : s.queries.host) answers.push_back(search(query, s.radius));
-    measured.seconds = {seconds_since(start)};
-    measured.wrong = count_wrong(s, answers);
-    return measured;
-  }
-  const DeviceArray<float2> answers(s.queries.host.size());
-  CHECK(cudaMemset(answers.data(), 0xff, s.queries.host.size() * sizeof(float2)));
-  measured.seconds = device_seconds([&] {
-    answer_queries<<<(count + s.block - 1) / s.block, s.block>>>(search, s.queries.device, count,
-                                                                 s.radius, answers.data());
-  });
-  measured.wrong = count_wrong(s, answers.read());
-  return measured;
-}
-
-// Rows.
-
+/// What is measured: each in blocks of 32 and of 128 queries.
 struct Row {
-  std::string library, structure, builder, traversal, candidates;
-  int leaf = 1;
-  bool on_host = false;  ///< whether it runs on the host too
-  std::function<Measured(const Setting&)> run;
+  const char *library, *structure, *builder, *traversal, *candidates;
+  int leaf;
+  bool on_host;  ///< whether it runs on the host too
+  void (*run)(const Row& row, const Workload& work, bool host);
+
+  /// The line of a row, but for what was found.
+  void print_head(const Workload& work, int block, const std::string& device) const {
+    std::printf(R"({"library": "%s", "structure": "%s", "builder": "%s", "traversal": "%s", )",
+                library, structure, builder, traversal);
+    std::printf(R"("candidates": "%s", "leaf": %d, "block": %d, "order": "morton", )", candidates,
+                leaf, block);
+    std::printf(R"("workload": "%s", "photons": %zu, "queries": %zu, )", work.name.c_str(),
+                work.photons.size(), work.queries.size());
+    std::printf(R"("k": %d, "radius": %.9g, "device": "%s", )", work.k, work.radius,
+                device.c_str());
+  }
 };
 
-template <class Data, class Traits, class List, int k, Traversal traversal>
-Row balanced(const char* structure, const char* candidates) {
-  return {"cudaKDTree",
-          structure,
-          "thrust",
-          traversal_names[static_cast<int>(traversal)],
-          candidates,
-          1,
-          true,
-          [](const Setting& s) {
-            Balanced<Data, Traits> tree(s.cloud);
-            return measure(s, tree, [&] { return tree.template search<List, k, traversal>(); });
-          }};
+/// What was found: seconds ascending.
+void print_measured(const Workload& work, double build, const std::vector<double>& seconds,
+                    const std::vector<float2>& answers) {
+  const double median = seconds[seconds.size() / 2];
+  const auto count = static_cast<double>(work.queries.size());
+  std::printf(R"("seconds": {"median": %.6g, "min": %.6g, "max": %.6g, "samples": %zu}, )", median,
+              seconds.front(), seconds.back(), seconds.size());
+  std::printf(R"("build": %.6g, "ns a query": %.6g, "queries per second": %.6g, )", build,
+              median / count * 1e9, count / median);
+  std::printf(R"("wrong": %zu, "checked": %zu})"
+              "\n",
+              count_wrong(work, answers), work.checked.size());
+  std::fflush(stdout);
 }
 
-template <int k, Traversal traversal>
-Row spatial(int leaf) {
-  return {"cudaKDTree",
-          "spatial k-d tree",
-          "spatial median",
-          traversal_names[static_cast<int>(traversal)],
-          "heap",
-          leaf,
-          false,
-          [leaf](const Setting& s) {
-            Spatial tree(s.cloud, leaf);
-            using Search = SpatialSearch<cukd::HeapCandidateList<k>, k, traversal>;
-            return measure(s, tree, [&] { return Search{tree.tree}; });
-          }};
+/// The device's name. Builds are not to wait for the system's memory.
+std::string start_device() {
+  cudaDeviceProp properties;
+  CHECK(cudaSetDevice(0));
+  CHECK(cudaGetDeviceProperties(&properties, 0));
+  cudaMemPool_t pool;
+  CHECK(cudaDeviceGetDefaultMemPool(&pool, 0));
+  std::uint64_t kept = UINT64_MAX;
+  CHECK(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept));
+  return properties.name;
 }
 
-template <class Bvh, class List, int k>
-Row bvh(const char* structure, const char* candidates, Builder builder, int leaf) {
-  return {"cuBQL",
-          structure,
-          builder_names[static_cast<int>(builder)],
-          "stack",
-          candidates,
-          leaf,
-          builder == Builder::spatial_median && std::is_same_v<Bvh, cuBQL::bvh3f>,
-          [builder, leaf](const Setting& s) {
-            CubqlBvh<Bvh> tree(s.cloud, builder, leaf);
-            return measure(s, tree, [&] { return tree.template search<List, k>(); });
-          }};
+template <class Structure, int k, Traversal traversal>
+void measure(const Row& row, const Workload& work, bool host) {
+  const std::string device = host ? "host" : start_device();
+  std::unique_ptr<DeviceArray<float3>> photons;
+  if (!host) photons = std::make_unique<DeviceArray<float3>>(work.photons);
+  Structure structure({work.photons, host ? nullptr : photons->data()}, row.leaf);
+  double build = 0;
+  for (int i = 0; i < (host ? 1 : 2); ++i) {  // the first build loads kernels
+    const Clock::time_point start = Clock::now();
+    structure.build();
+    if (!host) CHECK(cudaDeviceSynchronize());
+    build = seconds_since(start);
+  }
+  // What a library did not look at: its answers are checked all the same.
+  const cudaError_t left = host ? cudaSuccess : cudaGetLastError();
+  if (left != cudaSuccess) std::fprintf(stderr, "build: %s\n", cudaGetErrorString(left));
+  const auto search = structure.template search<k, traversal>();
+  if (host) {
+    const Clock::time_point start = Clock::now();
+    std::vector<float2> answers;
+    for (const float3& query : work.queries) answers.push_back(search(query, work.radius));
+    row.print_head(work, 1, device);
+    return print_measured(work, build, {seconds_since(start)}, answers);
+  }
+  const int count = static_cast<int>(work.queries.size());
+  const DeviceArray<float3> queries(work.queries);
+  const DeviceArray<float2> answers(work.queries.size());
+  for (const int block : {32, 128}) {
+    CHECK(cudaMemset(answers.data(), 0xff, work.queries.size() * sizeof(float2)));
+    const std::vector<double> seconds = device_seconds([&] {
+      answer_queries<<<(count + block - 1) / block, block>>>(search, queries.data(), count,
+                                                             work.radius, answers.data());
+    });
+    const std::vector<float2> found = answers.read();
+    row.print_head(work, block, device);
+    print_measured(work, build, seconds, found);
+  }
 }
 
 template <int k>
 std::vector<Row> rows_of() {
-  using Heap = cukd::HeapCandidateList<k>;
-  using Fixed = cukd::FixedCandidateList<k>;
-  using Linear = LinearList<k>;
-  using Plain = cukd::default_data_traits<float3>;
-  using Binary = cuBQL::bvh3f;
-  using Wide4 = cuBQL::WideBVH<float, 3, 4>;
-  using Wide8 = cuBQL::WideBVH<float, 3, 8>;
-  constexpr const char* widest = "balanced k-d tree, widest axis";
-  std::vector<Row> rows{
-      balanced<PointAndAxis, PointAndAxisTraits, Heap, k, Traversal::closest_corner>(widest,
-                                                                                     "heap"),
-      balanced<PointAndAxis, PointAndAxisTraits, Heap, k, Traversal::stack>(widest, "heap"),
-      balanced<PointAndAxis, PointAndAxisTraits, Heap, k, Traversal::stack_free>(widest, "heap"),
+  using T = Traversal;
+  const auto balanced = [](const char* traversal, auto run) {
+    return Row{"cudaKDTree", "balanced k-d tree, widest axis", "thrust", traversal, "heap", 1, true,
+               run};
   };
-  if constexpr (k <= 64) {
-    rows.push_back(
-        balanced<PointAndAxis, PointAndAxisTraits, Fixed, k, Traversal::stack>(widest, "fixed"));
-  }
+  std::vector<Row> rows{
+      balanced("closest-corner", measure<Balanced, k, T::closest_corner>),
+      balanced("stack", measure<Balanced, k, T::stack>),
+      balanced("stack-free", measure<Balanced, k, T::stack_free>),
+  };
   for (const int leaf : {8, 16, 32}) {
-    if (k > 200 && leaf == 8) continue;
-    rows.push_back(spatial<k, Traversal::closest_corner>(leaf));
-    rows.push_back(spatial<k, Traversal::stack>(leaf));
-  }
-  for (const int leaf : {1, 4, 8, 16, 32, 64}) {
-    if (k > 200 && leaf < 16) continue;
-    rows.push_back(
-        bvh<Binary, Heap, k>("binary BVH", "heap of cudaKDTree", Builder::spatial_median, leaf));
-  }
-  for (const Builder builder : {Builder::area, Builder::edges, Builder::radix}) {
-    if (k > 200) continue;
-    rows.push_back(bvh<Binary, Heap, k>("binary BVH", "heap of cudaKDTree", builder, 16));
-  }
-  for (const int leaf : {8, 16, 32}) {
-    if (k > 200 && leaf == 8) continue;
-    rows.push_back(
-        bvh<Wide4, Heap, k>("wide BVH of 4", "heap of cudaKDTree", Builder::spatial_median, leaf));
-    rows.push_back(
-        bvh<Wide8, Heap, k>("wide BVH of 8", "heap of cudaKDTree", Builder::spatial_median, leaf));
-  }
-  if constexpr (k <= 200) {
-    rows.push_back(bvh<Binary, Linear, k>("binary BVH", "linear", Builder::spatial_median, 8));
-    rows.push_back(balanced<float3, Plain, Heap, k, Traversal::stack>(
-        "balanced k-d tree, axes in turns", "heap"));
+    const auto spatial = [&](const char* traversal, auto run) {
+      rows.push_back({"cudaKDTree", "spatial k-d tree", "spatial median", traversal, "heap", leaf,
+                      false, run});
+    };
+    const auto bvh = [&](const char* structure, bool on_host, auto run) {
+      rows.push_back({"cuBQL", structure, "spatial median", "stack", "heap of cudaKDTree", leaf,
+                      on_host, run});
+    };
+    spatial("closest-corner", measure<Spatial, k, T::closest_corner>);
+    spatial("stack", measure<Spatial, k, T::stack>);
+    bvh("binary BVH", true, measure<CubqlBvh<cuBQL::bvh3f>, k, T::stack>);
+    bvh("wide BVH of 4", false, measure<CubqlBvh<Wide4>, k, T::stack>);
+    bvh("wide BVH of 8", false, measure<CubqlBvh<Wide8>, k, T::stack>);
   }
   return rows;
 }
@@ -665,232 +597,31 @@ std::vector<Row> rows_of(int k) {
   throw std::runtime_error("k is compiled in: 50, 200 or 1000");
 }
 
-/// What the child process says to its parent.
-struct Progress {
-  int row;
-  double seconds[256];  ///< of each row that is right, infinite of others
-  char message[512];    ///< why the row failed
-  char device[256];
-};
-
-std::string fields(const Row& row, int block, const char* order, const Workload& workload, int k,
-                   float radius, const std::string& device) {
-  char text[1024];
-  std::snprintf(
-      text, sizeof text,
-      "\"library\": \"%s\", \"structure\": \"%s\", \"builder\": \"%s\", \"traversal\": \"%s\", "
-      "\"candidates\": \"%s\", \"leaf\": %d, \"block\": %d, \"order\": \"%s\", \"workload\": "
-      "\"%s\", "
-      "\"photons\": %zu, \"queries\": %zu, \"k\": %d, \"radius\": %.9g, \"device\": \"%s\"",
-      row.library.c_str(), row.structure.c_str(), row.builder.c_str(), row.traversal.c_str(),
-      row.candidates.c_str(), row.leaf, block, order, workload.name.c_str(),
-      workload.photons.size(), workload.morton.host.size(), k, radius, device.c_str());
-  return text;
-}
-
-/// A row and what its name leaves open: all rows in blocks of 128 and Morton order, then the
-/// fastest of each library in other blocks and in the order that the queries were given in.
-struct Task {
-  int row = -1;         ///< -1: the fastest of the library
-  const char* library;  ///< null: any
-  int block;
-  bool morton;
-};
-
-std::vector<Task> tasks_of(const std::vector<Row>& rows, bool host) {
-  std::vector<Task> tasks;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!host || rows[i].on_host) tasks.push_back({static_cast<int>(i), nullptr, 128, true});
-  }
-  if (host) return tasks;
-  for (const char* library : {"cudaKDTree", "cuBQL"}) {
-    for (const int block : {32, 64, 256}) tasks.push_back({-1, library, block, true});
-    tasks.push_back({-1, library, 128, false});
-  }
-  return tasks;
-}
-
-const Row& row_of(const Task& task, const std::vector<Row>& rows, const Progress& progress) {
-  if (task.row >= 0) return rows[static_cast<std::size_t>(task.row)];
-  std::size_t best = rows.size();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].library != task.library || !std::isfinite(progress.seconds[i])) continue;
-    if (best == rows.size() || progress.seconds[i] < progress.seconds[best]) best = i;
-  }
-  if (best == rows.size()) throw std::runtime_error("no row of the library is right");
-  return rows[best];
-}
-
-void print_line(const std::string& line) {
-  std::fputs((line + "\n").c_str(), stdout);
+/// Runs `work` in a child process, which is ended after some seconds. Returns what went wrong, or
+/// "".
+std::string run_child(const std::function<void()>& work) {
+  constexpr unsigned most_seconds = 30;
   std::fflush(stdout);
-}
-
-std::string statistics(const std::vector<double>& seconds) {
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "\"seconds\": {\"median\": %.6g, \"min\": %.6g, \"max\": %.6g, \"samples\": %zu}",
-                seconds[seconds.size() / 2], seconds.front(), seconds.back(), seconds.size());
-  return text;
-}
-
-void start_device(Progress& progress) {
-  cudaDeviceProp properties;
-  CHECK(cudaSetDevice(0));
-  CHECK(cudaGetDeviceProperties(&properties, 0));
-  std::snprintf(progress.device, sizeof progress.device, "%s", properties.name);
-  cudaMemPool_t pool;
-  CHECK(cudaDeviceGetDefaultMemPool(&pool, 0));
-  std::uint64_t kept =
-      std::numeric_limits<std::uint64_t>::max();  // builds are not to wait for the system's memory
-  CHECK(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &kept));
-}
-
-/// Runs the tasks from `first` on, in the process that calls it.
-void run_tasks(Workload& workload, int k, float radius, bool host, std::size_t first,
-               Progress& progress) {
-  const std::vector<Row> rows = rows_of(k);
-  const std::vector<Task> tasks = tasks_of(rows, host);
-  std::unique_ptr<DeviceArray<float3>> photons, morton, given;
-  if (!host) {
-    start_device(progress);
-    photons = std::make_unique<DeviceArray<float3>>(workload.photons);
-    morton = std::make_unique<DeviceArray<float3>>(workload.morton.host);
-    given = std::make_unique<DeviceArray<float3>>(workload.given.host);
-    workload.morton.device = morton->data();
-    workload.given.device = given->data();
-  }
-  const Cloud cloud{workload.photons, host ? nullptr : photons->data()};
-  for (std::size_t i = first; i < tasks.size(); ++i) {
-    progress.row = static_cast<int>(i);
-    const Task& task = tasks[i];
-    const Row& row = row_of(task, rows, progress);
-    const std::string named = fields(row, task.block, task.morton ? "morton" : "given", workload, k,
-                                     radius, host ? "host" : progress.device);
-    std::fprintf(stderr, "k %d, %s, %s, %s, %s, %s, leaf %d, block %d%s: ", k, row.library.c_str(),
-                 row.structure.c_str(), row.builder.c_str(), row.traversal.c_str(),
-                 row.candidates.c_str(), row.leaf, task.block, task.morton ? "" : ", order given");
-    const Queries& queries = task.morton ? workload.morton : workload.given;
-    const Measured measured = row.run({cloud, workload, queries, k, radius, task.block});
-    const double median = measured.seconds[measured.seconds.size() / 2];
-    const auto count = static_cast<double>(queries.host.size());
-    if (task.row >= 0 && measured.wrong == 0) progress.seconds[task.row] = median;
-    char text[256];
-    std::snprintf(
-        text, sizeof text,
-        "\"build\": %.6g, \"ns a query\": %.6g, \"queries per second\": %.6g, \"wrong\": %zu, "
-        "\"checked\": %zu",
-        measured.build, median / count * 1e9, count / median, measured.wrong,
-        queries.checked.size());
-    print_line("{" + named + ", " + statistics(measured.seconds) + ", " + text + "}");
-    std::fprintf(stderr, "%.3f ms, %zu wrong\n", median * 1e3, measured.wrong);
-  }
-}
-
-/// Eight independent chains of multiply-adds a thread.
-__global__ void multiply_add(float* out, int rounds, float factor) {
-  float value[8];
-  for (int i = 0; i < 8; ++i) value[i] = static_cast<float>(threadIdx.x + i);
-#pragma unroll 32
-  for (int round = 0; round < rounds; ++round) {
-#pragma unroll
-    for (int i = 0; i < 8; ++i) value[i] = fmaf(value[i], factor, 0.5f);
-  }
-  float sum = 0;
-  for (int i = 0; i < 8; ++i) sum += value[i];
-  out[threadIdx.x + blockIdx.x * blockDim.x] = sum;
-}
-
-__global__ void copy(const float4* from, float4* to, std::size_t count) {
-  for (std::size_t i = threadIdx.x + std::size_t{blockIdx.x} * blockDim.x; i < count;
-       i += std::size_t{gridDim.x} * blockDim.x) {
-    to[i] = from[i];
-  }
-}
-
-/// What the device does at most, to hold the rows against.
-void run_limits(Progress& progress) {
-  start_device(progress);
-  const std::string device = std::string("\"device\": \"") + progress.device + "\"";
-  const std::size_t bytes = std::size_t{1} << 30;
-  const DeviceArray<float4> from(bytes / sizeof(float4)), to(bytes / sizeof(float4));
-  CHECK(cudaMemset(from.data(), 0, bytes));
-  const auto moved = [&](const char* name, const std::vector<double>& seconds) {
-    char text[128];
-    std::snprintf(text, sizeof text, "\"GB/s\": %.6g",
-                  2.0 * static_cast<double>(bytes) / seconds.front() * 1e-9);
-    print_line(std::string("{\"structure\": \"") + name + "\", " + device + ", " +
-               statistics(seconds) + ", " + text + "}");
-  };
-  moved("copy by cudaMemcpy, read and written", device_seconds([&] {
-          CHECK(cudaMemcpyAsync(to.data(), from.data(), bytes, cudaMemcpyDeviceToDevice));
-        }));
-  moved("copy by a kernel, read and written", device_seconds([&] {
-          copy<<<132 * 16, 512>>>(from.data(), to.data(), bytes / sizeof(float4));
-        }));
-  const int blocks = 132 * 32, threads = 256, rounds = 16384;
-  const DeviceArray<float> out(static_cast<std::size_t>(blocks * threads));
-  const std::vector<double> seconds =
-      device_seconds([&] { multiply_add<<<blocks, threads>>>(out.data(), rounds, 0.999f); });
-  char text[128];
-  std::snprintf(text, sizeof text, "\"GFLOP/s\": %.6g",
-                16.0 * rounds * blocks * threads / seconds.front() * 1e-9);
-  print_line("{\"structure\": \"multiply-add, single precision\", " + device + ", " +
-             statistics(seconds) + ", " + text + "}");
-}
-
-/// Runs `work` in a child process, which is ended where a row takes longer than `row_limit`
-/// seconds. Returns whether it finished; why not is then in the message.
-bool run_child(Progress& progress, double row_limit, const std::function<void()>& work) {
-  std::fflush(stdout);
-  progress.message[0] = 0;
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("no process can be started");
   if (child == 0) {
+    alarm(most_seconds);
     try {
       work();
-      std::fflush(nullptr);
       _exit(0);
     } catch (const std::exception& error) {
-      std::snprintf(progress.message, sizeof progress.message, "%s", error.what());
+      std::fprintf(stderr, "%s\n", error.what());
     }
-    std::fflush(nullptr);
     _exit(1);
   }
-  int status = 0, row = progress.row;
-  Clock::time_point start = Clock::now();
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (progress.row != row) {
-      row = progress.row;
-      start = Clock::now();
-    }
-    if (seconds_since(start) > row_limit) {
-      std::snprintf(progress.message, sizeof progress.message, "took longer than %g seconds",
-                    row_limit);
-      kill(child, SIGKILL);
-      waitpid(child, &status, 0);
-      return false;
-    }
-    usleep(10'000);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGALRM) return "took longer than " + std::to_string(most_seconds) + " seconds";
+    return "ended by signal " + std::to_string(signal);
   }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  if (!progress.message[0]) {
-    std::snprintf(progress.message, sizeof progress.message, "ended by signal %d",
-                  WIFSIGNALED(status) ? WTERMSIG(status) : 0);
-  }
-  return false;
-}
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts{""};
-  for (const char c : list) {
-    if (c == ',') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
+  return WEXITSTATUS(status) == 0 ? "" : "failed";
 }
 
 struct Options {
@@ -898,8 +629,7 @@ struct Options {
   std::vector<float> radius;  ///< empty: automatic
   std::string points, queries;
   std::size_t plane_photons = 0, plane_queries = 0;
-  double seconds = 55;    ///< none starts later
-  double row_limit = 12;  ///< seconds
+  double seconds = 55;  ///< none starts later
   bool host = false;
 };
 
@@ -910,12 +640,19 @@ Options options_of(int count, char** words) {
     if (i >= count) throw std::runtime_error(std::string(words[i - 1]) + ": a value is missing");
     return words[i++];
   };
-  const auto positive = [](const std::string& text) {
+  const auto positive = [](const std::string& word) {
     char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
+    const double number = std::strtod(word.c_str(), &end);
     if (*end || !(number > 0 && number < 1e9))
-      throw std::runtime_error(text + ": no positive number");
+      throw std::runtime_error(word + ": no positive number");
     return number;
+  };
+  const auto list = [&](auto& numbers) {
+    numbers.clear();
+    std::istringstream words_of_list(next());
+    for (std::string word; std::getline(words_of_list, word, ',');) {
+      numbers.push_back(static_cast<std::decay_t<decltype(numbers[0])>>(positive(word)));
+    }
   };
   while (i < count) {
     const std::string word = next();
@@ -928,16 +665,12 @@ Options options_of(int count, char** words) {
       options.queries = next();
     } else if (word == "--seconds") {
       options.seconds = positive(next());
-    } else if (word == "--row-limit") {
-      options.row_limit = positive(next());
     } else if (word == "--host") {
       options.host = true;
     } else if (word == "-k") {
-      options.k.clear();
-      for (const std::string& k : split(next())) options.k.push_back(static_cast<int>(positive(k)));
+      list(options.k);
     } else if (word == "--radius") {
-      for (const std::string& radius : split(next()))
-        options.radius.push_back(static_cast<float>(positive(radius)));
+      list(options.radius);
     } else {
       throw std::runtime_error(word +
                                ": no option; see the head of bench/rivals/cuda_neighbours.cu");
@@ -968,81 +701,55 @@ Points picked(const Points& points, const std::vector<std::size_t>& indices) {
   return result;
 }
 
+/// Twice the median distance to the k-th point.
+///   others   squared distances from points to those around, the first of which is the point itself
+float automatic_radius(const std::vector<std::vector<double>>& others, int k) {
+  std::vector<double> squared;
+  for (const auto& one : others) squared.push_back(one[static_cast<std::size_t>(k)]);
+  std::sort(squared.begin(), squared.end());
+  return static_cast<float>(2 * std::sqrt(squared[squared.size() / 2]));
+}
+
 int run(const Options& options) {
   const Clock::time_point start = Clock::now();
   const bool plane = options.points.empty();
-  const Points photons =
-      plane ? uniform_points(options.plane_photons, 1) : read_npy(options.points);
-  Workload workload;
-  workload.name = plane ? "plane" : options.points;
-  workload.photons = in_order(photons, morton_order(photons));
-  workload.given.host =
-      plane ? uniform_points(options.plane_queries, 3) : read_npy(options.queries);
-  const std::vector<std::uint32_t> order = morton_order(workload.given.host);
-  workload.morton.host = in_order(workload.given.host, order);
-  for (const std::size_t i : workload.morton.checked = spread(order.size())) {
-    workload.given.checked.push_back(order[i]);
-  }
+  Workload work;
+  work.name = plane ? "plane" : options.points;
+  work.photons =
+      in_morton_order(plane ? uniform_points(options.plane_photons, 1) : read_npy(options.points));
+  work.queries =
+      in_morton_order(plane ? uniform_points(options.plane_queries, 3) : read_npy(options.queries));
+  work.checked = spread(work.queries.size());
   for (const int k : options.k) rows_of(k);  // throws for other k
   const auto most = static_cast<std::size_t>(*std::max_element(options.k.begin(), options.k.end()));
-  if (workload.photons.size() <= most) throw std::runtime_error("no more points than k");
-  workload.nearest =
-      nearest(workload.photons, picked(workload.morton.host, workload.morton.checked), most);
-  std::vector<float> radii = options.radius;
-  if (radii.empty()) {
-    const auto others = nearest(
-        workload.photons, picked(workload.photons, spread(workload.photons.size())), most + 1);
-    for (const int k : options.k) {
-      std::vector<double> squared;  // the nearest of all is the photon itself
-      for (const std::vector<double>& one : others)
-        squared.push_back(one[static_cast<std::size_t>(k)]);
-      std::nth_element(squared.begin(),
-                       squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2),
-                       squared.end());
-      radii.push_back(static_cast<float>(2 * std::sqrt(squared[squared.size() / 2])));
-    }
+  if (work.photons.size() <= most) throw std::runtime_error("no more points than k");
+  work.nearest = nearest(work.photons, picked(work.queries, work.checked), most);
+  std::vector<std::vector<double>> others;
+  if (options.radius.empty()) {
+    others = nearest(work.photons, picked(work.photons, spread(work.photons.size())), most + 1);
   }
   std::fprintf(stderr, "points and brute force took %.1f s\n", seconds_since(start));
 
-  void* const shared =
-      mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) throw std::runtime_error("no shared memory");
-  Progress& progress = *static_cast<Progress*>(shared);
-  if (!options.host && !run_child(progress, options.row_limit, [&] { run_limits(progress); })) {
-    std::fprintf(stderr, "limits of the device: %s\n", progress.message);
-  }
   bool failed = false;
   for (std::size_t j = 0; j < options.k.size(); ++j) {
-    const int k = options.k[j];
-    const std::vector<Row> rows = rows_of(k);
-    const std::vector<Task> tasks = tasks_of(rows, options.host);
-    std::fill(std::begin(progress.seconds), std::end(progress.seconds),
-              std::numeric_limits<double>::infinity());
-    for (std::size_t first = 0; first < tasks.size();) {
+    work.k = options.k[j];
+    work.radius = others.empty() ? options.radius[j] : automatic_radius(others, work.k);
+    for (const Row& row : rows_of(work.k)) {
+      if (options.host && !row.on_host) continue;
+      std::fprintf(stderr, "k %d, %s, %s, %s, leaf %d\n", work.k, row.library, row.structure,
+                   row.traversal, row.leaf);
       if (seconds_since(start) > options.seconds) {
-        std::fprintf(stderr, "k %d: %zu rows were not started within %g s\n", k,
-                     tasks.size() - first, options.seconds);
+        std::fprintf(stderr, "and the rows behind it were not started within %g s\n",
+                     options.seconds);
         break;
       }
-      progress.row = static_cast<int>(first);
-      const auto work = [&] { run_tasks(workload, k, radii[j], options.host, first, progress); };
-      if (run_child(progress, std::min(options.row_limit, options.seconds), work)) break;
-      const auto at = static_cast<std::size_t>(progress.row);
-      const Task& task = tasks[at];
-      Row unknown;
-      unknown.library = task.library ? task.library : "";
-      unknown.structure = "the fastest";
-      const Row& row = task.row >= 0 ? rows[static_cast<std::size_t>(task.row)] : unknown;
-      for (char* c = progress.message; *c; ++c) {
-        if (*c == '"' || *c == '\\' || *c == '\n') *c = ' ';
-      }
-      std::fprintf(stderr, "%s\n", progress.message);
-      print_line("{" +
-                 fields(row, task.block, task.morton ? "morton" : "given", workload, k, radii[j],
-                        progress.device) +
-                 ", \"failure\": \"" + progress.message + "\"}");
+      const std::string problem = run_child([&] { row.run(row, work, options.host); });
+      if (problem.empty()) continue;
+      row.print_head(work, 32, "");
+      std::printf(R"("failure": "%s"})"
+                  "\n",
+                  problem.c_str());
       failed = true;
-      first = at + 1;
     }
   }
   std::fprintf(stderr, "all took %.1f s\n", seconds_since(start));
