@@ -8,13 +8,13 @@
 #include "bake/open_sides.hpp"
 #include "bake/write_baked.hpp"
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/saved_maps_option.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -64,23 +64,18 @@ void add_bake_command(CLI::App& photile) {
   auto options = std::make_shared<BakeOptions>();
   CLI::App* command = photile.add_subcommand(
       "bake", "Write light maps as textures of a glTF scene, a picture per light");
-  command->add_option("-o,--output", options->output, "scene to write, with files beside it")
-      ->required()
-      ->type_name("FILE.gltf")
-      ->check(file_ending_in({".gltf", ".glb"}))
-      ->group("Output");
-  command
-      ->add_option("--texel", options->baking.texel,
-                   "metres between texels; default: half the coarsest nodes, or what fits")
-      ->type_name("M")
-      ->transform(positive_number())
-      ->group("Output");
-  command
-      ->add_option("--most-texels", options->baking.most_side, "texels on a side of the pictures")
-      ->type_name("N")
-      ->transform(count_between(64, limits::max_image_side))
-      ->capture_default_str()
-      ->group("Output");
+  const OptionGroup output(*command, "Output");
+  output
+      .add("-o,--output", options->output, "FILE.gltf", "scene to write, with files beside it",
+           file_ending_in({".gltf", ".glb"}))
+      ->required();
+  output.add("--texel", options->baking.texel, "M",
+             "metres between texels; default: half the coarsest nodes, or what fits",
+             positive_number());
+  output
+      .add("--most-texels", options->baking.most_side, "N", "texels on a side of the pictures",
+           count_between(64, limits::max_image_side))
+      ->capture_default_str();
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
   add_saved_maps_options(*command, options->render);

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
@@ -247,22 +247,16 @@ void add_compare_command(CLI::App& photile) {
   command->add_option("FIRST", options->first, "picture")->required()->type_name("");
   command->add_option("SECOND", options->second, "picture that the first is compared with")
       ->type_name("");
-  command
-      ->add_option("--mood", options->moods,
-                   "give two: the first picture in both, as the window kept them")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  add_moods_file_option(*command, options->moods_file, "Options");
-  command->add_option("-o,--output", options->picture, "both and their difference in false colour")
-      ->type_name("FILE.png")
-      ->check(file_ending_in({".png"}));
-  command->add_option("--json", options->json, "write the errors as JSON")->type_name("FILE");
-  command
-      ->add_option("-s,--scale", options->scale,
-                   "largest difference of the legend; default: from the pictures")
-      ->type_name("X")
-      ->transform(positive_number());
-  add_tone_mapping_options(*command, options->tone_mapping, "Options");
+  const OptionGroup group(*command);
+  group.repeat("--mood", options->moods, "NAME",
+               "give two: the first picture in both, as the window kept them");
+  add_moods_file_option(group, options->moods_file);
+  group.add("-o,--output", options->picture, "FILE.png",
+            "both and their difference in false colour", file_ending_in({".png"}));
+  group.add("--json", options->json, "FILE", "write the errors as JSON");
+  group.add("-s,--scale", options->scale, "X",
+            "largest difference of the legend; default: from the pictures", positive_number());
+  add_tone_mapping_options(group, options->tone_mapping);
   command->callback([options] { run_compare(*options); });
 }
 

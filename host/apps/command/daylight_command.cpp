@@ -13,6 +13,7 @@
 
 #include "command/command_line.hpp"
 #include "command/daylight_results.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/report_contents.hpp"
@@ -20,7 +21,6 @@
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "loading/load_scene.hpp"
@@ -32,7 +32,6 @@
 #include "report/honeybee_files.hpp"
 #include "report/included_results.hpp"
 #include "report/plan_drawing.hpp"
-#include "report/printing.hpp"
 #include "report/report.hpp"
 #include "weather/weather_file.hpp"
 
@@ -116,21 +115,18 @@ void write(const DaylightOptions& options, const Scene& scene,
            const report::DaylightResults& results, const std::vector<SkyHour>& hours) {
   const auto record = report::daylight_json(results, options.asked);
   const report::ReportText pages = pages_of(options, scene, record, results.rounds);
-  for (const std::filesystem::path file : options.outputs) {
-    if (file.extension() == ".csv") write_file(file, report::daylight_csv(results));
-    if (file.extension() == ".json") write_file(file, json_text(record));
-    if (file.extension() == ".svg") {
-      const auto names = plan_names(file, pages.maps.size());
-      for (std::size_t i = 0; i < names.size(); ++i) {
-        const report::ReportMap& map = pages.maps[i];
-        write_file(names[i], report::plan_svg(map.values, map.values.total(), map.colours,
-                                              report::PlanSize::whole, map.surroundings));
-      }
+  const auto plans = [&] {
+    std::vector<std::string> drawn;
+    for (const report::ReportMap& map : pages.maps) {
+      drawn.push_back(report::plan_svg(map.values, map.values.total(), map.colours,
+                                       report::PlanSize::whole, map.surroundings));
     }
-    if (file.extension() != ".html" && file.extension() != ".pdf") continue;
-    const std::string page = report::report_html({}, pages, {}, {});
-    write_file(file, file.extension() == ".pdf" ? report::pdf_of(page) : page);
-  }
+    return drawn;
+  };
+  write_results(options.outputs, {.csv = [&] { return report::daylight_csv(results); },
+                                  .json = [&] { return json_text(record); },
+                                  .plans = plans,
+                                  .page = [&] { return report::report_html({}, pages, {}, {}); }});
   if (options.honeybee.empty()) return;
   const std::filesystem::path folder = options.honeybee;
   for (const auto& [name, content] : report::annual_files(results, hours)) {
@@ -255,11 +251,7 @@ void run_daylight(DaylightOptions& options) {
       note_output(folder / name);
     }
   }
-  const auto planes = static_cast<std::size_t>(std::count_if(
-      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
-  for (const std::filesystem::path file : options.outputs) {
-    if (file.extension() == ".svg") note_plans(file, 2 * planes);  // DA and UDI
-  }
+  note_plans(options.outputs, 2 * planes_of(grids));  // DA and UDI
   take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(
@@ -282,65 +274,37 @@ void run_daylight(DaylightOptions& options) {
 }
 
 void add_year(CLI::App& command, DaylightOptions& options) {
-  command.add_option("--patches", options.patches, "of the sky: Tregenza's, or Reinhart's")
-      ->type_name("")
-      ->check(CLI::IsMember({145, 577, 2305}))
-      ->capture_default_str()
-      ->group("Year");
-  command
-      .add_option("--suns", options.suns,
-                  "rays: the sun's own to each point; patches: the four patches nearest to it, as "
-                  "Radiance's two-phase method has it")
-      ->type_name("")
-      ->check(CLI::IsMember({"rays", "patches"}))
-      ->capture_default_str()
-      ->group("Year");
-  command
-      .add_option("--ground", options.ground, "reflectance of the ground that surrounds the scene")
-      ->type_name("X")
-      ->transform(number_between(0, 1))
-      ->capture_default_str()
-      ->group("Year");
-  command.add_option("--lux", options.asked.target_lux, "that count as autonomous daylight")
-      ->type_name("LUX")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Year");
-  command.add_option("--occupied", options.occupied, "hours of a day in standard time")
-      ->type_name("FROM-TO")
-      ->capture_default_str()
-      ->group("Year");
-  command
-      .add_option("--days", options.days, "on which they are occupied, by the weather's calendar")
-      ->type_name("DAYS")
-      ->capture_default_str()
-      ->group("Year");
-  command
-      .add_option("--schedule", options.schedule,
-                  "in their place: a value for each hour of the year, occupied above 0")
-      ->type_name("FILE.csv")
-      ->group("Year");
-  command
-      .add_option("--blinds", options.blinds,
-                  "that close where the sun comes in (IES LM-83): the scene with closed ones, or "
-                  "panes and what they let through then; repeatable")
-      ->type_name("SCENE|MATERIAL=TRANSMITTANCE")
-      ->allow_extra_args(false)
-      ->group("Year");
-  command
-      .add_option("--lamps-to", options.lamps_to,
-                  "lux that the scene's lamps, dimmed together, keep on the mean of a grid; tells "
-                  "their energy")
-      ->type_name("LUX")
-      ->transform(positive_number())
-      ->group("Year");
-  command
-      .add_option("--lamp-efficacy", options.lamp_efficacy,
-                  "lm/W of lamps whose photometric files state no power")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Year");
+  const OptionGroup year(command, "Year");
+  year.add("--patches", options.patches, "", "of the sky: Tregenza's, or Reinhart's",
+           CLI::IsMember({145, 577, 2305}))
+      ->capture_default_str();
+  year.add("--suns", options.suns, "",
+           "rays: the sun's own to each point; patches: the four patches nearest to it, as "
+           "Radiance's two-phase method has it",
+           CLI::IsMember({"rays", "patches"}))
+      ->capture_default_str();
+  year.add("--ground", options.ground, "X", "reflectance of the ground that surrounds the scene",
+           number_between(0, 1))
+      ->capture_default_str();
+  year.add("--lux", options.asked.target_lux, "LUX", "that count as autonomous daylight",
+           positive_number())
+      ->capture_default_str();
+  year.add("--occupied", options.occupied, "FROM-TO", "hours of a day in standard time")
+      ->capture_default_str();
+  year.add("--days", options.days, "DAYS", "on which they are occupied, by the weather's calendar")
+      ->capture_default_str();
+  year.add("--schedule", options.schedule, "FILE.csv",
+           "in their place: a value for each hour of the year, occupied above 0");
+  year.repeat("--blinds", options.blinds, "SCENE|MATERIAL=TRANSMITTANCE",
+              "that close where the sun comes in (IES LM-83): the scene with closed ones, or panes "
+              "and what they let through then; repeatable");
+  year.add("--lamps-to", options.lamps_to, "LUX",
+           "lux that the scene's lamps, dimmed together, keep on the mean of a grid; tells their "
+           "energy",
+           positive_number());
+  year.add("--lamp-efficacy", options.lamp_efficacy, "X",
+           "lm/W of lamps whose photometric files state no power", positive_number())
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -349,32 +313,23 @@ void add_daylight_command(CLI::App& photile) {
   auto options = std::make_shared<DaylightOptions>();
   CLI::App* command = photile.add_subcommand(
       "daylight", "A year of daylight at points: autonomy, glare of the sun, energy of lamps");
-  command
-      ->add_option("-o,--output", options->outputs,
-                   "table of the points (.csv, .json), plans of DA and UDI (.svg) or a report "
-                   "(.html, .pdf); repeatable")
-      ->type_name("FILE")
-      ->check(file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}))
-      ->allow_extra_args(false)
-      ->group("Output");
-  command
-      ->add_option("--honeybee", options->honeybee,
-                   "folder for the lux of every hour, as annual recipes leave it")
-      ->type_name("FOLDER")
-      ->group("Output");
+  const OptionGroup output(*command, "Output"), measuring(*command, "Measuring");
+  output.repeat("-o,--output", options->outputs, "FILE",
+                "table of the points (.csv, .json), plans of DA and UDI (.svg) or a report (.html, "
+                ".pdf); repeatable",
+                file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}));
+  output.add("--honeybee", options->honeybee, "FOLDER",
+             "folder for the lux of every hour, as annual recipes leave it");
   add_place_options(*command, options->places);
   add_year(*command, *options);
   options->parameters.repeats = defaults::daylight_repeats;
   options->parameters.gathering.rays = defaults::daylight_rays;
-  add_maintenance_option(*command, options->parameters, "Measuring");
-  add_sensor_options(*command, options->parameters, "Measuring");
-  command
-      ->add_option("--for", options->seconds,
-                   "add rounds of rays for so long; figures get standard errors, and sDA says when "
-                   "it certainly meets 55% or 75%")
-      ->type_name("TIME")
-      ->transform(duration())
-      ->group("Measuring");
+  add_maintenance_option(measuring, options->parameters);
+  add_sensor_options(measuring, options->parameters);
+  measuring.add("--for", options->seconds, "TIME",
+                "add rounds of rays for so long; figures get standard errors, and sDA says when it "
+                "certainly meets 55% or 75%",
+                duration());
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "direct_rays", "gloss", "quota"});
   command->callback([options] { run_daylight(*options); });

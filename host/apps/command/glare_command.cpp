@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
@@ -146,15 +146,8 @@ bool wants_pictures(const GlareOptions& options) {
 }
 
 void check_outputs_of(const GlareOptions& options) {
-  std::vector<std::filesystem::path> files;
-  for (const std::string& file : options.outputs) {
-    if (!ends_in(file, ".csv") && !ends_in(file, ".json")) {
-      throw UsageError(fmt::format("{}: an output ends in .csv or .json; rename it", file));
-    }
-    files.emplace_back(file);
-  }
   if (!options.pictures.empty()) make_folder(options.pictures);
-  check_outputs(files);
+  check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
 }
 
 void write_outputs(const GlareOptions& options, const Scene& scene, const LightMix& mix,
@@ -217,65 +210,47 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
 }
 
 void add_places(CLI::App& command, GlareOptions& options) {
-  command
-      .add_option("--observers", options.observers,
-                  "eyes and directions of view, lines x y z dx dy dz; repeatable")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->group("Places");
-  command
-      .add_option("--camera", options.cameras,
-                  "name or index of a camera that is an observer; repeatable")
-      ->type_name("NAME|INDEX")
-      ->allow_extra_args(false)
-      ->group("Places");
+  const OptionGroup places(command, "Places");
+  places.repeat("--observers", options.observers, "FILE",
+                "eyes and directions of view, lines x y z dx dy dz; repeatable");
+  places.repeat("--camera", options.cameras, "NAME|INDEX",
+                "name or index of a camera that is an observer; repeatable");
+  const std::string height = fmt::format("floor+{:g}", defaults::eye_height);
   CLI::Option* grid =
-      command
-          .add_option("--grid", options.plane.height,
-                      fmt::format("observers over the floor, at the grid of EN 12464-1; default: "
-                                  "floor+{:g}",
-                                  defaults::eye_height))
-          ->type_name("[HEIGHT]")
+      places
+          .add("--grid", options.plane.height, "[HEIGHT]",
+               "observers over the floor, at the grid of EN 12464-1; default: " + height)
           ->expected(0, 1)
-          ->default_str(fmt::format("floor+{:g}", defaults::eye_height))
-          ->group("Places");
-  command.add_option("--directions", options.directions, "of view at each point of the grid")
-      ->type_name("N")
-      ->transform(count_between(1, 360))
+          ->default_str(height);
+  places
+      .add("--directions", options.directions, "N", "of view at each point of the grid",
+           count_between(1, 360))
       ->capture_default_str()
-      ->needs(grid)
-      ->group("Places");
-  add_plane_options(command, options.plane);
+      ->needs(grid);
+  add_plane_options(places, options.plane);
 }
 
 void add_rating(CLI::App& command, GlareOptions& options) {
   glare::GlareParameters& parameters = options.parameters;
-  command
-      .add_option("--ratings", options.ratings,
-                  "ugr, dgp and dgi, separated by commas; default: all, of a grid ugr. dgp and dgi "
-                  "take a picture of each view")
-      ->type_name("LIST")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"ugr", "dgp", "dgi"}))
-      ->group("Glare");
-  command
-      .add_option("--target", options.target,
-                  "the UGR that a standard allows, by name (office-desk) or value (UGR=19)")
-      ->type_name("NAME|VALUES")
-      ->group("Glare");
-  command
-      .add_option("--source-luminance", parameters.search.threshold,
-                  "of glare sources in pictures: above 100 cd/m2; else times the mean luminance")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Glare");
-  command.add_option("--picture-size", parameters.picture_side, "pixels across a fisheye picture")
-      ->type_name("N")
-      ->transform(count_between(16, limits::max_image_side))
-      ->capture_default_str()
-      ->group("Glare");
-  add_sensor_options(command, parameters.measuring, "Glare");
+  const OptionGroup group(command, "Glare");
+  group
+      .add("--ratings", options.ratings, "LIST",
+           "ugr, dgp and dgi, separated by commas; default: all, of a grid ugr. dgp and dgi take a "
+           "picture of each view",
+           CLI::IsMember({"ugr", "dgp", "dgi"}))
+      ->delimiter(',');
+  group.add("--target", options.target, "NAME|VALUES",
+            "the UGR that a standard allows, by name (office-desk) or value (UGR=19)");
+  group
+      .add("--source-luminance", parameters.search.threshold, "X",
+           "of glare sources in pictures: above 100 cd/m2; else times the mean luminance",
+           positive_number())
+      ->capture_default_str();
+  group
+      .add("--picture-size", parameters.picture_side, "N", "pixels across a fisheye picture",
+           count_between(16, limits::max_image_side))
+      ->capture_default_str();
+  add_sensor_options(group, parameters.measuring);
 }
 
 }  // namespace
@@ -283,15 +258,11 @@ void add_rating(CLI::App& command, GlareOptions& options) {
 void add_glare_command(CLI::App& photile) {
   auto options = std::make_shared<GlareOptions>();
   CLI::App* command = photile.add_subcommand("glare", "Discomfort glare: UGR, DGP and DGI");
-  command->add_option("-o,--output", options->outputs, "table to write, .csv or .json; repeatable")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->group("Output");
-  command
-      ->add_option("--pictures", options->pictures,
-                   "folder for the fisheye pictures of all views, as evalglare reads them")
-      ->type_name("FOLDER")
-      ->group("Output");
+  const OptionGroup output(*command, "Output");
+  output.repeat("-o,--output", options->outputs, "FILE",
+                "table to write, .csv or .json; repeatable", file_ending_in({".csv", ".json"}));
+  output.add("--pictures", options->pictures, "FOLDER",
+             "folder for the fisheye pictures of all views, as evalglare reads them");
   add_places(*command, *options);
   add_rating(*command, *options);
   add_setting_options(*command, options->render, {"direct_rays", "gloss"});

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
-#include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
@@ -62,13 +62,7 @@ void scale_to_thousand_lumens(double flux, glare::UgrTable& table) {
 
 void run_ies(const IesOptions& options) {
   note_input(options.file);
-  std::vector<std::filesystem::path> files(options.outputs.begin(), options.outputs.end());
-  for (const std::string& file : options.outputs) {
-    if (!ends_in(file, ".csv") && !ends_in(file, ".json")) {
-      throw UsageError(fmt::format("{}: an output ends in .csv or .json; rename it", file));
-    }
-  }
-  check_outputs(files);
+  check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
   files::Warnings warnings;
   const IntensityDistribution lamp = loading::read_user_photometry(options.file, warnings);
   print_lamp(lamp);
@@ -97,22 +91,21 @@ void add_ies_command(CLI::App& photile) {
   command->add_option("FILE", options->file, "photometric file: .ies or .ldt")
       ->required()
       ->type_name("");
-  CLI::Option* table = command->add_flag("--ugr-table", options->ugr_table,
-                                         "glare in standard rooms by the tabular method (CIE 190)");
-  command
-      ->add_option("--spacing", options->spacing,
-                   "of the luminaires, over their height above the eyes")
-      ->type_name("X")
-      ->transform(number_between(0.1, 2))
+  const OptionGroup group(*command);
+  CLI::Option* table = group.flag("--ugr-table", options->ugr_table,
+                                  "glare in standard rooms by the tabular method (CIE 190)");
+  group
+      .add("--spacing", options->spacing, "X",
+           "of the luminaires, over their height above the eyes", number_between(0.1, 2))
       ->capture_default_str()
       ->needs(table);
-  command
-      ->add_flag("--per-1000-lm", options->per_thousand_lumens,
-                 "uncorrected values: of a luminaire of 1000 lm")
+  group
+      .flag("--per-1000-lm", options->per_thousand_lumens,
+            "uncorrected values: of a luminaire of 1000 lm")
       ->needs(table);
-  command->add_option("-o,--output", options->outputs, "table to write, .csv or .json; repeatable")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
+  group
+      .repeat("-o,--output", options->outputs, "FILE", "table to write, .csv or .json; repeatable",
+              file_ending_in({".csv", ".json"}))
       ->needs(table);
   command->callback([options] { run_ies(*options); });
 }

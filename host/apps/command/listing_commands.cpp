@@ -8,6 +8,7 @@
 #include <string>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/scene_report.hpp"
@@ -130,20 +131,19 @@ void run_devices(const DevicesOptions& options) {
 void add_devices_command(CLI::App& photile) {
   auto options = std::make_shared<DevicesOptions>();
   CLI::App* command = photile.add_subcommand("devices", "List the OpenCL devices");
-  CLI::Option* json = command->add_flag("--json", options->json, "print JSON");
-  command
-      ->add_option("--device", options->selector,
-                   "devices to mark, to test or to compile for, as in photile render")
-      ->type_name("SELECTOR");
-  command
-      ->add_flag("--compile", options->compile,
-                 "compile the kernels of usual scenes ahead, so that the first picture of each is "
-                 "as quick as later ones")
+  const OptionGroup group(*command);
+  CLI::Option* json = group.flag("--json", options->json, "print JSON");
+  group.add("--device", options->selector, "SELECTOR",
+            "devices to mark, to test or to compile for, as in photile render");
+  group
+      .flag("--compile", options->compile,
+            "compile the kernels of usual scenes ahead, so that the first picture of each is as "
+            "quick as later ones")
       ->excludes(json);
-  command
-      ->add_flag("--test", options->test,
-                 "test what each device computes, which decides if a GPU is taken by default; "
-                 "takes seconds")
+  group
+      .flag("--test", options->test,
+            "test what each device computes, which decides if a GPU is taken by default; takes "
+            "seconds")
       ->excludes(json);
   command->callback([options] { run_devices(*options); });
 }
@@ -207,13 +207,11 @@ void add_info_command(CLI::App& photile) {
   auto options = std::make_shared<InfoOptions>();
   options->load.may_be_dark = true;
   CLI::App* command = photile.add_subcommand("info", "Say what a scene file holds");
-  command->add_option("SCENE", options->scene, "scene file: .obj, .gltf or .glb")
-      ->required()
-      ->type_name("");
+  add_scene_file(*command, options->scene);
   command->add_flag("--json", options->json, "print JSON");
   add_set_option(*command, {scene_settings(options->load)});
-  add_scene_options(*command, options->load, "Scene");
-  add_light_options(*command, options->load, "Lights");
+  add_scene_options(*command, options->load);
+  add_light_options(*command, options->load);
   command->callback([options] { run_info(*options); });
 }
 

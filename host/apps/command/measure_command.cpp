@@ -10,6 +10,7 @@
 
 #include "command/command_line.hpp"
 #include "command/measure_outputs.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
@@ -17,7 +18,6 @@
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "loading/load_scene.hpp"
 #include "measuring/measurement.hpp"
@@ -196,34 +196,26 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 
 void add_places(CLI::App& command, MeasureOptions& options) {
   add_place_options(command, options.places);
-  const auto height = [&](const char* name, std::string& text, const char* what) {
-    command.add_option(name, text, what)->type_name("HEIGHT")->group("Places");
-  };
-  command.add_flag("--walls", options.walls, "a grid on each wall of the room")->group("Places");
-  command.add_flag("--ceiling", options.ceiling, "a grid on the ceiling of the room")
-      ->group("Places");
-  height("--cylindrical-at", options.cylindrical_at,
-         "cylindrical illuminance over the floor: floor+1.2 of people who sit");
-  height("--semi-cylindrical-at", options.semi_cylindrical_at,
-         "semi-cylindrical illuminance over the floor, towards four sides");
+  const OptionGroup places(command, "Places");
+  places.flag("--walls", options.walls, "a grid on each wall of the room");
+  places.flag("--ceiling", options.ceiling, "a grid on the ceiling of the room");
+  places.add("--cylindrical-at", options.cylindrical_at, "HEIGHT",
+             "cylindrical illuminance over the floor: floor+1.2 of people who sit");
+  places.add("--semi-cylindrical-at", options.semi_cylindrical_at, "HEIGHT",
+             "semi-cylindrical illuminance over the floor, towards four sides");
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {
-  command
-      .add_flag("--cylindrical", options.cylindrical,
-                "cylindrical illuminance round each point's direction, which points up")
-      ->group("Measuring");
-  command
-      .add_flag("--daylight-factor", options.daylight_factor,
-                "per cent of the lux on open ground under the CIE overcast sky; .csv, .json, .svg")
-      ->group("Measuring");
-  command
-      .add_option("--target", options.target,
-                  "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)")
-      ->type_name("NAME|VALUES")
-      ->group("Measuring");
-  add_maintenance_option(command, options.parameters, "Measuring", &options.outputs.maintenance);
-  add_sensor_options(command, options.parameters, "Measuring");
+  const OptionGroup measuring(command, "Measuring");
+  measuring.flag("--cylindrical", options.cylindrical,
+                 "cylindrical illuminance round each point's direction, which points up");
+  measuring.flag(
+      "--daylight-factor", options.daylight_factor,
+      "per cent of the lux on open ground under the CIE overcast sky; .csv, .json, .svg");
+  measuring.add("--target", options.target, "NAME|VALUES",
+                "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)");
+  add_maintenance_option(measuring, options.parameters, &options.outputs.maintenance);
+  add_sensor_options(measuring, options.parameters);
 }
 
 }  // namespace

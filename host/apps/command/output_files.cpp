@@ -4,9 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "command/option_group.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
-#include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "image/layer_set.hpp"
@@ -44,32 +44,19 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
-void add_view_option(CLI::App& command, DisplayView& view, const std::string& group) {
-  Words names;
-  for (const DisplayView one : all_display_views) names.words.push_back(name_of(one));
-  const auto set = [&view](const std::string& name) {
-    for (const DisplayView one : all_display_views) {
-      if (name_of(one) == name) view = one;
-    }
-  };
-  command
-      .add_option_function<std::string>("--view", set,
-                                        "display transform: Khronos PBR Neutral, in which "
-                                        "highlights roll off, or the sRGB curve alone")
-      ->type_name("neutral|standard")
-      ->transform(within(names))
-      ->default_str(std::string(name_of(view)))
-      ->group(group);
+void add_view_option(const OptionGroup& group, DisplayView& view) {
+  group.choose("--view", all_display_views, view,
+               "display transform: Khronos PBR Neutral, in which highlights roll off, or the sRGB "
+               "curve alone",
+               [&view](DisplayView chosen) { view = chosen; });
 }
 
-void add_tone_mapping_options(CLI::App& command, ToneMapping& parameters,
-                              const std::string& group) {
-  command.add_option("--exposure", parameters.exposure, "stops, for PNGs and the window alone")
-      ->type_name("STOPS")
-      ->transform(number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
-      ->capture_default_str()
-      ->group(group);
-  add_view_option(command, parameters.view, group);
+void add_tone_mapping_options(const OptionGroup& group, ToneMapping& parameters) {
+  group
+      .add("--exposure", parameters.exposure, "STOPS", "stops, for PNGs and the window alone",
+           number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
+      ->capture_default_str();
+  add_view_option(group, parameters.view);
 }
 
 namespace {
@@ -91,42 +78,29 @@ report::FalseColour FalseColourOptions::of(const std::string& unit) const {
   return result;
 }
 
-void add_scale_option(CLI::App& command, FalseColourOptions& options, const std::string& group) {
-  command
-      .add_option("-s,--scale", options.scale,
-                  "top of the scale, or auto: 98% of the values lie below")
-      ->type_name("X|auto")
-      ->check(top_of_scale())
-      ->capture_default_str()
-      ->group(group);
+void add_scale_option(const OptionGroup& group, FalseColourOptions& options) {
+  group
+      .add("-s,--scale", options.scale, "X|auto",
+           "top of the scale, or auto: 98% of the values lie below", top_of_scale())
+      ->capture_default_str();
 }
 
 void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
   report::FalseColour& colours = options.colours;
-  const char* group = "False colour";
-  add_scale_option(command, options, group);
-  command.add_option("-l,--label", colours.label, "text of the legend; default: the unit")
-      ->type_name("TEXT")
-      ->group(group);
-  command.add_option("-n,--steps", colours.steps, "steps of the legend and isolines")
-      ->type_name("N")
-      ->transform(count_between(1, 100))
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("--log", colours.decades, "logarithmic scale over so many decades")
-      ->type_name("DECADES")
-      ->transform(number_between(0.1, 30))
-      ->group(group);
-  command.add_option("--pal", colours.palette, "palette")
-      ->type_name("")
-      ->check(CLI::IsMember(report::Palette::names()))
-      ->capture_default_str()
-      ->group(group);
+  const OptionGroup group(command, "False colour");
+  add_scale_option(group, options);
+  group.add("-l,--label", colours.label, "TEXT", "text of the legend; default: the unit");
+  group
+      .add("-n,--steps", colours.steps, "N", "steps of the legend and isolines",
+           count_between(1, 100))
+      ->capture_default_str();
+  group.add("--log", colours.decades, "DECADES", "logarithmic scale over so many decades",
+            number_between(0.1, 30));
+  group.add("--pal", colours.palette, "", "palette", CLI::IsMember(report::Palette::names()))
+      ->capture_default_str();
   const auto contours = [&](const char* name, report::Contours drawn, const char* what) {
-    return command
-        .add_flag_callback(
-            name, [&colours, drawn] { colours.contours = drawn; }, what)
-        ->group(group);
+    return group.call_flag(
+        name, [&colours, drawn] { colours.contours = drawn; }, what);
   };
   CLI::Option* lines = contours("--cl", report::Contours::lines, "isolines alone");
   CLI::Option* bands = contours("--cb", report::Contours::bands, "bands around the isolines alone");
@@ -137,22 +111,16 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
 }
 
 void add_picture_options(CLI::App& command, PictureOptions& options) {
-  command
-      .add_option("-o,--output", options.outputs,
-                  "picture to write, .exr, .png or .hdr; repeatable")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->group("Output");
-  add_tone_mapping_options(command, options.tone_mapping, "Output");
-  const auto add_drawing = [&](const char* name, std::string& file, const char* what) {
-    command.add_option(name, file, what)
-        ->type_name("FILE.png")
-        ->check(file_ending_in({".png"}))
-        ->group("Output");
-  };
-  add_drawing("--illuminance", options.illuminance,
-              "lux on the surfaces that are seen, in false colour with a legend");
-  add_drawing("--luminance", options.luminance, "cd/m2, in false colour with a legend");
+  const OptionGroup output(command, "Output");
+  output.repeat("-o,--output", options.outputs, "FILE",
+                "picture to write, .exr, .png or .hdr; repeatable",
+                file_ending_in({".exr", ".png", ".hdr"}));
+  add_tone_mapping_options(output, options.tone_mapping);
+  output.add("--illuminance", options.illuminance, "FILE.png",
+             "lux on the surfaces that are seen, in false colour with a legend",
+             file_ending_in({".png"}));
+  output.add("--luminance", options.luminance, "FILE.png", "cd/m2, in false colour with a legend",
+             file_ending_in({".png"}));
 }
 
 ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& picture) {
@@ -178,11 +146,7 @@ ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& pictur
 PictureOutputs::PictureOutputs(const PictureOptions& options)
     : illuminance_(options.illuminance), luminance_(options.luminance), options_(options) {
   for (const std::string& file : options.outputs) {
-    const bool exr = ends_in(file, ".exr"), hdr = ends_in(file, ".hdr");
-    if (!exr && !hdr && !ends_in(file, ".png")) {
-      throw UsageError(fmt::format("{}: an output ends in .exr, .png or .hdr; rename it", file));
-    }
-    (exr ? exr_ : hdr ? hdr_ : png_).emplace_back(file);
+    (ends_in(file, ".exr") ? exr_ : ends_in(file, ".hdr") ? hdr_ : png_).emplace_back(file);
   }
 }
 

@@ -17,6 +17,7 @@
 namespace photile::app {
 
 struct RenderOptions;
+class OptionGroup;
 
 /// Notes the files that these options name to be read. What those name in turn is noted when it is
 /// read. Errors: those of note_input.
@@ -39,10 +40,10 @@ class App;
 namespace photile::app {
 
 /// Adds --view.
-void add_view_option(CLI::App& command, DisplayView& view, const std::string& group);
+void add_view_option(const OptionGroup& group, DisplayView& view);
 
 /// Adds --exposure and --view.
-void add_tone_mapping_options(CLI::App& command, ToneMapping& parameters, const std::string& group);
+void add_tone_mapping_options(const OptionGroup& group, ToneMapping& parameters);
 
 /// The options of false colour as typed, checked against the limits.
 struct FalseColourOptions {
@@ -56,7 +57,7 @@ struct FalseColourOptions {
 };
 
 /// Adds --scale.
-void add_scale_option(CLI::App& command, FalseColourOptions& options, const std::string& group);
+void add_scale_option(const OptionGroup& group, FalseColourOptions& options);
 
 /// Adds all of them to a subcommand.
 void add_false_colour_options(CLI::App& command, FalseColourOptions& options);
@@ -81,7 +82,6 @@ void add_picture_options(CLI::App& command, PictureOptions& options);
 /// Files to be written, each with its format.
 class PictureOutputs {
  public:
-  /// Errors: UsageError for a picture whose name ends in none of .exr, .png and .hdr.
   explicit PictureOutputs(const PictureOptions& options);
 
   bool empty() const { return files().empty(); }

@@ -16,6 +16,7 @@
 #include "bake/write_baked.hpp"
 #include "cache/charts.hpp"
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/quality_options.hpp"
@@ -24,7 +25,6 @@
 #include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
@@ -191,44 +191,33 @@ void run_publish(PublishOptions& options) {
 
 void add_publish_command(CLI::App& photile) {
   auto options = std::make_shared<PublishOptions>();
-  options->baking.exact = false;
   CLI::App* command = photile.add_subcommand(
       "publish", "Write a page in which anybody walks through the room and turns its lights");
-  command
-      ->add_option("-o,--output", options->outputs,
-                   "page to write, one file; FILE.glb or FILE.gltf: for other programs; repeatable")
-      ->required()
-      ->type_name("FILE.html")
-      ->allow_extra_args(false)
-      ->check(file_ending_in({".html", ".glb", ".gltf"}))
-      ->group("Output");
-  command
-      ->add_option("--title", options->title, "of the page; default: the name of the scene's file")
-      ->type_name("TEXT")
-      ->group("Output");
-  command
-      ->add_option_function<double>(
-          "--texel",
-          [options](double metres) {
-            options->baking.texel = metres;
-            options->baking.exact = true;
-          },
-          fmt::format("metres between texels of the light maps; default: {}, or what fits",
-                      defaults::published_texel))
-      ->type_name("M")
-      ->transform(positive_number())
-      ->group("Output");
+  const OptionGroup output(*command, "Output");
+  output
+      .repeat("-o,--output", options->outputs, "FILE.html",
+              "page to write, one file; FILE.glb or FILE.gltf: for other programs; repeatable",
+              file_ending_in({".html", ".glb", ".gltf"}))
+      ->required();
+  output.add("--title", options->title, "TEXT",
+             "of the page; default: the name of the scene's file");
+  CLI::Option* texel =
+      output.add("--texel", options->baking.texel, "M",
+                 fmt::format("metres between texels of the light maps; default: {}, or what fits",
+                             defaults::published_texel),
+                 positive_number());
   set_quality(options->render.quality_options(), Quality::good);
   add_quality_preset(*command, options->render.quality_options());
-  command
-      ->add_option("--for", options->render.goal.seconds,
-                   "light the room again and again for so long, each time with twice the work, "
-                   "from a quarter of it on; the page depends on the machine")
-      ->type_name("TIME")
-      ->transform(duration())
-      ->group("Quality");
+  OptionGroup(*command, "Quality")
+      .add("--for", options->render.goal.seconds, "TIME",
+           "light the room again and again for so long, each time with twice the work, from a "
+           "quarter of it on; the page depends on the machine",
+           duration());
   add_setting_options(*command, options->render, without);
-  command->callback([options] { run_publish(*options); });
+  command->callback([options, texel] {
+    options->baking.exact = texel->count() > 0;
+    run_publish(*options);
+  });
 }
 
 }  // namespace photile::app

@@ -7,9 +7,9 @@
 #include <array>
 #include <string>
 
+#include "command/option_group.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "photile/errors.hpp"
 #include "render/render_plan.hpp"
 
@@ -40,31 +40,16 @@ void set_quality(const QualityOptions& options, Quality quality) {
 }
 
 void add_quality_preset(CLI::App& command, const QualityOptions& options) {
-  Words names;
-  for (const Quality quality : all_qualities) names.words.push_back(name_of(quality));
-  command
-      .add_option_function<std::string>(
-          "--quality",
-          [options](const std::string& word) {
-            for (const Quality quality : all_qualities) {
-              if (name_of(quality) == word) set_quality(options, quality);
-            }
-          },
-          std::string(quality_help))
-      ->type_name(fmt::format("{}", fmt::join(names.words, "|")))
-      ->transform(within(names))
-      ->default_str(std::string(name_of(options.quality)))
-      ->group("Picture");
+  OptionGroup(command, "Picture")
+      .choose("--quality", all_qualities, options.quality, std::string(quality_help),
+              [options](Quality quality) { set_quality(options, quality); });
 }
 
 void add_goal_options(CLI::App& command, RefinementGoal& goal) {
   for (const GoalOption& option : goal_options()) {
-    command
-        .add_option(fmt::format("--{}", option.option), goal.*option.value,
-                    std::string(option.help))
-        ->type_name(std::string(option.type))
-        ->transform(option.type == "TIME" ? duration() : share_up_to(1))
-        ->group("Quality");
+    OptionGroup(command, "Quality")
+        .add(fmt::format("--{}", option.option), goal.*option.value, std::string(option.type),
+             std::string(option.help), option.type == "TIME" ? duration() : share_up_to(1));
   }
 }
 

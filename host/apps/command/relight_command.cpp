@@ -6,13 +6,13 @@
 #include <optional>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/scene_report.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
@@ -26,7 +26,7 @@ namespace {
 
 struct RelightOptions {
   std::string input;
-  std::vector<std::string> lights;
+  std::vector<LightChange> lights;
   std::vector<std::string> moods;
   std::string moods_file;  ///< "" = beside the picture
   std::string sheet;       ///< .png, "" = none
@@ -80,7 +80,7 @@ void run_relight(const RelightOptions& options) {
   std::vector<LightChange> changes;
   if (options.by_time())
     changes = loading::sky_changes(read_light_mix(options.input), options.situation, options.sky);
-  for (const auto& text : options.lights) changes.push_back(LightChange::parse(text));
+  changes = joined(std::move(changes), options.lights);
   const PictureOutputs outputs(options.pictures);
   const bool to_sheet = !options.sheet.empty();
   if (outputs.empty() && !to_sheet && (!changes.empty() || !options.moods.empty())) {
@@ -119,30 +119,18 @@ void add_relight_command(CLI::App& photile) {
   command->add_option("PICTURE", options->input, "EXR with a layer per light")
       ->required()
       ->type_name("");
-  command
-      ->add_option("--light", options->lights,
-                   "power in the light's unit, a factor (x2), a colour or off; repeatable")
-      ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
-      ->allow_extra_args(false);
-  command
-      ->add_option("--mood", options->moods,
-                   "lamps as the window kept them under this name; --light changes them further; "
-                   "repeatable with --sheet")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  add_moods_file_option(*command, options->moods_file, "Options");
-  command
-      ->add_option("--sheet", options->sheet,
-                   "the given moods, or all of the file, on one PNG with one exposure")
-      ->type_name("FILE.png")
-      ->check(file_ending_in({".png"}));
-  add_situation_options(*command, options->situation, "Sky of patches");
-  command
-      ->add_option_function<std::string>(
-          "--sky", [options](const std::string& text) { options->sky = Sky::parse(text); },
-          "W/m2 facing the sun and on a horizontal surface; default: those of --weather")
-      ->type_name("perez=DIRECT,DIFFUSE")
-      ->group("Sky of patches");
+  const OptionGroup lamps(*command), sky(*command, "Sky of patches");
+  add_light_change_option(lamps, options->lights);
+  lamps.repeat("--mood", options->moods, "NAME",
+               "lamps as the window kept them under this name; --light changes them further; "
+               "repeatable with --sheet");
+  add_moods_file_option(lamps, options->moods_file);
+  lamps.add("--sheet", options->sheet, "FILE.png",
+            "the given moods, or all of the file, on one PNG with one exposure",
+            file_ending_in({".png"}));
+  add_situation_options(sky, options->situation);
+  sky.parse("--sky", options->sky, "perez=DIRECT,DIFFUSE",
+            "W/m2 facing the sun and on a horizontal surface; default: those of --weather");
   add_picture_options(*command, options->pictures);
   add_false_colour_options(*command, options->pictures.false_colour);
   add_set_option(*command, {display_settings(options->pictures)});

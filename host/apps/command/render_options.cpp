@@ -9,10 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "command/option_group.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
 #include "command/setting_options.hpp"
-#include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -21,199 +21,131 @@
 namespace photile::app {
 namespace {
 
-constexpr std::array integrators{"photon-map", "path"};  // as Integrator has them
+constexpr std::array all_integrators{Integrator::photon_map, Integrator::path};
 
-void add_view_group(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option("--camera", options.camera,
-                  "name or index, or a view of Radiance (.vf); default: the first")
-      ->type_name("NAME|INDEX|FILE.vf")
-      ->group("Picture");
+void add_view_group(const OptionGroup& picture, RenderOptions& options) {
+  picture.add("--camera", options.camera, "NAME|INDEX|FILE.vf",
+              "name or index, or a view of Radiance (.vf); default: the first");
   const auto add_point = [&](const char* name, std::vector<double>& point, const char* help) {
-    command.add_option(name, point, help)
-        ->type_name("X,Y,Z")
+    picture
+        .add(name, point, "X,Y,Z", help,
+             number_between(-limits::max_coordinate, limits::max_coordinate))
         ->delimiter(',')
-        ->expected(3)
-        ->transform(number_between(-limits::max_coordinate, limits::max_coordinate))
-        ->group("Picture");
+        ->expected(3);
   };
   add_point("--eye", options.eye,
             "where the camera stands, metres in the axes of the file, whose extents photile info "
             "prints; default: as --camera says");
   add_point("--look-at", options.look_at, "what it looks at; default: straight on");
-  command
-      .add_option(
-          "--size", options.size,
-          fmt::format("pixels; default: {} high, as wide as the camera says, else {}x{}",
-                      defaults::image_height, defaults::image_width, defaults::image_height))
-      ->type_name("WxH")
-      ->transform(picture_size())
-      ->group("Picture");
-}
-
-void add_lights(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--light",
-          [&options](const std::vector<std::string>& texts) {
-            for (const auto& text : texts) options.lights.push_back(LightChange::parse(text));
-          },
-          "power of a light in its unit, a factor (x2), a colour or off; repeatable")
-      ->type_name("NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off")
-      ->allow_extra_args(false)
-      ->group("Picture");
-}
-
-void add_device_group(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option("--device", options.device.selector,
-                  "OpenCL device: platform:device, index, cpu, gpu or a part of its name; "
-                  "all, or several separated by commas; with /N split into N sub-devices, with =N "
-                  "only N of its compute units; "
-                  "default: the environment's PHOTILE_DEVICE, else the best")
-      ->type_name("SELECTOR")
-      ->group("Device");
+  picture.add("--size", options.size, "WxH",
+              fmt::format("pixels; default: {} high, as wide as the camera says, else {}x{}",
+                          defaults::image_height, defaults::image_width, defaults::image_height),
+              picture_size());
 }
 
 }  // namespace
 
 void add_run_group(CLI::App& command, RenderOptions& options) {
-  command.add_option("--threads", options.threads, "threads of the host; 0 = all cores")
-      ->type_name("N")
-      ->transform(count_between(0, limits::max_threads))
-      ->capture_default_str()
-      ->group("Run");
-  command.add_flag("-q,--quiet", options.quiet, "print warnings and errors only")->group("Run");
+  const OptionGroup run(command, "Run");
+  run.add("--threads", options.threads, "N", "threads of the host; 0 = all cores",
+          count_between(0, limits::max_threads))
+      ->capture_default_str();
+  run.flag("-q,--quiet", options.quiet, "print warnings and errors only");
 }
 
 void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without,
                          const NamedSettings& more) {
-  command.add_option("SCENE", options.scene, "scene file: .obj, .gltf or .glb")
-      ->required()
-      ->type_name("");
-  add_lights(command, options);
-  add_mood_options(command, options.mood, "Picture");
+  add_scene_file(command, options.scene);
+  const OptionGroup picture(command, "Picture");
+  add_light_change_option(picture, options.lights);
+  add_mood_options(picture, options.mood);
   add_settings(command, options.parameters, without);
   add_set_option(command, {rendering_settings(options.parameters, without),
                            scene_settings(options.load), device_settings(options.device), more});
-  add_scene_options(command, options.load, "Scene");
-  add_light_options(command, options.load, "Lights");
-  add_device_group(command, options);
+  add_scene_options(command, options.load);
+  add_light_options(command, options.load);
+  OptionGroup(command, "Device")
+      .add("--device", options.device.selector, "SELECTOR",
+           "OpenCL device: platform:device, index, cpu, gpu or a part of its name; all, or several "
+           "separated by commas; with /N split into N sub-devices, with =N only N of its compute "
+           "units; default: the environment's PHOTILE_DEVICE, else the best");
   add_run_group(command, options);
 }
 
 void add_picture_settings(CLI::App& command, RenderOptions& options, const NamedSettings& more) {
   add_quality_preset(command, options.quality_options());  // before the settings that override it
   add_setting_options(command, options, {}, more);
-  add_view_group(command, options);
+  add_view_group(OptionGroup(command, "Picture"), options);
 }
 
 void add_integrator_option(CLI::App& command, RenderOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--integrator",
-          [&options](const std::string& word) {
-            options.integrator =
-                word == name_of(Integrator::path) ? Integrator::path : Integrator::photon_map;
-          },
-          "photon maps, or paths from the eye: unbiased, slower, without a device")
-      ->type_name("photon-map|path")
-      ->transform(within(Words{{integrators.begin(), integrators.end()}}))
-      ->default_str(name_of(options.integrator))
-      ->group("Picture");
+  OptionGroup(command, "Picture")
+      .choose("--integrator", all_integrators, options.integrator,
+              "photon maps, or paths from the eye: unbiased, slower, without a device",
+              [&options](Integrator integrator) { options.integrator = integrator; });
 }
 
-void add_projection_options(CLI::App& command, RenderOptions& options) {
-  std::vector<std::string_view> names;
-  for (const Projection projection : all_projections) names.push_back(name_of(projection));
-  command
-      .add_option_function<std::string>(
-          "--projection",
-          [&options](const std::string& word) {
-            for (const Projection projection : all_projections) {
-              if (name_of(projection) == word) options.projection = projection;
-            }
-          },
-          "of the camera: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl")
-      ->type_name("perspective|fisheye|angular|equirectangular|orthographic")
-      ->transform(within(Words{names}))
-      ->default_str(std::string(name_of(Projection::perspective)))
-      ->group("Picture");
-  command
-      .add_option("--field-of-view", options.field_of_view,
-                  fmt::format("degrees from the lower border to the upper; of orthographic metres; "
-                              "default: the camera's, of fisheyes {}, of orthographic {}",
-                              defaults::fisheye_field_of_view, defaults::orthographic_height))
-      ->type_name("X")
-      ->transform(positive_number())
-      ->group("Picture");
+void add_projection_options(const OptionGroup& picture, RenderOptions& options) {
+  picture.choose("--projection", all_projections, Projection::perspective,
+                 "of the camera: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl",
+                 [&options](Projection projection) { options.projection = projection; });
+  picture.add("--field-of-view", options.field_of_view, "X",
+              fmt::format("degrees from the lower border to the upper; of orthographic metres; "
+                          "default: the camera's, of fisheyes {}, of orthographic {}",
+                          defaults::fisheye_field_of_view, defaults::orthographic_height),
+              positive_number());
 }
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
   add_picture_options(command, options.pictures);
-  add_scale_option(command, options.pictures.false_colour, "Output");
+  const OptionGroup output(command, "Output"), picture(command, "Picture");
+  add_scale_option(output, options.pictures.false_colour);
   set_quality(options.quality_options(), Quality::good);
   add_goal_options(command, options.goal);
   NamedSettings more = display_settings(options.pictures);
   for (NamedSetting& setting : glare_settings(options.glare_limit)) more.push_back(setting);
   add_picture_settings(command, options, more);
-  add_projection_options(command, options);
+  add_projection_options(picture, options);
   add_integrator_option(command, options);
-  command.add_option("--stats", options.statistics, "write the summary as JSON")
-      ->type_name("FILE")
-      ->group("Run");
+  OptionGroup(command, "Run")
+      .add("--stats", options.statistics, "FILE", "write the summary as JSON");
   add_saved_maps_options(command, options);
-  command
-      .add_option(
-          "--errors", options.errors,
-          "standard errors of the picture, a layer per light: the noise of nodes and samples")
-      ->type_name("FILE.exr")
-      ->check(file_ending_in({".exr"}))
-      ->group("Quality");
-  command
-      .add_option("--denoise", options.denoiser,
-                  "denoise each light's layer by Open Image Denoise 2, an installed library; never "
-                  "the illuminance")
-      ->type_name("[LIBRARY]")
+  OptionGroup(command, "Quality")
+      .add("--errors", options.errors, "FILE.exr",
+           "standard errors of the picture, a layer per light: the noise of nodes and samples",
+           file_ending_in({".exr"}));
+  picture
+      .add("--denoise", options.denoiser, "[LIBRARY]",
+           "denoise each light's layer by Open Image Denoise 2, an installed library; never the "
+           "illuminance")
       ->expected(0, 1)
-      ->default_str(defaults::denoising_library)
-      ->group("Picture");
-  command
-      .add_option("--glare", options.glare,
-                  "picture in which reflections above a limit are marked, in a colour per light")
-      ->type_name("FILE.png")
-      ->check(file_ending_in({".png"}))
-      ->group("Output");
+      ->default_str(defaults::denoising_library);
+  output.add("--glare", options.glare, "FILE.png",
+             "picture in which reflections above a limit are marked, in a colour per light",
+             file_ending_in({".png"}));
 }
 
-void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
-                      const std::string& group) {
-  command
-      .add_option_function<std::string>(
-          "--shard", [&shard](const std::string& text) { shard = *parse_shard(text); },
-          fmt::format("the I-th of N equal parts {}, from 1; several processes share the work",
-                      of_what))
-      ->type_name("I/N")
-      ->check(shard_of_some())
-      ->group(group);
+void add_shard_option(const OptionGroup& group, Shard& shard, const std::string& of_what) {
+  group.call(
+      "--shard", [&shard](const std::string& text) { shard = *parse_shard(text); }, "I/N",
+      fmt::format("the I-th of N equal parts {}, from 1; several processes share the work",
+                  of_what),
+      shard_of_some());
 }
 
 void add_saved_maps_options(CLI::App& command, RenderOptions& options) {
+  const OptionGroup photons(command, "Photons");
   CLI::Option* save =
-      command.add_option("--save-maps", options.save_maps, "keep the photons for --load-maps")
-          ->type_name("FILE")
-          ->group("Photons");
-  command
-      .add_option("--load-maps", options.load_maps,
-                  "photons that --save-maps kept, of the same scene and options")
-      ->type_name("FILE")
-      ->excludes(save)
-      ->group("Photons");
+      photons.add("--save-maps", options.save_maps, "FILE", "keep the photons for --load-maps");
+  photons
+      .add("--load-maps", options.load_maps, "FILE",
+           "photons that --save-maps kept, of the same scene and options")
+      ->excludes(save);
 }
 
 const char* name_of(Integrator integrator) {
-  return integrators[static_cast<std::size_t>(integrator)];
+  return integrator == Integrator::path ? "path" : "photon-map";
 }
 
 void share_rendering(RenderOptions& options) {

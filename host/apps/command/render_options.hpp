@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/quality_options.hpp"
 #include "command/scene_options.hpp"
@@ -77,8 +78,7 @@ void add_run_group(CLI::App& command, RenderOptions& options);
 
 /// Adds --shard I/N.
 ///   of_what   "of the paths"
-void add_shard_option(CLI::App& command, Shard& shard, const std::string& of_what,
-                      const std::string& group);
+void add_shard_option(const OptionGroup& group, Shard& shard, const std::string& of_what);
 
 /// Adds --save-maps and --load-maps.
 void add_saved_maps_options(CLI::App& command, RenderOptions& options);

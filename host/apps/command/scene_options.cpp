@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
+#include "command/option_group.hpp"
 #include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
@@ -12,116 +13,62 @@
 
 namespace photile::app {
 
-void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--reflectance",
-          [&options](const std::vector<std::string>& texts) {
-            for (const auto& text : texts) {
-              options.reflectances.push_back(ReflectanceChange::parse(text));
-            }
-          },
-          "fraction of the light that materials whose names match reflect; their colours are made "
-          "brighter or darker; repeatable")
-      ->type_name("MATERIAL=SHARE")
-      ->allow_extra_args(false)
-      ->group(group);
+void add_scene_file(CLI::App& command, std::string& file) {
+  command.add_option("SCENE", file, "scene file: .obj, .gltf or .glb")->required()->type_name("");
 }
 
-namespace {
-
-/// An option that may be repeated; each text is parsed by T::parse.
-template <class T>
-CLI::Option* add_repeatable(CLI::App& command, const char* name, const char* type,
-                            const char* description, std::vector<T>& values) {
-  return command
-      .add_option_function<std::vector<std::string>>(
-          name,
-          [&values](const std::vector<std::string>& texts) {
-            for (const auto& text : texts) values.push_back(T::parse(text));
-          },
-          description)
-      ->type_name(type)
-      ->allow_extra_args(false);
+void add_scene_options(CLI::App& command, SceneLoadOptions& options) {
+  OptionGroup(command, "Scene")
+      .parse("--reflectance", options.reflectances, "MATERIAL=SHARE",
+             "fraction of the light that materials whose names match reflect; their colours are "
+             "made brighter or darker; repeatable");
 }
 
-}  // namespace
-
-void add_situation_options(CLI::App& command, SkySituation& situation, const std::string& group) {
-  command
-      .add_option_function<std::string>(
-          "--site", [&situation](const std::string& text) { situation.site = Site::parse(text); },
-          "degrees north, degrees east, hours before Greenwich; default: that of --weather")
-      ->type_name("LAT,LON,TZ")
-      ->group(group);
-  command
-      .add_option_function<std::string>(
-          "--time",
-          [&situation](const std::string& text) { situation.time = LocalTime::parse(text); },
-          "the sun's position by the site's standard time, such as 2026-06-21T14:00; with "
-          "--weather "
-          "the sky of that hour, too")
-      ->type_name("YYYY-MM-DDTHH:MM")
-      ->group(group);
-  command.add_option("--weather", situation.weather, "EnergyPlus weather file")
-      ->type_name("FILE.epw")
-      ->group(group);
+void add_situation_options(const OptionGroup& group, SkySituation& situation) {
+  group.parse("--site", situation.site, "LAT,LON,TZ",
+              "degrees north, degrees east, hours before Greenwich; default: that of --weather");
+  group.parse("--time", situation.time, "YYYY-MM-DDTHH:MM",
+              "the sun's position by the site's standard time, such as 2026-06-21T14:00; with "
+              "--weather the sky of that hour, too");
+  group.add("--weather", situation.weather, "FILE.epw", "EnergyPlus weather file");
 }
 
-void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::string& group) {
-  add_repeatable(command, "--light-group", "GLOB=NAME",
-                 "lights whose names match become one layer; repeatable", options.light_groups)
-      ->group(group);
-  add_repeatable(command, "--ies", "NAME=FILE",
-                 "photometric file (.ies, .ldt) of a point or spot light; repeatable",
-                 options.profiles)
-      ->group(group);
-  add_repeatable(command, "--area-light", "NAME=WxH,LUMENS",
-                 "a luminous rectangle, in metres, at a node of a glTF file; repeatable",
-                 options.panels)
-      ->group(group);
-  command
-      .add_option("--luminaires", options.luminaires,
-                  "luminaires to place, by their photometric files, alone or in arrays")
-      ->type_name("FILE.json")
-      ->group(group);
-  command
-      .add_option("--environment", options.environment.file,
-                  "surroundings: an equirectangular picture of radiance, .hdr or .exr")
-      ->type_name("FILE")
-      ->group(group);
-  command
-      .add_option_function<std::string>(
-          "--sun", [&options](const std::string& text) { options.sun = Sun::parse(text); },
-          "degrees from north (-z) by east (+x), degrees above the horizon, lux facing it, and "
-          "degrees of its disc, 0.533 if not given; or its lux alone, with --site and --time")
-      ->type_name("AZIMUTH,ELEVATION,LUX[,DIAMETER]|LUX")
-      ->group(group);
-  command
-      .add_option_function<std::string>(
-          "--sky", [&options](const std::string& text) { options.sky = Sky::parse(text); },
-          "uniform, overcast or clear (with --sun), and its lux on a horizontal surface; perez: "
-          "W/m2 "
-          "facing the sun and on a horizontal surface; patches: 145, 577 or 2305 lights, for "
-          "relight --time")
-      ->type_name("KIND=LUX|perez=DIRECT,DIFFUSE|patches=N")
-      ->group(group);
-  add_situation_options(command, options.situation, group);
+void add_light_options(CLI::App& command, SceneLoadOptions& options) {
+  const OptionGroup lights(command, "Lights");
+  lights.parse("--light-group", options.light_groups, "GLOB=NAME",
+               "lights whose names match become one layer; repeatable");
+  lights.parse("--ies", options.profiles, "NAME=FILE",
+               "photometric file (.ies, .ldt) of a point or spot light; repeatable");
+  lights.parse("--area-light", options.panels, "NAME=WxH,LUMENS",
+               "a luminous rectangle, in metres, at a node of a glTF file; repeatable");
+  lights.add("--luminaires", options.luminaires, "FILE.json",
+             "luminaires to place, by their photometric files, alone or in arrays");
+  lights.add("--environment", options.environment.file, "FILE",
+             "surroundings: an equirectangular picture of radiance, .hdr or .exr");
+  lights.parse("--sun", options.sun, "AZIMUTH,ELEVATION,LUX[,DIAMETER]|LUX",
+               "degrees from north (-z) by east (+x), degrees above the horizon, lux facing it, "
+               "and degrees of its disc, 0.533 if not given; or its lux alone, with --site and "
+               "--time");
+  lights.parse("--sky", options.sky, "KIND=LUX|perez=DIRECT,DIFFUSE|patches=N",
+               "uniform, overcast or clear (with --sun), and its lux on a horizontal surface; "
+               "perez: W/m2 facing the sun and on a horizontal surface; patches: 145, 577 or 2305 "
+               "lights, for relight --time");
+  add_situation_options(lights, options.situation);
 }
 
-void add_mood_options(CLI::App& command, MoodOptions& options, const std::string& group) {
-  command
-      .add_option("--mood", options.mood,
-                  "lamps as the window kept them under this name; --light changes them further")
-      ->type_name("NAME")
-      ->group(group);
-  add_moods_file_option(command, options.file, group);
+void add_light_change_option(const OptionGroup& group, std::vector<LightChange>& changes) {
+  group.parse("--light", changes, "NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off",
+              "power of a light in its unit, a factor (x2), a colour or off; repeatable");
 }
 
-void add_moods_file_option(CLI::App& command, std::string& file, const std::string& group) {
-  command.add_option("--moods", file, "file of moods; default: SCENE's, such as room.moods.json")
-      ->type_name("FILE")
-      ->group(group);
+void add_mood_options(const OptionGroup& group, MoodOptions& options) {
+  group.add("--mood", options.mood, "NAME",
+            "lamps as the window kept them under this name; --light changes them further");
+  add_moods_file_option(group, options.file);
+}
+
+void add_moods_file_option(const OptionGroup& group, std::string& file) {
+  group.add("--moods", file, "FILE", "file of moods; default: SCENE's, such as room.moods.json");
 }
 
 std::filesystem::path moods_file(const std::string& given, const std::filesystem::path& scene,

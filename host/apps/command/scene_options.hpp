@@ -14,15 +14,23 @@ class App;
 
 namespace photile::app {
 
-/// Adds the options to a subcommand, in the help's group `group`.
-void add_scene_options(CLI::App& command, SceneLoadOptions& options, const std::string& group);
+class OptionGroup;
+
+/// Adds the scene's file, an argument that must be given.
+void add_scene_file(CLI::App& command, std::string& file);
+
+/// Adds --reflectance.
+void add_scene_options(CLI::App& command, SceneLoadOptions& options);
 
 /// Adds those that add lights to the scene or change them. Malformed ones are errors of the command
 /// line.
-void add_light_options(CLI::App& command, SceneLoadOptions& options, const std::string& group);
+void add_light_options(CLI::App& command, SceneLoadOptions& options);
 
 /// Adds --site, --time and --weather.
-void add_situation_options(CLI::App& command, SkySituation& situation, const std::string& group);
+void add_situation_options(const OptionGroup& group, SkySituation& situation);
+
+/// Adds --light.
+void add_light_change_option(const OptionGroup& group, std::vector<LightChange>& changes);
 
 struct MoodOptions {
   std::string mood;     ///< "" = none
@@ -33,9 +41,9 @@ struct MoodOptions {
 };
 
 /// Adds --mood and --moods.
-void add_mood_options(CLI::App& command, MoodOptions& options, const std::string& group);
+void add_mood_options(const OptionGroup& group, MoodOptions& options);
 /// Adds --moods alone.
-void add_moods_file_option(CLI::App& command, std::string& file, const std::string& group);
+void add_moods_file_option(const OptionGroup& group, std::string& file);
 
 /// The file of moods: the one that is given, else the first that exists of those beside `scene` and
 /// `picture` (either may be empty). Errors: UsageError where there is none.

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "command/validators.hpp"
+#include "command/option_group.hpp"
 #include "common/files.hpp"
 #include "measuring/floor.hpp"
 #include "measuring/sensor_grid.hpp"
@@ -18,47 +18,32 @@
 
 namespace photile::app {
 
-void add_plane_options(CLI::App& command, PlaneOptions& options) {
-  command
-      .add_option("--inside", options.inside,
-                  "a point in the room whose floor is followed; default: the first camera's room")
-      ->type_name("X,Y,Z")
+void add_plane_options(const OptionGroup& places, PlaneOptions& options) {
+  places
+      .add("--inside", options.inside, "X,Y,Z",
+           "a point in the room whose floor is followed; default: the first camera's room")
       ->delimiter(',')
-      ->expected(3)
-      ->group("Places");
-  command.add_option("--wall-band", options.wall_band, "metres left out along the walls")
-      ->type_name("M")
-      ->transform(number_between(0, limits::max_coordinate))
-      ->capture_default_str()
-      ->group("Places");
-  command.add_option("--spacing", options.spacing, "metres; default: that of EN 12464-1")
-      ->type_name("M")
-      ->transform(positive_number())
-      ->group("Places");
-  command
-      .add_option("--clearance", options.clearance,
-                  "leaves out points inside furniture, or with a surface less than M before or "
-                  "behind them")
-      ->type_name("M")
-      ->transform(positive_number())
-      ->group("Places");
+      ->expected(3);
+  places
+      .add("--wall-band", options.wall_band, "M", "metres left out along the walls",
+           number_between(0, limits::max_coordinate))
+      ->capture_default_str();
+  places.add("--spacing", options.spacing, "M", "metres; default: that of EN 12464-1",
+             positive_number());
+  places.add("--clearance", options.clearance, "M",
+             "leaves out points inside furniture, or with a surface less than M before or behind "
+             "them",
+             positive_number());
 }
 
 void add_place_options(CLI::App& command, PlaceOptions& options) {
-  const auto files = [&](const char* name, std::vector<std::string>& names, const char* what) {
-    command.add_option(name, names, what)
-        ->type_name("FILE")
-        ->allow_extra_args(false)
-        ->group("Places");
-  };
-  files("--grid", options.planes, "planes of points as JSON; repeatable");
-  files("--points", options.points, "points as Radiance and Honeybee have them; repeatable");
-  command
-      .add_option("--plane", options.plane.height,
-                  "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres")
-      ->type_name("HEIGHT")
-      ->group("Places");
-  add_plane_options(command, options.plane);
+  const OptionGroup places(command, "Places");
+  places.repeat("--grid", options.planes, "FILE", "planes of points as JSON; repeatable");
+  places.repeat("--points", options.points, "FILE",
+                "points as Radiance and Honeybee have them; repeatable");
+  places.add("--plane", options.plane.height, "HEIGHT",
+             "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres");
+  add_plane_options(places, options.plane);
 }
 
 void note_places(const PlaceOptions& options) {
@@ -123,20 +108,16 @@ void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
   }
 }
 
-void add_sensor_options(CLI::App& command, MeasuringParameters& parameters,
-                        const std::string& group) {
-  command.add_option("--rays", parameters.gathering.rays, "rays of each point and repeat")
-      ->type_name("N")
-      ->transform(count_between(1, limits::max_samples_per_pixel))
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option("--repeats", parameters.repeats,
-                  "measurements with photons of their own, whose scatter is the standard error")
-      ->type_name("N")
-      ->transform(count_between(2, limits::max_repeats))
-      ->capture_default_str()
-      ->group(group);
+void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters) {
+  group
+      .add("--rays", parameters.gathering.rays, "N", "rays of each point and repeat",
+           count_between(1, limits::max_samples_per_pixel))
+      ->capture_default_str();
+  group
+      .add("--repeats", parameters.repeats, "N",
+           "measurements with photons of their own, whose scatter is the standard error",
+           count_between(2, limits::max_repeats))
+      ->capture_default_str();
 }
 
 namespace {
@@ -165,27 +146,24 @@ double maintenance_of(const std::string& text, std::string& parts) {
 
 }  // namespace
 
-void add_maintenance_option(CLI::App& command, MeasuringParameters& parameters,
-                            const std::string& group, std::string* parts) {
-  command
-      .add_option_function<std::string>(
-          "--maintenance",
-          [&parameters, parts](const std::string& text) {
-            std::string told;
-            parameters.maintenance = maintenance_of(text, told);
-            if (!(parameters.maintenance > 0)) {
-              throw UsageError(fmt::format(
-                  "--maintenance {}: use a factor above 0 up to 1, or its parts, such as "
-                  "LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94",
-                  text));
-            }
-            if (parts != nullptr) *parts = told;
-          },
-          "factor of all values for ageing and dirt, above 0 up to 1, or its parts by CIE 97, such "
-          "as LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94")
-      ->type_name("X|PARTS")
-      ->default_str("1")
-      ->group(group);
+void add_maintenance_option(const OptionGroup& group, MeasuringParameters& parameters,
+                            std::string* parts) {
+  const auto take = [&parameters, parts](const std::string& text) {
+    std::string told;
+    parameters.maintenance = maintenance_of(text, told);
+    if (!(parameters.maintenance > 0)) {
+      throw UsageError(
+          fmt::format("--maintenance {}: use a factor above 0 up to 1, or its parts, such as "
+                      "LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94",
+                      text));
+    }
+    if (parts != nullptr) *parts = told;
+  };
+  group
+      .call("--maintenance", take, "X|PARTS",
+            "factor of all values for ageing and dirt, above 0 up to 1, or its parts by CIE 97, "
+            "such as LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94")
+      ->default_str("1");
 }
 
 }  // namespace photile::app

@@ -17,6 +17,8 @@ class App;
 
 namespace photile::app {
 
+class OptionGroup;
+
 struct PlaneOptions {
   std::string height;  ///< of the working plane; "" = none
   double wall_band = defaults::wall_band;
@@ -33,8 +35,8 @@ struct PlaceOptions {
   bool empty() const { return planes.empty() && points.empty() && plane.height.empty(); }
 };
 
-/// Adds --inside, --wall-band, --spacing and --clearance, in the group Places.
-void add_plane_options(CLI::App& command, PlaneOptions& options);
+/// Adds --inside, --wall-band, --spacing and --clearance.
+void add_plane_options(const OptionGroup& places, PlaneOptions& options);
 
 /// Adds --grid, --points, --plane and those of add_plane_options.
 void add_place_options(CLI::App& command, PlaceOptions& options);
@@ -58,12 +60,11 @@ void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                         measuring::SensorGrid& grid, Progress& progress);
 
 /// Adds --rays and --repeats.
-void add_sensor_options(CLI::App& command, MeasuringParameters& parameters,
-                        const std::string& group);
+void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters);
 
 /// Adds --maintenance: a factor, or its parts by the names of CIE 97, whose product it is.
 ///   parts   is told these, "LLMF 0.9 x LMF 0.95", where they are given; null = of no interest
-void add_maintenance_option(CLI::App& command, MeasuringParameters& parameters,
-                            const std::string& group, std::string* parts = nullptr);
+void add_maintenance_option(const OptionGroup& group, MeasuringParameters& parameters,
+                            std::string* parts = nullptr);
 
 }  // namespace photile::app

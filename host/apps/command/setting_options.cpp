@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
-#include "command/validators.hpp"
 #include "common/ascii_text.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
@@ -42,16 +42,14 @@ std::string type_name(const ValueRange& range) {
 bool has_option(const Setting& setting) { return !setting.option.empty(); }
 
 void add(CLI::App& command, RenderParameters& parameters, const Setting& setting) {
-  CLI::Option* option = command
-                            .add_option_function<std::string>(
-                                fmt::format("{}", fmt::join(option_names(setting), ",")),
-                                [&parameters, &setting](const std::string& text) {
-                                  setting.set(parameters, *parse_value(text, setting.range));
-                                },
-                                std::string(setting.help))
-                            ->type_name(type_name(setting.range))
-                            ->transform(within(setting.range))
-                            ->group(std::string(setting.group));
+  CLI::Option* option =
+      OptionGroup(command, std::string(setting.group))
+          .call(
+              fmt::format("{}", fmt::join(option_names(setting), ",")),
+              [&parameters, &setting](const std::string& text) {
+                setting.set(parameters, *parse_value(text, setting.range));
+              },
+              type_name(setting.range), std::string(setting.help), within(setting.range));
   if (setting.is_given(parameters)) option->default_str(text_of(setting.value(parameters)));
 }
 

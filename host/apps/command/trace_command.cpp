@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
@@ -17,7 +18,6 @@
 #include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/limits.hpp"
@@ -82,13 +82,10 @@ void add_trace_command(CLI::App& photile) {
   RenderOptions& render = options->render;
   CLI::App* command = photile.add_subcommand(
       "trace", "Trace photons, or a part of them, to a file for --load-maps");
-  command->add_option("-o,--output", options->output, "file of photons")
-      ->required()
-      ->type_name("FILE")
-      ->group("Output");
-  command->add_option("SCENE", render.scene, "scene file: .obj, .gltf or .glb")
-      ->required()
-      ->type_name("");
+  OptionGroup(*command, "Output")
+      .add("-o,--output", options->output, "FILE", "file of photons")
+      ->required();
+  add_scene_file(*command, render.scene);
   set_quality(render.quality_options(), Quality::good);
   add_quality_preset(*command, render.quality_options());
   for (const char* name : {"photons_emitted", "seed"}) {
@@ -100,9 +97,9 @@ void add_trace_command(CLI::App& photile) {
     return std::find(kept.begin(), kept.end(), setting.name) == kept.end();
   });
   add_set_option(*command, {of_photons, scene_settings(render.load)});
-  add_shard_option(*command, options->shard, "of the paths", "Photons");
-  add_scene_options(*command, render.load, "Scene");
-  add_light_options(*command, render.load, "Lights");
+  add_shard_option(OptionGroup(*command, "Photons"), options->shard, "of the paths");
+  add_scene_options(*command, render.load);
+  add_light_options(*command, render.load);
   add_run_group(*command, render);
   command->callback([options] { run_trace(*options); });
 }
@@ -115,10 +112,9 @@ void add_merge_command(CLI::App& photile) {
       ->required()
       ->expected(1, static_cast<int>(limits::max_shards))
       ->type_name("");
-  command->add_option("-o,--output", options->output, "file of all photons, for --load-maps")
-      ->required()
-      ->type_name("FILE")
-      ->group("Output");
+  OptionGroup(*command, "Output")
+      .add("-o,--output", options->output, "FILE", "file of all photons, for --load-maps")
+      ->required();
   command->callback([options] { run_merge(*options); });
 }
 

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "loading/load_scene.hpp"
@@ -206,19 +206,16 @@ void add_trade_command(CLI::App& photile) {
   set_quality(options->render.quality_options(), Quality::draft);
   CLI::App* command = photile.add_subcommand(
       "trade", "Measure time and error of many settings on a view, around those given");
-  command->add_option("-o,--output", options->folder, "folder for trade.csv and trade.json")
-      ->required()
-      ->type_name("FOLDER");
+  const OptionGroup group(*command);
+  group.add("-o,--output", options->folder, "FOLDER", "folder for trade.csv and trade.json")
+      ->required();
   CLI::Option* reference =
-      command
-          ->add_option("--reference", options->reference,
-                       "picture that errors are measured against; default: path traced")
-          ->type_name("FILE");
-  command
-      ->add_option("--reference-samples", options->reference_samples,
-                   "paths per pixel of the path-traced reference")
-      ->type_name("N")
-      ->transform(count_between(2, limits::max_samples_per_pixel))
+      group.add("--reference", options->reference, "FILE",
+                "picture that errors are measured against; default: path traced");
+  group
+      .add("--reference-samples", options->reference_samples, "N",
+           "paths per pixel of the path-traced reference",
+           count_between(2, limits::max_samples_per_pixel))
       ->capture_default_str()
       ->excludes(reference);
   add_picture_settings(*command, options->render);

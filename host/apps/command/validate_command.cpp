@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
@@ -193,30 +193,29 @@ void add_validate_command(CLI::App& photile) {
   options->parameters.paths = defaults::validation_paths;
   CLI::App* command =
       photile.add_subcommand("validate", "Measure light that is known in closed form");
-  command->add_option("--integrator", options->integrator, "what to measure with")
-      ->type_name("")
-      ->check(CLI::IsMember({"photon-map", "path", "both"}))
+  const OptionGroup group(*command);
+  group
+      .add("--integrator", options->integrator, "", "what to measure with",
+           CLI::IsMember({"photon-map", "path", "both"}))
       ->capture_default_str();
-  command->add_option("--case", options->only, "only cases with this in their names")
-      ->type_name("TEXT");
+  group.add("--case", options->only, "TEXT", "only cases with this in their names");
   for (const char* name : {"photons_emitted", "neighbours"}) add_setting(*command, photons, name);
-  command
-      ->add_option("--paths", options->parameters.paths, "paths of a measurement by path tracing")
-      ->type_name("N")
-      ->transform(count_between(1, std::numeric_limits<int>::max()))
+  group
+      .add("--paths", options->parameters.paths, "N", "paths of a measurement by path tracing",
+           count_between(1, std::numeric_limits<int>::max()))
       ->capture_default_str();
-  command->add_option("--seed", photons.seed, "the first of 16 seeds")
-      ->type_name("N")
-      ->transform(count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
+  group
+      .add("--seed", photons.seed, "N", "the first of 16 seeds",
+           count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
       ->capture_default_str();
-  command->add_option("--device", options->device.selector, "OpenCL device, as in photile render")
-      ->type_name("SELECTOR");
-  command->add_option("--threads", options->threads, "threads of the host; 0 = all cores")
-      ->type_name("N")
-      ->transform(count_between(0, limits::max_threads))
+  group.add("--device", options->device.selector, "SELECTOR",
+            "OpenCL device, as in photile render");
+  group
+      .add("--threads", options->threads, "N", "threads of the host; 0 = all cores",
+           count_between(0, limits::max_threads))
       ->capture_default_str();
-  command->add_option("--json", options->json, "write the readings as JSON")->type_name("FILE");
-  command->add_flag("-q,--quiet", options->quiet, "no progress");
+  group.add("--json", options->json, "FILE", "write the readings as JSON");
+  group.flag("-q,--quiet", options->quiet, "no progress");
   command->callback([options] { run_validate(*options); });
 }
 

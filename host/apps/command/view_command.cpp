@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
@@ -14,7 +15,6 @@
 #include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
 #include "view/moving_sky.hpp"
@@ -104,18 +104,15 @@ void add_view_command(CLI::App& photile) {
   set_quality(options->render.quality_options(), Quality::good);
   CLI::App* command =
       photile.add_subcommand("view", "Walk through a scene in a window, and set its lamps");
-  command
-      ->add_option("--frame-rate", options->frames_per_second,
-                   "frames per second aimed at while moving: pictures become smaller for it")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Window");
-  command->add_option("--outputs", options->outputs, "folder of what F12 and Ctrl+S keep")
-      ->type_name("FOLDER")
-      ->capture_default_str()
-      ->group("Window");
-  add_view_option(*command, options->view, "Window");
+  const OptionGroup window(*command, "Window");
+  window
+      .add("--frame-rate", options->frames_per_second, "X",
+           "frames per second aimed at while moving: pictures become smaller for it",
+           positive_number())
+      ->capture_default_str();
+  window.add("--outputs", options->outputs, "FOLDER", "folder of what F12 and Ctrl+S keep")
+      ->capture_default_str();
+  add_view_option(window, options->view);
   add_picture_settings(*command, options->render,
                        {white_balance_setting(options->render.pictures)});
   add_saved_maps_options(*command, options->render);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
@@ -21,7 +22,6 @@
 #include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "gltf/cameras.hpp"
 #include "loading/load_scene.hpp"
@@ -380,60 +380,41 @@ void add_walk_command(CLI::App& photile) {
   auto options = std::make_shared<WalkOptions>();
   CLI::App* command = photile.add_subcommand(
       "walk", "Render the frames of a moving camera from one set of photon maps");
-  command
-      ->add_option("-o,--output", options->output,
-                   "frames to write, such as frame.####.exr, or PNG alone; a name without #### "
-                   "gets its number "
-                   "before the ending")
-      ->required()
-      ->type_name("PATTERN")
-      ->check(file_ending_in({".exr", ".png"}))
-      ->group("Output");
-  command
-      ->add_flag("--quick", options->quick,
-                 "draw light maps alone, as the window does while it moves: matt, no layers")
-      ->group("Output");
-  command->add_option("--png", options->png, "frames as PNG, with the exposure of the first")
-      ->type_name("PATTERN.png")
-      ->check(file_ending_in({".png"}))
-      ->group("Output");
-  add_tone_mapping_options(*command, options->render.pictures.tone_mapping, "Output");
-  command->add_option("--contact-sheet", options->sheet, "all frames on one PNG")
-      ->type_name("FILE.png")
-      ->check(file_ending_in({".png"}))
-      ->group("Output");
-  CLI::Option* path = command
-                          ->add_option("--camera-path", options->path,
-                                       "keyframes as JSON; default: the scene's animation")
-                          ->type_name("FILE")
-                          ->group("Motion");
-  command
-      ->add_option("--animation", options->animation,
-                   "animation of a glTF scene; default: the first that moves the camera")
-      ->type_name("NAME|INDEX")
-      ->excludes(path)
-      ->group("Motion");
-  command->add_option("--fps", options->frames_per_second, "frames per second of the motion")
-      ->type_name("X")
-      ->transform(positive_number())
-      ->capture_default_str()
-      ->group("Motion");
-  command->add_option("--first-number", options->first_number, "number of the first frame")
-      ->type_name("N")
-      ->transform(count_between(0, limits::max_frames))
-      ->capture_default_str()
-      ->group("Motion");
-  command
-      ->add_option_function<std::string>(
-          "--frames",
-          [&frames = options->frames](const std::string& text) {
-            frames = walk::parse_frame_range(text);
-          },
-          "frames to render, by number; every S-th")
-      ->type_name("A[-B[xS]]")
-      ->check(frame_range())
-      ->group("Motion");
-  add_shard_option(*command, options->shard, "of the frames", "Motion");
+  const OptionGroup output(*command, "Output"), motion(*command, "Motion");
+  output
+      .add("-o,--output", options->output, "PATTERN",
+           "frames to write, such as frame.####.exr, or PNG alone; a name without #### gets its "
+           "number before the ending",
+           file_ending_in({".exr", ".png"}))
+      ->required();
+  output.flag("--quick", options->quick,
+              "draw light maps alone, as the window does while it moves: matt, no layers");
+  output.add("--png", options->png, "PATTERN.png", "frames as PNG, with the exposure of the first",
+             file_ending_in({".png"}));
+  add_tone_mapping_options(output, options->render.pictures.tone_mapping);
+  output.add("--contact-sheet", options->sheet, "FILE.png", "all frames on one PNG",
+             file_ending_in({".png"}));
+  CLI::Option* path = motion.add("--camera-path", options->path, "FILE",
+                                 "keyframes as JSON; default: the scene's animation");
+  motion
+      .add("--animation", options->animation, "NAME|INDEX",
+           "animation of a glTF scene; default: the first that moves the camera")
+      ->excludes(path);
+  motion
+      .add("--fps", options->frames_per_second, "X", "frames per second of the motion",
+           positive_number())
+      ->capture_default_str();
+  motion
+      .add("--first-number", options->first_number, "N", "number of the first frame",
+           count_between(0, limits::max_frames))
+      ->capture_default_str();
+  motion.call(
+      "--frames",
+      [&frames = options->frames](const std::string& text) {
+        frames = walk::parse_frame_range(text);
+      },
+      "A[-B[xS]]", "frames to render, by number; every S-th", frame_range());
+  add_shard_option(motion, options->shard, "of the frames");
   set_quality(options->render.quality_options(), Quality::good);
   add_picture_settings(*command, options->render,
                        {white_balance_setting(options->render.pictures)});
