@@ -4,15 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
+#include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
 #include "command/run_record.hpp"
 #include "command/terminal_progress.hpp"
-#include "command/validators.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
@@ -131,157 +130,105 @@ std::vector<report::PlanSurroundings> surroundings_of(const measuring::Measureme
 }  // namespace
 
 void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options) {
-  command
-      .add_option("-o,--output", options.outputs,
-                  "table (.csv, .json), plan (.svg) or report (.html, .pdf) to write; repeatable")
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->group("Output");
-  command
-      .add_option("--honeybee", options.honeybee,
-                  "folder for <grid>.res, grids_info.json and grid_summary.csv")
-      ->type_name("FOLDER")
-      ->group("Output");
-  command
-      .add_option("--picture", options.picture,
-                  "EXR of the scene, whose moods the report shows in pictures and in lux")
-      ->type_name("FILE.exr")
-      ->check(file_ending_in({".exr"}))
-      ->group("Output");
-  command
-      .add_option("--include", options.results,
-                  "JSON of photile glare or daylight, which the report shows; repeatable")
-      ->type_name("FILE.json")
-      ->allow_extra_args(false)
-      ->check(file_ending_in({".json"}))
-      ->group("Output");
-  const auto text = [&](const char* name, std::string& value, const char* what) {
-    command.add_option(name, value, what)->type_name("TEXT")->group("Output");
-  };
-  command.add_option("--logo", options.logo, "of the designer, PNG or JPEG, for the report's head")
-      ->type_name("FILE")
-      ->group("Output");
-  text("--project", options.project.name, "name of the project, for the report's head");
-  text("--client", options.project.client, "for whom the report is; it ends with lines to sign on");
-  text("--designer", options.project.designer, "who answers for it");
-  command.add_option("--language", options.language, "of the report")
-      ->type_name("")
-      ->check(CLI::IsMember(report::languages()))
-      ->capture_default_str()
-      ->group("Output");
+  const OptionGroup output(command, "Output");
+  output.repeat("-o,--output", options.outputs, "FILE",
+                "table (.csv, .json), plan (.svg) or report (.html, .pdf) to write; repeatable",
+                file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}));
+  output.add("--honeybee", options.honeybee, "FOLDER",
+             "folder for <grid>.res, grids_info.json and grid_summary.csv");
+  output.add("--picture", options.picture, "FILE.exr",
+             "EXR of the scene, whose moods the report shows in pictures and in lux",
+             file_ending_in({".exr"}));
+  output.repeat("--include", options.results, "FILE.json",
+                "JSON of photile glare or daylight, which the report shows; repeatable",
+                file_ending_in({".json"}));
+  output.add("--logo", options.logo, "FILE", "of the designer, PNG or JPEG, for the report's head");
+  output.add("--project", options.project.name, "TEXT",
+             "name of the project, for the report's head");
+  output.add("--client", options.project.client, "TEXT",
+             "for whom the report is; it ends with lines to sign on");
+  output.add("--designer", options.project.designer, "TEXT", "who answers for it");
+  output
+      .add("--language", options.language, "", "of the report", CLI::IsMember(report::languages()))
+      ->capture_default_str();
   add_false_colour_options(command, options.false_colour);
 }
 
 MeasureOutputs::MeasureOutputs(const MeasureOutputOptions& options)
-    : unit_(options.daylight_factor ? "DF %" : "lux"),
-      colours_(options.false_colour.of(unit_)),
-      honeybee_(options.honeybee),
-      picture_(options.picture),
-      maintenance_(options.maintenance),
-      results_(options.results.begin(), options.results.end()),
-      project_(options.project),
-      language_(options.language) {
+    : options_(options),
+      unit_(options.daylight_factor ? "DF %" : "lux"),
+      colours_(options.false_colour.of(unit_)) {
   if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
-  const std::map<std::string, std::vector<std::filesystem::path>*> lists{
-      {".csv", &csv_}, {".json", &json_}, {".svg", &svg_}, {".html", &html_}, {".pdf", &pdf_}};
-  std::vector<std::filesystem::path> all;
-  for (const std::filesystem::path file : options.outputs) {
-    const auto list = lists.find(file.extension().string());
-    if (list == lists.end()) {
-      throw UsageError(fmt::format(
-          "{}: an output ends in .csv, .json, .svg, .html or .pdf; rename it", file.string()));
-    }
-    if (options.daylight_factor && (list->first == ".html" || list->first == ".pdf")) {
-      throw UsageError(
-          fmt::format("{}: reports are in lux; write daylight factors to .csv, .json "
-                      "or .svg",
-                      file.string()));
-    }
-    list->second->push_back(file);
-    all.push_back(file);
-  }
-  if (!honeybee_.empty()) {
-    make_folder(honeybee_);
-    for (const char* name : report::honeybee_tables) all.push_back(honeybee_ / name);
-  }
   const bool reports = any_report();
+  if (options.daylight_factor && reports) {
+    throw UsageError("reports are in lux; write daylight factors to .csv, .json or .svg");
+  }
   const auto only_in_reports = [&](const char* option, bool given) {
     if (!given || reports) return;
     throw UsageError(
         fmt::format("{} is for reports; give -o FILE.html or -o FILE.pdf, too", option));
   };
-  only_in_reports("--picture", !picture_.empty());
-  only_in_reports("--include", !results_.empty());
+  only_in_reports("--picture", !options.picture.empty());
+  only_in_reports("--include", !options.results.empty());
   only_in_reports("--logo", !options.logo.empty());
+  only_in_reports("--project, --client and --designer", options.project.said());
   if (!options.logo.empty()) logo_ = logo_of(options.logo);
-  only_in_reports("--project, --client and --designer", project_.said());
-  if (!picture_.empty()) note_input(picture_);
-  for (const auto& file : results_) note_input(file);
-  check_outputs(all);
+  note_input(options.picture);
+  for (const auto& file : options.results) note_input(file);
+  std::vector<std::filesystem::path> files(options.outputs.begin(), options.outputs.end());
+  if (!options.honeybee.empty()) {
+    const std::filesystem::path folder = options.honeybee;
+    make_folder(folder);
+    for (const char* name : report::honeybee_tables) files.push_back(folder / name);
+  }
+  check_outputs(files);
 }
 
 void MeasureOutputs::check_names(const std::vector<measuring::SensorGrid>& grids) const {
-  if (!honeybee_.empty()) {
-    for (const auto& name : report::honeybee_names(grids)) note_output(honeybee_ / name);
+  if (!options_.honeybee.empty()) {
+    const std::filesystem::path folder = options_.honeybee;
+    for (const auto& name : report::honeybee_names(grids)) note_output(folder / name);
   }
-  const auto planes = static_cast<std::size_t>(std::count_if(
-      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
-  for (const auto& file : svg_) note_plans(file, planes);
+  note_plans(options_.outputs, planes_of(grids));
+}
+
+report::IncludedResults MeasureOutputs::included(
+    const std::optional<measuring::Requirement>& requirement) const {
+  const std::vector<std::filesystem::path> files(options_.results.begin(), options_.results.end());
+  return report::included_results(files, requirement);
 }
 
 void MeasureOutputs::check_moods(const std::filesystem::path& moods) const {
-  if (picture_.empty() || moods.empty()) return;
+  if (options_.picture.empty() || moods.empty()) return;
   const view::Moods kept(moods);
-  const LightMix mix = read_light_mix(picture_);
+  const LightMix mix = read_light_mix(options_.picture);
   for (const std::string& name : kept.names()) kept.changes(name, mix);
 }
 
 void MeasureOutputs::check_picture(const Scene& scene, Progress& progress) const {
-  if (picture_.empty()) return;
-  const PictureHeader header = read_header(picture_);
+  if (options_.picture.empty()) return;
+  const PictureHeader header = read_header(options_.picture);
   const auto surfaces = header.attributes.find("photile.surfaces");
   if (surfaces == header.attributes.end() || surfaces->second == digest_of_surfaces(scene)) return;
-  progress.warn(fmt::format(
-      "{} shows other surfaces or reflectances than are measured; render it anew with the "
-      "options of this command",
-      picture_.string()));
+  progress.warn(
+      fmt::format("{} shows other surfaces or reflectances than are measured; render it anew with "
+                  "the options of this command",
+                  options_.picture));
 }
 
-void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
-  if (!honeybee_.empty()) {
-    for (const auto& [name, text] : report::honeybee_files(measurement)) {
-      write_file(honeybee_ / name, text);
-    }
-  }
-  for (const auto& file : csv_) write_file(file, report::measurement_csv(measurement, unit_));
-  for (const auto& file : json_) {
-    write_file(file, json_text(run_json(measurement, run, unit_)));
-  }
-  std::vector<const measuring::GridValues*> planes;
-  for (const auto& values : measurement) {
-    if (values.grid.layout) planes.push_back(&values);
-  }
-  if (svg_.empty() && html_.empty() && pdf_.empty()) return;
-  const std::vector<report::PlanSurroundings> surroundings = surroundings_of(measurement, run);
-  for (const auto& file : svg_) {
-    const auto names = plan_names(file, planes.size());
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const auto grid = static_cast<std::size_t>(planes[i] - measurement.data());
-      write_file(names[i], report::plan_svg(*planes[i], planes[i]->total(), colours_,
-                                            report::PlanSize::whole, surroundings[grid]));
-    }
-  }
-  if (!any_report()) return;
+std::string MeasureOutputs::page_of(
+    const measuring::Measurement& measurement, const MeasureRun& run,
+    const std::vector<report::PlanSurroundings>& surroundings) const {
   const std::vector<report::Part> parts =
       report::parts_of(run.scene, lumens_of(run.scene, run.mix));
   report::ReportText text{
       run.scene.source.filename().string(),
-      facts_of(run, maintenance_),
+      facts_of(run, options_.maintenance),
       run.requirement,
       {lamp_schedule(run.scene, run.mix), list_of_parts(parts), reflectances(run.scene)},
       run.included.glare,
-      project_};
-  text.language = language_;
+      options_.project};
+  text.language = options_.language;
   text.logo = logo_;
   text.sheets = data_sheets(parts);
   text.rendering = least_rendering(parts);
@@ -297,10 +244,37 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
   text.tables.insert(text.tables.begin(), run.included.tables.begin(), run.included.tables.end());
   text.maps = run.included.maps;
   add_surroundings(run.scene, text.maps);
-  if (!picture_.empty()) text.pictures = report_pictures(picture_, run.moods, colours_);
-  const std::string page = report::report_html(measurement, text, colours_, surroundings);
-  for (const auto& file : html_) write_file(file, page);
-  for (const auto& file : pdf_) write_file(file, report::pdf_of(page));
+  if (!options_.picture.empty()) {
+    text.pictures = report_pictures(options_.picture, run.moods, colours_);
+  }
+  return report::report_html(measurement, text, colours_, surroundings);
+}
+
+void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
+  if (!options_.honeybee.empty()) {
+    const std::filesystem::path folder = options_.honeybee;
+    for (const auto& [name, text] : report::honeybee_files(measurement)) {
+      write_file(folder / name, text);
+    }
+  }
+  std::vector<report::PlanSurroundings> surroundings;
+  if (any_report() || has_any(options_.outputs, {".svg"})) {
+    surroundings = surroundings_of(measurement, run);
+  }
+  const auto plans = [&] {
+    std::vector<std::string> drawn;
+    for (std::size_t i = 0; i < measurement.size(); ++i) {
+      if (!measurement[i].grid.layout) continue;
+      drawn.push_back(report::plan_svg(measurement[i], measurement[i].total(), colours_,
+                                       report::PlanSize::whole, surroundings[i]));
+    }
+    return drawn;
+  };
+  write_results(options_.outputs,
+                {.csv = [&] { return report::measurement_csv(measurement, unit_); },
+                 .json = [&] { return json_text(run_json(measurement, run, unit_)); },
+                 .plans = plans,
+                 .page = [&] { return page_of(measurement, run, surroundings); }});
 }
 
 }  // namespace photile::app

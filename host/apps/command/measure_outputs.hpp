@@ -51,8 +51,8 @@ struct MeasureRun {
 
 class MeasureOutputs {
  public:
-  /// Errors: UsageError for a name with another ending; those of check_outputs; OutputError where
-  /// the folder cannot be made.
+  /// Errors: UsageError for options that do not go together; those of check_outputs; OutputError
+  /// where the folder cannot be made.
   explicit MeasureOutputs(const MeasureOutputOptions& options);
 
   /// Notes the files whose names follow from what is measured: a plan of each plane goes to the
@@ -69,11 +69,9 @@ class MeasureOutputs {
   void check_moods(const std::filesystem::path& moods) const;
 
   /// What the report shows of other commands. Errors: those of included_results.
-  report::IncludedResults included(const std::optional<measuring::Requirement>& requirement) const {
-    return report::included_results(results_, requirement);
-  }
+  report::IncludedResults included(const std::optional<measuring::Requirement>& requirement) const;
 
-  bool any_report() const { return !html_.empty() || !pdf_.empty(); }
+  bool any_report() const { return has_any(options_.outputs, {".html", ".pdf"}); }
 
   /// "lux", or "DF %" of daylight factors.
   const std::string& unit() const { return unit_; }
@@ -82,14 +80,13 @@ class MeasureOutputs {
   void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
 
  private:
-  std::vector<std::filesystem::path> csv_, json_, svg_, html_, pdf_;
+  std::string page_of(const measuring::Measurement& measurement, const MeasureRun& run,
+                      const std::vector<report::PlanSurroundings>& surroundings) const;
+
+  const MeasureOutputOptions& options_;
   std::string unit_;
   report::FalseColour colours_;
-  std::filesystem::path honeybee_, picture_;
-  std::string logo_, maintenance_;
-  std::vector<std::filesystem::path> results_;
-  report::ReportProject project_;
-  std::string language_;
+  std::string logo_;  ///< as a page holds it
 };
 
 }  // namespace photile::app

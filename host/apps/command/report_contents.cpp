@@ -12,6 +12,7 @@
 
 #include "command/scene_report.hpp"
 #include "command/terminal_progress.hpp"
+#include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
@@ -27,6 +28,18 @@
 
 namespace photile::app {
 namespace {
+
+/// The file of each of several plans: numbered where they are more than one.
+std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
+                                              std::size_t plans) {
+  if (plans <= 1) return std::vector(plans, file);
+  std::vector<std::filesystem::path> names;
+  for (std::size_t i = 1; i <= plans; ++i) {
+    names.push_back(file);
+    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
+  }
+  return names;
+}
 
 std::string place_text(const Scene& scene, const Light& light) {
   const auto place = report::place_of(scene, light);
@@ -69,15 +82,32 @@ std::string today() {
   return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
 }
 
-std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file,
-                                              std::size_t planes) {
-  if (planes <= 1) return std::vector(planes, file);
-  std::vector<std::filesystem::path> names;
-  for (std::size_t i = 1; i <= planes; ++i) {
-    names.push_back(file);
-    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
+bool has_any(const std::vector<std::string>& files, std::initializer_list<const char*> endings) {
+  return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+    return std::any_of(endings.begin(), endings.end(),
+                       [&](const char* ending) { return ends_in(file, ending); });
+  });
+}
+
+void write_results(const std::vector<std::string>& files, const Results& results) {
+  std::vector<std::string> plans;
+  if (has_any(files, {".svg"})) plans = results.plans();
+  std::string page;
+  if (has_any(files, {".html", ".pdf"})) page = results.page();
+  for (const std::string& file : files) {
+    if (ends_in(file, ".csv")) write_file(file, results.csv());
+    if (ends_in(file, ".json")) write_file(file, results.json());
+    if (ends_in(file, ".html")) write_file(file, page);
+    if (ends_in(file, ".pdf")) write_file(file, report::pdf_of(page));
+    if (!ends_in(file, ".svg")) continue;
+    const auto names = plan_names(file, plans.size());
+    for (std::size_t i = 0; i < names.size(); ++i) write_file(names[i], plans[i]);
   }
-  return names;
+}
+
+std::size_t planes_of(const std::vector<measuring::SensorGrid>& grids) {
+  return static_cast<std::size_t>(std::count_if(
+      grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
 }
 
 std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
@@ -90,13 +120,16 @@ std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
   return lumens;
 }
 
-void note_plans(const std::filesystem::path& file, std::size_t plans) {
-  if (plans == 0) {
-    throw UsageError(
-        fmt::format("{}: points have no plan; give a plane, by --plane or --grid", file.string()));
+void note_plans(const std::vector<std::string>& files, std::size_t plans) {
+  for (const std::string& file : files) {
+    if (!ends_in(file, ".svg")) continue;
+    if (plans == 0) {
+      throw UsageError(
+          fmt::format("{}: points have no plan; give a plane, by --plane or --grid", file));
+    }
+    if (plans == 1) continue;
+    for (const auto& name : plan_names(file, plans)) note_output(name);
   }
-  if (plans == 1) return;
-  for (const auto& name : plan_names(file, plans)) note_output(name);
 }
 
 void add_surroundings(const Scene& scene, std::vector<report::ReportMap>& maps) {

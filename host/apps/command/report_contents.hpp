@@ -1,11 +1,15 @@
 // What a report of `photile measure` has of the scene and of its pictures.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "measuring/sensor_grid.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
@@ -21,12 +25,25 @@ report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 /// Such as 2026-11-23.
 std::string today();
 
-/// The file of each of several plans: numbered where they are more than one.
-std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file, std::size_t plans);
+/// The outputs of a command by the endings of their names: a table, plans, a report.
+struct Results {
+  std::function<std::string()> csv, json;
+  std::function<std::vector<std::string>()> plans;  ///< SVG
+  std::function<std::string()> page;                ///< HTML
+};
 
-/// Notes them for check_outputs, which knows the file of one plan already. Errors: UsageError where
-/// there is nothing to draw; those of note_output.
-void note_plans(const std::filesystem::path& file, std::size_t plans);
+/// Whether any of the files ends in one of these, in small letters or capitals.
+bool has_any(const std::vector<std::string>& files, std::initializer_list<const char*> endings);
+
+/// Writes each file: a .csv, .json, .html or .pdf, and plans to each .svg, numbered where they are
+/// more than one. Makes of `results` what the files ask for. Errors: OutputError.
+void write_results(const std::vector<std::string>& files, const Results& results);
+
+std::size_t planes_of(const std::vector<measuring::SensorGrid>& grids);
+
+/// Notes the files of plans for check_outputs, which knows that of a single one already. Errors:
+/// UsageError where there is nothing to draw; those of note_output.
+void note_plans(const std::vector<std::string>& files, std::size_t plans);
 
 /// What is around the planes of maps.
 void add_surroundings(const Scene& scene, std::vector<report::ReportMap>& maps);
