@@ -10,7 +10,6 @@
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
 #include "photometric_texts.hpp"
-#include "scene/camera.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {

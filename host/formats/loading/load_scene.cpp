@@ -25,10 +25,10 @@
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"
-#include "scene/camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/scene_queries.hpp"
+#include "trace/place_camera.hpp"
 #include "trace/portal_search.hpp"
 
 namespace photile {
@@ -181,7 +181,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
   loading::apply_reflectances(scene, options.reflectances);
   check_powers(scene, options.emissive_scale);
   loading::group_lights(scene, options.light_groups);
-  if (scene.cameras.empty()) scene.cameras.push_back(scene::place_camera(scene));
+  if (scene.cameras.empty()) scene.cameras.push_back(trace::place_camera(scene));
   const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
                                            [](const Light& light) { return light.is_distant(); });
   if (lit_from_beyond) scene.portals = trace::portals_asked_for(scene, options.portals);

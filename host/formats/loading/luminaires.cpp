@@ -20,9 +20,9 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
-#include "scene/camera.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
+#include "trace/place_camera.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
 
@@ -107,7 +107,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
   const auto axes = trace::PlanAxes();
-  const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
+  const Camera camera = scene.cameras.empty() ? trace::place_camera(scene) : scene.cameras.front();
   const auto room = trace::Room::of_camera(rays, axes, camera);
   if (!room) return std::nullopt;
   const glm::dvec2 plan = 0.5 * (room->low() + room->high());
@@ -228,7 +228,7 @@ void add_work_light(double lumen_per_watt, Scene& scene) {
   light.kind = LightKind::point;
   light.power =
       scene.unit == PowerUnit::lumen ? defaults::work_light : defaults::work_light / lumen_per_watt;
-  const Camera camera = scene.cameras.empty() ? scene::place_camera(scene) : scene.cameras.front();
+  const Camera camera = scene.cameras.empty() ? trace::place_camera(scene) : scene.cameras.front();
   light.position = glm::vec3(camera.position);
   scene.lights.push_back(std::move(light));
 }

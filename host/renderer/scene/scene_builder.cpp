@@ -7,12 +7,12 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "scene/camera.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
+#include "trace/place_camera.hpp"
 
 namespace photile {
 
@@ -159,7 +159,7 @@ void SceneBuilder::Impl::finish(Scene& built) const {
     light.power = power;
   }
   scene::make_light_names_unique(built.lights);
-  if (built.cameras.empty()) built.cameras.push_back(scene::place_camera(built));
+  if (built.cameras.empty()) built.cameras.push_back(trace::place_camera(built));
   check_scene(built);
 }
 

@@ -3,7 +3,7 @@
 
 #include "photile/scene.hpp"
 
-namespace photile::scene {
+namespace photile::trace {
 
 /// A camera that shows the scene, y upwards. A side of the bounding box counts as open when less
 /// than half of it is covered by triangles in its plane.
@@ -14,4 +14,4 @@ namespace photile::scene {
 /// `scene` has at least one triangle.
 Camera place_camera(const Scene& scene);
 
-}  // namespace photile::scene
+}  // namespace photile::trace
