@@ -7,6 +7,7 @@
 #include "photile/camera.hpp"
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"
+#include "trace/room.hpp"
 
 namespace photile::test {
 namespace {
@@ -111,6 +112,65 @@ TEST_CASE("a closed room without a camera is seen from within, whatever its size
   // Towards the middle of the floor plan, which most of the room lies beyond.
   const glm::dvec3 ahead = 0.5 * glm::dvec3(size) - camera.position;
   CHECK(camera.forward.x * ahead.x + camera.forward.z * ahead.z > 0);
+}
+
+TEST_CASE("a building that is no box is seen from within its largest room, at eye height") {
+  // An L of two legs, 10 m long each, with a wall between and a table in the larger room.
+  const float wide = GENERATE(4.0f, 6.0f);  // the box has two open sides, or none
+  const float turned = GENERATE(0.0f, 1.0f);
+  constexpr float height = 2.7f, length = 10.0f;
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const auto at = [&](float x, float y, float z) {
+    return turned > 0 ? glm::vec3(length - x, y, length - z) : glm::vec3(x, y, z);
+  };
+  const auto sheet = [&](const glm::vec3& from, const glm::vec3& u, const glm::vec3& v) {
+    const glm::vec3 origin = at(from.x, from.y, from.z);
+    builder.grid(origin, at(from.x + u.x, from.y + u.y, from.z + u.z) - origin,
+                 at(from.x + v.x, from.y + v.y, from.z + v.z) - origin, 1, white);
+  };
+  const glm::vec3 up(0, height, 0), x(1, 0, 0), z(0, 0, 1);
+  const float rest = length - wide;
+  for (const glm::vec3& leg : {glm::vec3(0, 0, 0), glm::vec3(wide, 0, 0)}) {
+    const glm::vec3 across = leg.x > 0 ? rest * x : wide * x;
+    const glm::vec3 along = leg.x > 0 ? wide * z : length * z;
+    sheet(leg, along, across);
+    sheet(leg + up, across, along);
+  }
+  sheet({0, 0, 0}, length * x, up);
+  sheet({0, 0, length}, up, wide * x);
+  sheet({wide, 0, wide}, up, rest * x);
+  sheet({0, 0, 0}, up, length * z);
+  sheet({length, 0, 0}, wide * z, up);
+  sheet({wide, 0, wide}, rest * z, up);
+  const auto solid = [&](const glm::vec3& low, const glm::vec3& high) {
+    const glm::vec3 a = at(low.x, low.y, low.z), b = at(high.x, high.y, high.z);
+    builder.box(glm::min(a, b), glm::max(a, b), white, false);
+  };
+  solid({wide, 0, 0}, {wide + 0.1f, height, wide});
+  solid({1, 0.7f, 2}, {wide - 1, 0.75f, 8});
+  const Scene scene = builder.build();
+  const Camera& camera = scene.cameras.at(0);
+  const glm::vec3 eye =
+      at(static_cast<float>(camera.position.x), 0, static_cast<float>(camera.position.z));
+  INFO("at " << eye.x << ", " << camera.position.y << ", " << eye.z << ", ahead "
+             << camera.forward.x << ", " << camera.forward.y << ", " << camera.forward.z);
+  CHECK(eye.x > 0.2f);
+  CHECK(eye.x < wide - 0.2f);
+  CHECK(eye.z > 0.2f);
+  CHECK(eye.z < length - 0.2f);
+  CHECK(camera.position.y == Approx(1.6));
+  CHECK(camera.right.y == Approx(0).margin(1e-12));
+  CHECK(camera.up.y > 0.9);
+  // It looks along the room, and the room around it is the larger one.
+  const glm::dvec3 middle(at(0.5f * wide, 0, 0.5f * length));
+  const glm::dvec3 ahead = middle - camera.position;
+  CHECK(camera.forward.x * ahead.x + camera.forward.z * ahead.z > 0);
+  const RayScene rays(scene);
+  const auto room = trace::Room::of_camera(rays, trace::PlanAxes(), camera);
+  REQUIRE(room.has_value());
+  CHECK(static_cast<double>(room->positions().size()) * room->cell_area() ==
+        Approx(wide * length).epsilon(0.05));
 }
 
 TEST_CASE("a room that is open on one side is seen through it, and anything else from above") {

@@ -159,8 +159,8 @@ void SceneBuilder::Impl::finish(Scene& built) const {
     light.power = power;
   }
   scene::make_light_names_unique(built.lights);
-  if (built.cameras.empty()) built.cameras.push_back(trace::place_camera(built));
   check_scene(built);
+  if (built.cameras.empty()) built.cameras.push_back(trace::place_camera(built));
 }
 
 SceneBuilder::SceneBuilder(std::string name, PowerUnit unit) : impl_(std::make_unique<Impl>()) {

@@ -8,8 +8,9 @@ namespace photile::trace {
 /// A camera that shows the scene, y upwards. A side of the bounding box counts as open when less
 /// than half of it is covered by triangles in its plane.
 /// - A room with an open side (a Cornell box) is framed through that side from outside.
-/// - A closed room is seen from the inside: from the corner with most free space, towards the
-///   opposite one.
+/// - A building is seen from within its largest room, at eye height: from before the end of it
+///   from which most of it is in the picture. A room has walls, or glass, around most of it, and a
+///   ceiling; the inside of a solid is none.
 /// - Anything else is framed from the front, the right and above.
 /// `scene` has at least one triangle.
 Camera place_camera(const Scene& scene);
