@@ -1,0 +1,240 @@
+"""Honeybee's models (HBJSON) as scenes that photile reads: ``python3 -m photile.from_honeybee``.
+
+Needs honeybee-radiance of PyPI. Coordinates stay those of the model, in metres and with z upwards, so
+that files have to be read with ``--set up=z``; the line that is printed says so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import contextlib
+import importlib
+import io
+import json
+import math
+import re
+import shlex
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["convert"]
+
+_least_opening = 0.05  # metres, of a lamp whose file calls it a point
+_lumens_per_watt = 179.0  # Radiance's
+_channels = "rgb"
+
+
+def _colour(modifier: Any, what: str) -> list[float]:
+    return [float(getattr(modifier, f"{channel}_{what}")) for channel in _channels]
+
+
+def _tint(transmissivity: float, index: float) -> float:
+    """Of photile's thin glass that lets as much of an even sky through as Radiance's does.
+
+    photile's tint is the same at all angles, and Radiance's the longer the way through the pane.
+    """
+    cosine = (np.arange(64) + 0.5) / 64
+    within = np.sqrt(1 - (1 - cosine**2) / index**2)
+    faces = np.stack([(cosine - index * within) / (cosine + index * within),
+                      (within - index * cosine) / (within + index * cosine)]) ** 2
+    passed = transmissivity ** (1 / within)
+    pane = ((1 - faces) ** 2 * passed / (1 - (faces * passed) ** 2)).mean(axis=0)
+    face = faces.mean(axis=0)
+    return float((pane @ cosine) / ((1 - face) / (1 + face) @ cosine))
+
+
+def _material(modifier: Any) -> tuple[dict[str, Any], str]:
+    """A glTF material for a Radiance modifier, and what of the modifier is lost or ""."""
+    kind, lost = type(modifier).__name__, ""
+    surface: dict[str, Any] = {"metallicFactor": 0.0}
+    # Without this glTF adds a coat of 4% to every surface; Radiance's matt ones have none.
+    extensions: dict[str, Any] = {"KHR_materials_specular": {"specularFactor": 0.0}}
+    material = {"name": modifier.identifier, "doubleSided": True,
+                "pbrMetallicRoughness": surface, "extensions": extensions}
+    if kind in ("Plastic", "Metal", "Trans"):
+        colour = _colour(modifier, "reflectance")
+        surface["roughnessFactor"] = math.sqrt(modifier.roughness)
+        if kind == "Metal":
+            surface["metallicFactor"] = 1.0
+        elif modifier.specularity > 0:  # reflectance at normal incidence over the 0.04 of glTF
+            extensions["KHR_materials_specular"] = {
+                "specularColorFactor": [modifier.specularity / 0.04] * 3}
+        if kind == "Trans":
+            lost = "what it transmits"
+    elif kind == "Mirror":
+        colour = _colour(modifier, "reflectance")
+        surface.update(metallicFactor=1.0, roughnessFactor=0.0)
+    elif kind == "Glass":
+        index = modifier.refraction_index or 1.52
+        colour = [min(1.0, _tint(value, index)) for value in _colour(modifier, "transmissivity")]
+        surface["roughnessFactor"] = 0.0
+        extensions.update(KHR_materials_transmission={"transmissionFactor": 1.0},
+                          KHR_materials_ior={"ior": index})
+        del extensions["KHR_materials_specular"]
+    elif kind in ("Light", "Glow"):
+        colour = [0.0] * 3
+        nits = [_lumens_per_watt * value for value in _colour(modifier, "emittance")]
+        most = max(nits) or 1.0
+        material["emissiveFactor"] = [value / most for value in nits]
+        extensions["KHR_materials_emissive_strength"] = {"emissiveStrength": most}
+    else:
+        colour, lost = [0.5] * 3, f"all: photile has no {kind}; it is matt grey (0.5)"
+    surface["baseColorFactor"] = [*colour, 1.0]
+    return material, lost
+
+
+def _surfaces(model: Any) -> Iterator[tuple[Any, Any]]:
+    """Meshes of triangles and quads, and their modifiers; rooms' faces face inwards."""
+    for face in model.faces:
+        if str(face.type) != "AirBoundary":
+            inwards = face.punched_geometry.flip() if face.has_parent else face.punched_geometry
+            yield inwards.triangulated_mesh3d, face.properties.radiance.modifier
+    for part in (*model.apertures, *model.doors, *model.shades):
+        yield part.geometry.triangulated_mesh3d, part.properties.radiance.modifier
+    for part in model.shade_meshes:
+        yield part.geometry, part.properties.radiance.modifier
+
+
+def _gltf(model: Any, warnings: list[str]) -> dict[str, Any]:
+    corners: dict[str, list[Any]] = {}
+    modifiers: dict[str, Any] = {}
+    for mesh, modifier in _surfaces(model):
+        modifiers[modifier.identifier] = modifier
+        of_modifier = corners.setdefault(modifier.identifier, [])
+        for face in mesh.faces:
+            for i in range(2, len(face)):  # Honeybee's quads are convex
+                of_modifier += [tuple(mesh.vertices[k]) for k in (face[0], face[i - 1], face[i])]
+    gltf: dict[str, Any] = {"asset": {"version": "2.0", "generator": "photile.from_honeybee"},
+                            "scene": 0, "materials": [], "meshes": [], "nodes": [],
+                            "accessors": [], "bufferViews": [], "extensionsUsed": []}
+    binary = b""
+    for number, (name, points) in enumerate(corners.items()):
+        material, lost = _material(modifiers[name])
+        if lost:
+            warnings.append(f"modifier '{name}': left out is {lost}")
+        array: NDArray[np.float32] = np.array(points, "<f4")
+        gltf["materials"].append(material)
+        gltf["bufferViews"].append(
+            {"buffer": 0, "byteOffset": len(binary), "byteLength": array.nbytes})
+        gltf["accessors"].append({"bufferView": number, "componentType": 5126, "type": "VEC3",
+                                  "count": len(array), "min": array.min(axis=0).tolist(),
+                                  "max": array.max(axis=0).tolist()})
+        gltf["meshes"].append({"name": name, "primitives": [
+            {"attributes": {"POSITION": number}, "material": number}]})
+        gltf["nodes"].append({"name": name, "mesh": number})
+        binary += array.tobytes()
+    gltf["scenes"] = [{"nodes": list(range(len(corners)))}]
+    gltf["extensionsUsed"] = sorted({one for m in gltf["materials"] for one in m["extensions"]})
+    data = base64.b64encode(binary).decode()
+    gltf["buffers"] = [{"byteLength": len(binary),
+                        "uri": f"data:application/octet-stream;base64,{data}"}]
+    return gltf
+
+
+def _rotation(axis: Any, aim: Any) -> float:
+    """Degrees about the aim that turn photile's lamps so that C0 lies along the axis."""
+    z = -np.array(tuple(aim))
+    # As luminaires.cpp has it, in the model's axes: its y up is z here, and its z is -y.
+    level = np.array([1.0, 0, 0]) if abs(z[2]) > 0.999 else np.cross([0, 0, 1.0], z)
+    x = level - (level @ z) * z
+    x /= np.linalg.norm(x)
+    c0 = np.array(tuple(axis))
+    return math.degrees(math.atan2(c0 @ np.cross(z, x), c0 @ x))
+
+
+def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], dict[str, str]]:
+    """The list that ``--luminaires`` takes, and photometric files by name."""
+    entries: list[dict[str, Any]] = []
+    files: dict[str, str] = {}
+    for lamp in model.properties.radiance.luminaires:
+        name, text, factor = lamp.identifier, lamp.ies_content, lamp.light_loss_factor
+        factor *= lamp.candela_multiplier
+        if lamp.custom_lamp is not None:
+            factor *= lamp.custom_lamp.depreciation_factor
+            warnings.append(f"luminaire '{name}': its colour is left out; --temperature sets one")
+        if factor != 1:
+            # The third number after the line of the tilt multiplies all intensities.
+            text, found = re.subn(
+                r"(TILT\s*=\s*NONE\s+\S+\s+\S+\s+)(\S+)",
+                lambda match: f"{match[1]}{float(match[2]) * factor:.9g}", text, count=1)
+            if not found:
+                warnings.append(f"luminaire '{name}': its factor of {factor:g} is left out, "
+                                "since its file has a TILT")
+        files[f"{name}.ies"] = text
+        small = max(lamp.width_m, lamp.length_m) == 0 == min(lamp.width_m, lamp.length_m)
+        for number, instance in enumerate(lamp.luminaire_zone or ()):
+            entry = {"name": f"{name}_{number + 1}", "file": f"{name}.ies",
+                     "position": list(instance.point), "aim": list(instance.g0_axis),
+                     "rotation": _rotation(instance.c0_axis, instance.g0_axis)}
+            if small:
+                entry["size"] = [_least_opening, _least_opening]
+            entries.append(entry)
+    return entries, files
+
+
+def convert(file: Path, folder: Path) -> tuple[list[str], list[str]]:
+    """Write a model as a scene, its grids of sensors and its luminaires.
+
+    Parameters
+    ----------
+    file : path
+        HBJSON of a Model.
+    folder : path
+        Gets ``scene.gltf``, a ``.pts`` for each grid, ``luminaires.json`` and photometric files;
+        made where it is missing.
+
+    Returns
+    -------
+    words of the command that measures, and lines about what was left out
+    """
+    importlib.import_module("honeybee_radiance")  # adds what models know of light
+    model = importlib.import_module("honeybee.model").Model.from_file(str(file))
+    model.convert_to_units("Meters")
+    warnings: list[str] = []
+    texts = {"scene.gltf": json.dumps(_gltf(model, warnings))}
+    command = ["photile", "measure", str(folder / "scene.gltf"), "--set", "up=z"]
+    entries, photometry = _luminaires(model, warnings)
+    if entries:
+        texts.update(photometry, **{"luminaires.json": json.dumps(entries, indent=1)})
+        command += ["--luminaires", str(folder / "luminaires.json")]
+    for grid in model.properties.radiance.sensor_grids:
+        texts[f"{grid.identifier}.pts"] = grid.to_radiance() + "\n"
+        command += ["--points", str(folder / f"{grid.identifier}.pts")]
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return [*command, "--honeybee", str(folder / "results")], warnings
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        prog="python3 -m photile.from_honeybee",
+        description="Write a Honeybee model as a scene, and print the command that measures it.")
+    parser.add_argument("model", type=Path, help="HBJSON file")
+    parser.add_argument("folder", type=Path, help="for what is written")
+    options = parser.parse_args()
+    try:
+        # Honeybee prints what goes wrong, with its stack, before it raises it.
+        with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
+            command, warnings = convert(options.model, options.folder)
+    except ImportError as missing:
+        print(f"error: {missing}; pip install honeybee-radiance", file=sys.stderr)
+        return 1
+    except Exception as error:  # Honeybee raises what it likes on malformed files
+        print(f"error: {options.model}: {' '.join(str(error).split())};"
+              " give an HBJSON file of a whole model", file=sys.stderr)
+        return 3
+    for line in warnings:
+        print(f"warning: {line}", file=sys.stderr)
+    print(shlex.join(command))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
