@@ -33,6 +33,7 @@ STAGES = {
     "squared_distances": "distances of the candidates",
     "filter_distances": "normals of the candidates",
     "store_chunks": "distances of the candidates",
+    "keep_chunks": "distances of the candidates",
     "next_chunks": "distances of the candidates",
     "count_chunks": "counting",
     "count_pass": "counting",

@@ -48,7 +48,8 @@ __kernel WORKER_GROUP void estimate_by_selection(
     Hit hit;
     load_hit(index, hits, hit_surfaces, hit_lobes, &hit);
     Candidates candidates;
-    begin_candidates(&candidates, &query, grid, cell_start, record_position, record_normal, &hit);
+    begin_candidates(&candidates, &query, grid, cell_start, record_photon, record_position,
+                     record_normal, &hit);
     expected = estimate_hit(&candidates, &records, grid, &surface, &hit, &query, expected, &empty,
                             &estimates, memory);
   }

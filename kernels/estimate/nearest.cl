@@ -3,24 +3,6 @@
 
 #include "estimate/neighbourhood.clh"
 
-// Lists those of the records that tie at the border of the neighbourhood which belong to it. Rare,
-// and therefore plain: every lane finds them, and the first writes.
-static void list_tied(const Candidates* candidates, const Neighbourhood* near,
-                      __global const uint* record_photon, uint found, __global uint* list) {
-  const uint last = last_tied_photon(candidates, near->below, near->tied, record_photon);
-  const Block* block = &candidates->block;
-  uint cell = block->first_cell;
-  for (uint row = 0; row < block->height; ++row, cell += block->columns) {
-    const uint end = candidates->cell_start[cell + block->width];
-    for (uint record = candidates->cell_start[cell]; record < end; ++record) {
-      if (record_photon[record] > last) continue;
-      if (squared_distance(candidates, record) != near->below) continue;
-      if (LANE == 0) list[found] = record_photon[record];
-      ++found;
-    }
-  }
-}
-
 // One worker per hit of one map page; arguments as in estimate.cl.
 // Before: neighbours is 0xFFFFFFFF, squared_radius the square of the search radius.
 // After: neighbours[hit * k ...] of hits on maps with photons holds photon indices in any order,
@@ -43,7 +25,8 @@ __kernel WORKER_GROUP void nearest_by_selection(
     hit.position = vload3(0, hits[index].position);
     if (NORMALS) hit.face_normal = vload3(0, hit_surfaces[index].normal);
     Candidates candidates;
-    begin_candidates(&candidates, &query, grid, cell_start, record_position, record_normal, &hit);
+    begin_candidates(&candidates, &query, grid, cell_start, record_photon, record_position,
+                     record_normal, &hit);
     Chunks chunks;
     Neighbourhood near;
     find_neighbourhood(&candidates, &chunks, k, k, query.radius, 0.0f, grid, &near, memory);
@@ -58,16 +41,13 @@ __kernel WORKER_GROUP void nearest_by_selection(
       next_chunks(&candidates, &walk, &chunks, memory);
       for (uint i = 0; i < chunks.count; ++i) {
         const simd_float d = kept_distances(&chunks, memory, i);
-        const simd_int is_near = d < near.below;
-        list_lanes(record_photon, kept_record(&chunks, memory, i), is_near, list, listed);
+        const uint record = kept_record(&chunks, memory, i);
+        const simd_int is_near = neighbour_lanes(&candidates, &near, record, d);
+        list_lanes(record_photon, record, is_near, list, listed);
         farther = select(farther, -d, is_near & (-d < farther));
       }
     } while (walk.row < candidates.block.height);
-    float farthest = -smallest_lane(farther, memory);
-    if (near.tied > 0) {
-      list_tied(&candidates, &near, record_photon, *listed, list);
-      farthest = near.below;
-    }
+    const float farthest = -smallest_lane(farther, memory);
     // The k-th is the farthest of the neighbours.
     if (LANE == 0) {
       squared_radius[index] = near.squared_radius > 0.0f ? near.squared_radius : farthest;

@@ -139,7 +139,8 @@ __kernel void estimate_by_radix(
       Hit hit;
       load_hit(index, hits, hit_surfaces, hit_lobes, &hit);
       Candidates candidates;
-      begin_candidates(&candidates, &query, grid, ranges, record_position, record_normal, &hit);
+      begin_candidates(&candidates, &query, grid, ranges, record_photon, record_position,
+                     record_normal, &hit);
       begin_block(&candidates.block, nodes, tree, ranges);
       expected = estimate_hit(&candidates, &records, grid, &surface, &hit, &query, expected,
                               &empty, &estimates, &memory);
