@@ -48,11 +48,7 @@ std::size_t states_of_blinds(const DaylightOptions& options) {
 std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, const Scene& scene,
                                             std::size_t hours, Progress& progress) {
   std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
-  std::size_t sensors = 0;
-  for (auto& grid : grids) {
-    clear_of_furniture(options.places.plane, scene, grid, progress);
-    sensors += grid.sensors.size();
-  }
+  const std::size_t sensors = clear_of_furniture(options.places.plane, scene, grids, progress);
   const std::size_t states = states_of_blinds(options);
   if (sensors * hours * states > limits::max_profile_values) {
     throw UsageError(

@@ -70,7 +70,7 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
   }
   if (!options.plane.height.empty()) {
     measuring::SensorGrid grid = plane_of(options.plane, scene);
-    clear_of_furniture(options.plane, scene, grid, progress);
+    clear_of_furniture(options.plane, scene, std::span(&grid, 1), progress);
     grid.name = "point";
     plane = grid.layout;
     add(glare::observers_on(grid, axes, options.directions));

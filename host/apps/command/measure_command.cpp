@@ -102,9 +102,7 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   if (!options.semi_cylindrical_at.empty()) {
     add(measuring::semi_cylindrical_grids(scene, at(options.semi_cylindrical_at)));
   }
-  for (auto& grid : grids) clear_of_furniture(plane, scene, grid, progress);
-  std::size_t sensors = 0;
-  for (const auto& grid : grids) sensors += grid.sensors.size();
+  const std::size_t sensors = clear_of_furniture(plane, scene, grids, progress);
   if (sensors > limits::max_sensors) {
     throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
                                  limits::max_sensors));

@@ -83,29 +83,28 @@ measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) 
   return measuring::working_plane_grid(scene, plane_at(options, options.height));
 }
 
-void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
-                        measuring::SensorGrid& grid, Progress& progress) {
-  if (!grid.remark.empty()) {
-    progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
+std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
+                               std::span<measuring::SensorGrid> grids, Progress& progress) {
+  std::size_t left = 0;
+  for (measuring::SensorGrid& grid : grids) {
+    if (!grid.remark.empty()) progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
+    const std::size_t all = grid.sensors.size();
+    const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid);
+    if (grid.sensors.empty()) {
+      throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
+                                   options.clearance, all, grid.name));
+    }
+    left += grid.sensors.size();
+    if (blank == 0) continue;
+    progress.note(fmt::format(
+        "{}: {} of {} points {}", grid.name, blank, all,
+        options.clearance > 0
+            ? fmt::format("lie in furniture, or less than {} m from some; they are left out",
+                          options.clearance)
+            : "are blank: they lie inside a solid or beyond the walls that the others stand "
+              "within"));
   }
-  const std::size_t all = grid.sensors.size();
-  const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid);
-  if (grid.sensors.empty()) {
-    throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
-                                 options.clearance, all, grid.name));
-  }
-  if (blank == 0) return;
-  if (options.clearance > 0) {
-    progress.note(
-        fmt::format("{}: {} of {} points lie in furniture, or less than {} m from some; "
-                    "they are left out",
-                    grid.name, blank, all, options.clearance));
-  } else {
-    progress.note(
-        fmt::format("{}: {} of {} points are blank: they lie inside a solid or beyond the "
-                    "walls that the others stand within",
-                    grid.name, blank, all));
-  }
+  return left;
 }
 
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters) {

@@ -1,6 +1,8 @@
 // Where a command measures, and by how many rays.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,10 +56,10 @@ measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string&
 measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene);
 
 /// Makes points blank that lie inside solids or beyond the walls, and those nearer to furniture
-/// than
-/// --clearance, and tells how many there are. Errors: UsageError where no point is left.
-void clear_of_furniture(const PlaneOptions& options, const Scene& scene,
-                        measuring::SensorGrid& grid, Progress& progress);
+/// than --clearance, and tells how many there are. Returns how many are left of all grids. Errors:
+/// UsageError where no point of a grid is left.
+std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
+                               std::span<measuring::SensorGrid> grids, Progress& progress);
 
 /// Adds --rays and --repeats.
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters);
