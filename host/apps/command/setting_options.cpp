@@ -67,16 +67,22 @@ NamedSetting bound_number(std::string_view name, std::string_view group, ValueRa
           }};
 }
 
-NamedSetting bound_switch(std::string_view name, std::string_view group, bool& field,
-                          std::string_view help) {
+/// One whose value is taken as a word or a text.
+NamedSetting bound_word(std::string_view name, std::string_view group, ValueRange range,
+                        std::string_view help, std::string initial,
+                        const std::function<void(std::string_view)>& take) {
   return {.name = name,
           .group = group,
-          .range = Words{{"off", "on"}},
+          .range = std::move(range),
           .help = help,
-          .initial = field ? "on" : "off",
-          .set = [&field](const SettingValue& value) {
-            field = std::get<std::string_view>(value) == "on";
-          }};
+          .initial = std::move(initial),
+          .set = [take](const SettingValue& value) { take(std::get<std::string_view>(value)); }};
+}
+
+NamedSetting bound_switch(std::string_view name, std::string_view group, bool& field,
+                          std::string_view help) {
+  return bound_word(name, group, Words{{"off", "on"}}, help, field ? "on" : "off",
+                    [&field](std::string_view word) { field = word == "on"; });
 }
 
 /// Defaults of all that --set reaches in any command, and where their values go.
@@ -175,52 +181,29 @@ NamedSettings rendering_settings(RenderParameters& parameters,
 NamedSettings scene_settings(SceneLoadOptions& options) {
   const char* group = "Scene";
   return {
-      {.name = "up",
-       .group = group,
-       .range = Words{{"x", "y", "z", "-x", "-y", "-z"}},
-       .help = "axis of the file that points up",
-       .initial = "y, and a warning where it seems to be z",
-       .set = [&options](
-                  const SettingValue& value) { options.up = std::get<std::string_view>(value); }},
-      {.name = "units",
-       .group = group,
-       .range = Words{loading::names_of_units()},
-       .help = "what lengths in the file are in",
-       .initial = "m, and a warning where the scene is as wide as no room",
-       .set =
-           [&options](const SettingValue& value) {
-             options.metres_per_unit = loading::metres_in(std::get<std::string_view>(value));
-           }},
-      {.name = "scene",
-       .group = group,
-       .range = Text{"NAME or INDEX"},
-       .help = "scene of a glTF file",
-       .initial = "the file's own, else the first",
-       .set =
-           [&options](const SettingValue& value) {
-             options.scene = std::get<std::string_view>(value);
-           }},
-      {.name = "hide",
-       .group = group,
-       .range = Text{"GLOB"},
-       .help = "leaves out what the file calls so: nodes with all below them, meshes, objects, "
-               "groups; repeatable",
-       .initial = "nothing is left out",
-       .set =
-           [&options](const SettingValue& value) {
-             options.hidden.emplace_back(std::get<std::string_view>(value));
-           }},
-      {.name = "portals",
-       .group = group,
-       .range = Text{"auto, off or GLOB"},
-       .help =
-           "windows that photons of suns and skies start through: auto finds them, off, or globs "
-           "of the materials of their panes; repeatable",
-       .initial = "auto",
-       .set =
-           [&options](const SettingValue& value) {
-             options.portals.emplace_back(std::get<std::string_view>(value));
-           }},
+      bound_word("up", group, Words{{"x", "y", "z", "-x", "-y", "-z"}},
+                 "axis of the file that points up", "y, and a warning where it seems to be z",
+                 [&options](std::string_view axis) { options.up = axis; }),
+      bound_word("units", group, Words{loading::names_of_units()},
+                 "what lengths in the file are in",
+                 "m, and a warning where the scene is as wide as no room",
+                 [&options](std::string_view unit) {
+                   options.metres_per_unit = loading::metres_in(unit);
+                 }),
+      bound_word("scene", group, Text{"NAME or INDEX"}, "scene of a glTF file",
+                 "the file's own, else the first",
+                 [&options](std::string_view scene) { options.scene = scene; }),
+      bound_word(
+          "hide", group, Text{"GLOB"},
+          "leaves out what the file calls so: nodes with all below them, meshes, objects, groups; "
+          "repeatable",
+          "nothing is left out",
+          [&options](std::string_view glob) { options.hidden.emplace_back(glob); }),
+      bound_word(
+          "portals", group, Text{"auto, off or GLOB"},
+          "windows that photons of suns and skies start through: auto finds them, off, or globs of "
+          "the materials of their panes; repeatable",
+          "auto", [&options](std::string_view glob) { options.portals.emplace_back(glob); }),
       bound_number("north", group, loading::turns, options.situation.north_degrees,
                    "where north lies, clockwise from -z as seen from above", "degrees"),
       bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,
@@ -272,16 +255,13 @@ NamedSettings display_settings(PictureOptions& options) {
                        "on: the log-average luminance becomes 0.36 of white; off: 1 cd/m2 or "
                        "1 W/(m2 sr) becomes white; before --exposure"),
           white_balance_setting(options),
-          {.name = "exr",
-           .group = "Display",
-           .range = Words{{"float", "half", "dwaa"}},
-           .help = "layers of EXRs: every bit, 11 significant bits in half the room, or lossy",
-           .initial = "float",
-           .set = [&options](const SettingValue& value) {
-             for (const LayerPrecision one : all_layer_precisions) {
-               if (name_of(one) == std::get<std::string_view>(value)) options.precision = one;
-             }
-           }}};
+          bound_word("exr", "Display", Words{{"float", "half", "dwaa"}},
+                     "layers of EXRs: every bit, 11 significant bits in half the room, or lossy",
+                     "float", [&options](std::string_view word) {
+                       for (const LayerPrecision one : all_layer_precisions) {
+                         if (name_of(one) == word) options.precision = one;
+                       }
+                     })};
 }
 
 NamedSettings glare_settings(double& limit) {
