@@ -287,6 +287,13 @@ TEST_CASE("each wall has a grid that faces into the room, and so has the ceiling
   }
 }
 
+TEST_CASE("a spacing of too many points is refused on the floor and on walls") {
+  WorkingPlane fine = at_middle("floor");
+  fine.spacing = 1e-4;
+  CHECK_THROWS_WITH(working_plane_grid(glazed_room(), fine), Catch::Contains("1000000 points"));
+  CHECK_THROWS_WITH(wall_grids(glazed_room(), fine), Catch::Contains("1000000 points"));
+}
+
 TEST_CASE("points of a wall that are glass are blank") {
   const auto walls = wall_grids(glazed_room(true), at_middle("floor"));
   const auto right = std::find_if(walls.begin(), walls.end(),

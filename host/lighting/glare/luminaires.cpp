@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <span>
 
+#include "geometry/disjoint_sets.hpp"
 #include "photile/defaults.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/emission_sampling.hpp"
@@ -21,23 +21,17 @@ namespace {
 /// Triangles that share corners, as lists; corners at the same position are one.
 std::vector<std::vector<std::uint32_t>> connected_parts(const Scene& scene,
                                                         std::span<const std::uint32_t> triangles) {
-  std::vector<std::size_t> part(triangles.size());
-  std::iota(part.begin(), part.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (part[i] != i) i = part[i] = part[part[i]];
-    return i;
-  };
-  std::map<std::array<float, 3>, std::size_t> first_at;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
+  geometry::DisjointSets joined(triangles.size());
+  std::map<std::array<float, 3>, std::uint32_t> first_at;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     for (const glm::vec3& corner : scene.corners(triangles[i])) {
-      const auto [place, is_new] = first_at.try_emplace({corner.x, corner.y, corner.z}, i);
-      if (is_new) continue;
-      const std::size_t a = root(i), b = root(place->second);
-      part[std::max(a, b)] = std::min(a, b);
+      joined.join(i, first_at.try_emplace({corner.x, corner.y, corner.z}, i).first->second);
     }
   }
-  std::map<std::size_t, std::vector<std::uint32_t>> parts;
-  for (std::size_t i = 0; i < triangles.size(); ++i) parts[root(i)].push_back(triangles[i]);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    parts[joined.find(i)].push_back(triangles[i]);
+  }
   std::vector<std::vector<std::uint32_t>> lists;
   for (auto& [first, list] : parts) lists.push_back(std::move(list));
   return lists;

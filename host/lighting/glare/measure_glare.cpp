@@ -28,11 +28,7 @@ std::vector<Measured> illuminance_at(const measuring::SensorGrid& eyes, const Sc
                                      const MeasuringParameters& parameters, Progress& progress) {
   const measuring::Readings readings =
       measuring::measure_grids(scene, std::span(&eyes, 1), mix, devices, parameters, progress);
-  std::vector<std::vector<float>> totals;
-  for (std::size_t repeat = 0; repeat < readings.repeats(); ++repeat) {
-    totals.push_back(readings.total(repeat));
-  }
-  return measuring::means_of(totals);
+  return measuring::means_of(readings.repeats_of(0));
 }
 
 /// A rating of a measured value, and its error by the slope there.

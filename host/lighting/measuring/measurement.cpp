@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "image/light_change.hpp"
+#include "image/light_layers.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
@@ -114,16 +115,13 @@ Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readin
   Measurement result;
   for (SensorGrid& grid : grids) result.push_back({std::move(grid), {}});
   for (std::size_t i = 0; i == 0 || (lights > 1 && i <= lights); ++i) {
-    std::vector<std::vector<float>> repeats;
-    for (std::size_t r = 0; r < readings.repeats(); ++r) {
-      repeats.push_back(i == 0 ? readings.total(r) : readings.of_light(r, i - 1));
-    }
+    const std::vector<std::vector<float>> repeats = readings.repeats_of(i);
     const std::vector<Measured> means = means_of(repeats);
     std::size_t first = 0;
     for (GridValues& values : result) {
       const std::size_t count = values.grid.sensors.size();
       const auto begin = means.begin() + static_cast<std::ptrdiff_t>(first);
-      values.lights.push_back({i == 0 ? "" : readings.lights()[i - 1],
+      values.lights.push_back({readings.name_of(i),
                                {begin, begin + static_cast<std::ptrdiff_t>(count)},
                                statistics_of(repeats, first, count)});
       first += count;
@@ -197,6 +195,14 @@ std::vector<float> Readings::total(std::size_t repeat) const {
   return {sums.begin(), sums.end()};
 }
 
+std::vector<std::vector<float>> Readings::repeats_of(std::size_t i) const {
+  std::vector<std::vector<float>> repeats;
+  for (std::size_t r = 0; r < repeats_.size(); ++r) {
+    repeats.push_back(i == 0 ? total(r) : repeats_[r][i - 1]);
+  }
+  return repeats;
+}
+
 namespace {
 
 /// Sensors of all grids, in the scene's own coordinates.
@@ -210,19 +216,13 @@ std::vector<Sensor> sensors_of(const Scene& scene, std::span<const SensorGrid> g
   return sensors;
 }
 
-std::vector<std::string> layer_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const LightGroup& group : light_groups_of(scene).groups) names.push_back(group.name);
-  return names;
-}
-
 }  // namespace
 
 Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,
                        std::span<Device> devices, const MeasuringParameters& parameters,
                        Progress& progress) {
   const std::vector<Sensor> sensors = sensors_of(scene, grids);
-  Readings readings(layer_names(scene), sensors.size());
+  Readings readings(image::layer_names(scene), sensors.size());
   RenderParameters photons = parameters.photons;
   QuietProgress quiet(progress);
   progress.begin("measure", static_cast<std::uint64_t>(parameters.repeats), "repeats");
@@ -291,11 +291,7 @@ std::vector<LightIlluminance> measure_illuminance(const Scene& scene,
       measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
   std::vector<LightIlluminance> result;
   for (std::size_t i = 0; i <= readings.lights().size(); ++i) {
-    std::vector<std::vector<float>> repeats;
-    for (std::size_t r = 0; r < readings.repeats(); ++r) {
-      repeats.push_back(i == 0 ? readings.total(r) : readings.of_light(r, i - 1));
-    }
-    result.push_back({i == 0 ? "" : readings.lights()[i - 1], measuring::means_of(repeats)});
+    result.push_back({readings.name_of(i), measuring::means_of(readings.repeats_of(i))});
   }
   return result;
 }

@@ -59,12 +59,12 @@ class Readings {
   std::size_t repeats() const { return repeats_.size(); }
   const std::vector<std::string>& lights() const { return lights_; }
 
-  /// The lux of one light in one repeat, per sensor.
-  const std::vector<float>& of_light(std::size_t repeat, std::size_t light) const {
-    return repeats_[repeat][light];
-  }
-  /// The lux of all lights together.
+  /// The lux of all lights together, per sensor.
   std::vector<float> total(std::size_t repeat) const;
+  /// The lux in each repeat of all lights together (0), or of light i - 1.
+  std::vector<std::vector<float>> repeats_of(std::size_t i) const;
+  /// The light's name; "" of all together.
+  std::string name_of(std::size_t i) const { return i == 0 ? "" : lights_[i - 1]; }
 
  private:
   std::vector<std::string> lights_;

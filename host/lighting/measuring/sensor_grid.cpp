@@ -25,10 +25,18 @@ int whole(double count) { return static_cast<int>(std::clamp(std::round(count), 
 
 }  // namespace
 
+glm::dvec3 PlaneLayout::at(const glm::dvec2& in_cells) const {
+  return origin + in_cells.x / columns * u + in_cells.y / rows * v;
+}
+
+glm::dvec2 PlaneLayout::in_cells(const glm::dvec3& point) const {
+  const glm::dvec3 from = point - origin;
+  return {glm::dot(from, u) / glm::dot(u, u) * columns, glm::dot(from, v) / glm::dot(v, v) * rows};
+}
+
 glm::dvec3 PlaneLayout::middle_of(std::uint32_t cell) const {
-  const auto column = static_cast<double>(cell % static_cast<std::uint32_t>(columns));
-  const auto row = static_cast<double>(cell / static_cast<std::uint32_t>(columns));
-  return origin + (column + 0.5) / columns * u + (row + 0.5) / rows * v;
+  const auto in_row = static_cast<std::uint32_t>(columns);
+  return at({cell % in_row + 0.5, cell / in_row + 0.5});
 }
 
 PlaneLayout in_world(const Scene& scene, PlaneLayout layout) {
@@ -63,6 +71,19 @@ PointCounts points_of_en12464(double u, double v) {
   return {whole(u / resulting), whole(v / resulting)};
 }
 
+PointCounts points_at(double u, double v, double spacing) {
+  if (!(spacing > 0)) return points_of_en12464(u, v);
+  return {whole(u / spacing), whole(v / spacing)};
+}
+
+PlaneLayout full_plane(const glm::dvec3& origin, const glm::dvec3& u, const glm::dvec3& v,
+                       const PointCounts& counts) {
+  PlaneLayout layout{origin, u, v, counts.columns, counts.rows, {}};
+  layout.cells.resize(counts.total());
+  std::iota(layout.cells.begin(), layout.cells.end(), 0u);
+  return layout;
+}
+
 namespace {
 
 using nlohmann::json;
@@ -77,36 +98,26 @@ PointCounts counts_of(const JsonObject& plane, double u, double v) {
             plane.count("rows", 1, limits::max_sensors)};
   }
   if (!plane.has("spacing")) return points_of_en12464(u, v);
-  const double spacing = plane.metres("spacing");
-  const double columns = std::max(1.0, std::round(u / spacing));
-  const double rows = std::max(1.0, std::round(v / spacing));
-  if (columns * rows > static_cast<double>(limits::max_sensors)) {
+  const PointCounts counts = points_at(u, v, plane.metres("spacing"));
+  if (counts.total() > limits::max_sensors) {
     plane.refuse(fmt::format("'spacing' makes more than {} points", limits::max_sensors));
   }
-  return {static_cast<int>(columns), static_cast<int>(rows)};
+  return counts;
 }
 
 SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
-  PlaneLayout layout;
-  layout.origin = plane.vector("origin");
-  layout.u = plane.vector("u");
-  layout.v = plane.vector("v");
-  const double u = glm::length(layout.u), v = glm::length(layout.v);
+  const glm::dvec3 along_u = plane.vector("u"), along_v = plane.vector("v");
+  const double u = glm::length(along_u), v = glm::length(along_v);
   if (!(u > 0) || !(v > 0)) plane.refuse("'u' or 'v' has no length");
-  if (std::abs(glm::dot(layout.u, layout.v)) > right_angle_slack * u * v) {
+  if (std::abs(glm::dot(along_u, along_v)) > right_angle_slack * u * v) {
     plane.refuse("'u' and 'v' are not at a right angle");
   }
   const PointCounts counts = counts_of(plane, u, v);
-  layout.columns = counts.columns;
-  layout.rows = counts.rows;
-  const std::uint64_t cells =
-      static_cast<std::uint64_t>(layout.columns) * static_cast<std::uint64_t>(layout.rows);
-  if (cells > limits::max_sensors) {
-    plane.refuse(fmt::format("{} points are more than {}", cells, limits::max_sensors));
+  if (counts.total() > limits::max_sensors) {
+    plane.refuse(fmt::format("{} points are more than {}", counts.total(), limits::max_sensors));
   }
-  layout.cells.resize(cells);
-  std::iota(layout.cells.begin(), layout.cells.end(), 0u);
-  return grid_on_plane(plane.text("name", name), std::move(layout));
+  return grid_on_plane(plane.text("name", name),
+                       full_plane(plane.vector("origin"), along_u, along_v, counts));
 }
 
 /// The band of so many metres, by a key, around an area. Its cells are as wide as the area's, those
@@ -117,30 +128,22 @@ SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayo
   const double across = glm::length(inner.u), along = glm::length(inner.v);
   const glm::dvec3 u = inner.u / across, v = inner.v / along;
   const double outer_across = across + 2 * band, outer_along = along + 2 * band;
-  PlaneLayout outer;
-  outer.origin = inner.origin - band * (u + v);
-  outer.u = outer_across * u;
-  outer.v = outer_along * v;
   double spacing = std::min(inner.spacing(), band);
   if (role == GridRole::background) {
     spacing = std::min(band, outer_across / points_of_en12464(outer_across, outer_along).columns);
   }
-  const double columns = std::max(1.0, std::round(outer_across / spacing));
-  const double rows = std::max(1.0, std::round(outer_along / spacing));
+  const PointCounts counts = points_at(outer_across, outer_along, spacing);
   const auto too_many = [&] {
     plane.refuse(fmt::format("'{}' makes more than {} points", key, limits::max_sensors));
   };
-  if (!(columns * rows <= 2.0 * limits::max_sensors)) too_many();  // the area is a part
-  outer.columns = static_cast<int>(columns);
-  outer.rows = static_cast<int>(rows);
-  const auto cells =
-      static_cast<std::uint32_t>(outer.columns) * static_cast<std::uint32_t>(outer.rows);
-  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+  if (counts.total() > 2 * limits::max_sensors) too_many();  // the area is a part
+  PlaneLayout outer =
+      full_plane(inner.origin - band * (u + v), outer_across * u, outer_along * v, counts);
+  std::erase_if(outer.cells, [&](std::uint32_t cell) {
     const glm::dvec3 from = outer.middle_of(cell) - inner.origin;
     const double x = glm::dot(from, u), y = glm::dot(from, v);
-    if (x > 0 && x < across && y > 0 && y < along) continue;
-    outer.cells.push_back(cell);
-  }
+    return x > 0 && x < across && y > 0 && y < along;
+  });
   if (outer.cells.size() > limits::max_sensors) too_many();
   SensorGrid grid = grid_on_plane(key, std::move(outer));
   grid.role = role;

@@ -23,6 +23,9 @@ struct PlaneLayout {
   std::vector<std::uint32_t> cells;  ///< of each sensor, ascending: some cells may have none
 
   glm::dvec3 normal() const { return glm::normalize(glm::cross(u, v)); }
+  /// A place on the plane, counted in cells from the corner, and where a point lies over it.
+  glm::dvec3 at(const glm::dvec2& in_cells) const;
+  glm::dvec2 in_cells(const glm::dvec3& point) const;
   glm::dvec3 middle_of(std::uint32_t cell) const;
   double spacing() const { return glm::length(u) / columns; }  ///< metres, along u
 };
@@ -61,8 +64,17 @@ SensorGrid grid_on_plane(const std::string& name, PlaneLayout layout);
 struct PointCounts {
   int columns = 1;  ///< along u
   int rows = 1;     ///< along v
+  std::uint64_t total() const {
+    return static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);
+  }
 };
 PointCounts points_of_en12464(double u, double v);
+/// As many as a spacing makes, metres; 0 = that of EN 12464-1.
+PointCounts points_at(double u, double v, double spacing);
+
+/// A rectangle with a sensor in each of its cells.
+PlaneLayout full_plane(const glm::dvec3& origin, const glm::dvec3& u, const glm::dvec3& v,
+                       const PointCounts& counts);
 
 /// Reads a JSON object {"name", "origin", "u", "v"} with either "spacing" or "columns" and "rows",
 /// or a list of such: a rectangle from a corner along two sides at a right angle, metres in the

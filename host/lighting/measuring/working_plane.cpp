@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -21,8 +20,15 @@ namespace photile::measuring {
 
 namespace {
 
-int cells_along(double metres, double spacing) {
-  return static_cast<int>(std::clamp(std::round(metres / spacing), 1.0, 1e6));
+/// Errors: UsageError where the spacing makes too many points.
+PlaneLayout layout_of(const glm::dvec3& origin, const glm::dvec3& u, const glm::dvec3& v,
+                      const WorkingPlane& plane) {
+  const PointCounts counts = points_at(glm::length(u), glm::length(v), plane.spacing);
+  if (counts.total() > limits::max_sensors) {
+    throw UsageError(
+        fmt::format("spacing {} m: makes more than {} points", plane.spacing, limits::max_sensors));
+  }
+  return full_plane(origin, u, v, counts);
 }
 
 }  // namespace
@@ -62,28 +68,13 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
         plan.high().y - plan.low().y));
   }
   const glm::dvec2 size = high - low;
-  const PointCounts counts = plane.spacing > 0 ? PointCounts{cells_along(size.x, plane.spacing),
-                                                             cells_along(size.y, plane.spacing)}
-                                               : points_of_en12464(size.x, size.y);
-  const double cells = static_cast<double>(counts.columns) * static_cast<double>(counts.rows);
-  if (cells > static_cast<double>(limits::max_sensors)) {
-    throw UsageError(
-        fmt::format("spacing {} m: makes more than {} points", plane.spacing, limits::max_sensors));
-  }
-
-  PlaneLayout layout;
-  layout.columns = counts.columns;
-  layout.rows = counts.rows;
-  layout.u = size.x * axes.right;
-  layout.v = size.y * axes.ahead;
   const double height = plane.above_floor ? floor.height + plane.height
                                           : plane.height - glm::dot(scene.origin, axes.up);
-  layout.origin = low.x * axes.right + low.y * axes.ahead + height * axes.up;
-  for (std::uint32_t cell = 0; cell < static_cast<std::uint32_t>(cells); ++cell) {
-    if (plan.holds_disc(axes.plan(layout.middle_of(cell)), plane.wall_band)) {
-      layout.cells.push_back(cell);
-    }
-  }
+  PlaneLayout layout = layout_of(low.x * axes.right + low.y * axes.ahead + height * axes.up,
+                                 size.x * axes.right, size.y * axes.ahead, plane);
+  std::erase_if(layout.cells, [&](std::uint32_t cell) {
+    return !plan.holds_disc(axes.plan(layout.middle_of(cell)), plane.wall_band);
+  });
   if (layout.cells.empty()) {
     throw InputError(
         fmt::format("{}: no point of the floor is {} m from its border; make the wall band smaller",
@@ -167,24 +158,6 @@ trace::Room room_of(const RayScene& rays, const trace::PlanAxes& axes, const Wor
   return *std::move(room);
 }
 
-PointCounts counts_of(const WorkingPlane& plane, double u, double v) {
-  if (!(plane.spacing > 0)) return points_of_en12464(u, v);
-  return {std::max(1, static_cast<int>(std::lround(u / plane.spacing))),
-          std::max(1, static_cast<int>(std::lround(v / plane.spacing)))};
-}
-
-PlaneLayout layout_of(const glm::dvec3& origin, const glm::dvec3& u, const glm::dvec3& v,
-                      const WorkingPlane& plane) {
-  PlaneLayout layout{origin, u, v, 0, 0, {}};
-  const PointCounts counts = counts_of(plane, glm::length(u), glm::length(v));
-  layout.columns = counts.columns;
-  layout.rows = counts.rows;
-  layout.cells.resize(static_cast<std::size_t>(counts.columns) *
-                      static_cast<std::size_t>(counts.rows));
-  std::iota(layout.cells.begin(), layout.cells.end(), 0u);
-  return layout;
-}
-
 /// The sensors of a plane that lie on a surface, just before it; the others are blank. Coordinates
 /// are the scene's, and become the world's.
 SensorGrid on_surface(const RayScene& rays, const std::string& name, const PlaneLayout& layout,
@@ -227,10 +200,6 @@ double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const t
   std::nth_element(heights.begin(), middle, heights.end());
   return room.cut_height() + *middle;
 }
-
-}  // namespace
-
-namespace {
 
 std::optional<RoomSize> size_of(const RayScene& rays, const trace::PlanAxes& axes,
                                 const trace::Room& room) {

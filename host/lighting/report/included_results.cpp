@@ -28,9 +28,13 @@ std::string measured_text(const json& entry, const char* key, int digits) {
   return fmt::format("{:.{}f} \u00b1 {:.{}f}", value, digits, error, digits);
 }
 
+glm::dvec3 vector_of(const json& three) {
+  return {three.at(0).get<double>(), three.at(1).get<double>(), three.at(2).get<double>()};
+}
+
 std::string place_text(const json& place) {
-  return fmt::format("{:.2f}, {:.2f}, {:.2f}", place.at(0).get<double>(), place.at(1).get<double>(),
-                     place.at(2).get<double>());
+  const glm::dvec3 p = vector_of(place);
+  return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z);
 }
 
 /// None where no lamp is seen.
@@ -96,16 +100,9 @@ ReportTable daylight_table(const json& grids) {
 
 /// Errors: std::domain_error where it is no plane; those of JSON.
 measuring::PlaneLayout layout_of(const json& plane) {
-  const auto vector = [&](const char* key) {
-    const json& of = plane.at(key);
-    return glm::dvec3(of.at(0).get<double>(), of.at(1).get<double>(), of.at(2).get<double>());
-  };
-  measuring::PlaneLayout layout{vector("origin"),
-                                vector("u"),
-                                vector("v"),
-                                plane.at("columns").get<int>(),
-                                plane.at("rows").get<int>(),
-                                {}};
+  const measuring::PlaneLayout layout{vector_of(plane.at("origin")), vector_of(plane.at("u")),
+                                      vector_of(plane.at("v")),      plane.at("columns").get<int>(),
+                                      plane.at("rows").get<int>(),   {}};
   const double sides = glm::length(layout.u) * glm::length(layout.v);
   const bool sound = sides > 0 && std::isfinite(sides) && layout.columns > 0 && layout.rows > 0 &&
                      double{1} * layout.columns * layout.rows <= limits::max_sensors;
@@ -120,21 +117,15 @@ template <class Value>
 ReportMap map_of(const json& plane, const std::string& grid, const std::string& figure,
                  FalseColour colours, const json& entries, const Value& value) {
   measuring::PlaneLayout layout = layout_of(plane);
-  const glm::dvec3 u = layout.u / glm::dot(layout.u, layout.u);
-  const glm::dvec3 v = layout.v / glm::dot(layout.v, layout.v);
   std::map<std::uint32_t, double> values;
   for (const json& entry : entries) {
     const std::optional<double> found = value(entry);
-    const json& p = entry.at("position");
-    const glm::dvec3 from =
-        glm::dvec3(p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()) -
-        layout.origin;
-    const double column = glm::dot(from, u) * layout.columns;
-    const double row = glm::dot(from, v) * layout.rows;
-    if (!found || !(column >= 0 && column < layout.columns && row >= 0 && row < layout.rows))
+    const glm::dvec2 at = layout.in_cells(vector_of(entry.at("position")));
+    if (!found || !(at.x >= 0 && at.x < layout.columns && at.y >= 0 && at.y < layout.rows))
       continue;
-    const auto cell = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(layout.columns) +
-                      static_cast<std::uint32_t>(column);
+    const auto cell =
+        static_cast<std::uint32_t>(at.y) * static_cast<std::uint32_t>(layout.columns) +
+        static_cast<std::uint32_t>(at.x);
     const auto [place, is_first] = values.emplace(cell, *found);
     if (!is_first) place->second = std::max(place->second, *found);
   }

@@ -171,23 +171,16 @@ constexpr int samples_along = 300;  ///< that find furniture, along the longer s
 class Frame {
  public:
   explicit Frame(const measuring::PlaneLayout& layout)
-      : corner_(layout.origin),
-        u_(layout.u),
-        v_(layout.v),
+      : layout_(layout),
         cells_(layout.columns, layout.rows),
-        beyond_(shown_around / glm::length(u_), shown_around / glm::length(v_)) {}
+        beyond_(shown_around / glm::length(layout.u), shown_around / glm::length(layout.v)) {}
 
-  glm::dvec3 normal() const { return glm::normalize(glm::cross(u_, v_)); }
-  double height_of(const glm::dvec3& point) const { return glm::dot(point - corner_, normal()); }
-  glm::dvec2 cells_of(const glm::dvec3& point) const {
-    const glm::dvec3 from = point - corner_;
-    return glm::dvec2(glm::dot(from, u_) / glm::dot(u_, u_),
-                      glm::dot(from, v_) / glm::dot(v_, v_)) *
-           cells_;
+  glm::dvec3 normal() const { return layout_.normal(); }
+  double height_of(const glm::dvec3& point) const {
+    return glm::dot(point - layout_.origin, normal());
   }
-  glm::dvec3 point_at(const glm::dvec2& cells) const {
-    return corner_ + cells.x / cells_.x * u_ + cells.y / cells_.y * v_;
-  }
+  glm::dvec2 cells_of(const glm::dvec3& point) const { return layout_.in_cells(point); }
+  glm::dvec3 point_at(const glm::dvec2& cells) const { return layout_.at(cells); }
   glm::dvec2 low() const { return -beyond_ * cells_; }
   glm::dvec2 high() const { return (1.0 + beyond_) * cells_; }
   bool shows(const glm::dvec2& cells) const {
@@ -196,7 +189,7 @@ class Frame {
   }
 
  private:
-  glm::dvec3 corner_, u_, v_;
+  const measuring::PlaneLayout& layout_;
   glm::dvec2 cells_, beyond_;
 };
 

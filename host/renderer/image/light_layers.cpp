@@ -36,16 +36,16 @@ void add_plane(LightLayers::Layer& layer, std::size_t pixels) {
   layer.illuminance.assign(pixels, 0.0f);
 }
 
-std::vector<std::string> layer_names(const Scene& scene) {
+}  // namespace
+
+std::vector<std::string> image::layer_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const LightGroup& group : light_groups_of(scene).groups) names.push_back(group.name);
   return names;
 }
 
-}  // namespace
-
 LightLayers::LightLayers(int width, int height, const Scene& scene)
-    : LightLayers(width, height, layer_names(scene)) {}
+    : LightLayers(width, height, image::layer_names(scene)) {}
 
 LightLayers::LightLayers(int width, int height, const std::vector<std::string>& names)
     : width(width), height(height) {

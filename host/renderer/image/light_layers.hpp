@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
@@ -42,6 +44,9 @@ void for_each_pixel(std::size_t count, const Work& work) {
                       }
                     });
 }
+
+/// Of the layers of a scene's pictures, in order: a light, or a group of lights.
+std::vector<std::string> layer_names(const Scene& scene);
 
 /// Linear Rec.709, at luminance 1, of the light of all lamps together: their own colours by what
 /// each gives. No primary is below a twentieth, so that dividing by it leaves noise in bounds.
