@@ -28,12 +28,7 @@ constexpr double band_begin = 0.4, band_end = 0.6;
 
 double rounded_top(double top, int steps) {
   if (!(top > 0)) return top;
-  const double least = top / steps;
-  const double decade = std::pow(10, std::floor(std::log10(least)));
-  for (const double step : {1.0, 1.2, 1.6, 2.0, 3.0, 4.0, 6.0, 8.0}) {
-    if (step * decade >= least) return step * decade * steps;
-  }
-  return 10 * decade * steps;
+  return rounded_up(top / steps, {1.0, 1.2, 1.6, 2.0, 3.0, 4.0, 6.0, 8.0}) * steps;
 }
 
 double automatic_top(std::span<const float> values) {

@@ -6,9 +6,9 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -30,6 +30,16 @@ std::string identifier_of(const std::string& name) {
   return result;
 }
 
+using Json = nlohmann::ordered_json;
+
+Json grid_info(const std::string& name, const std::string& identifier, std::size_t count) {
+  return {{"name", name},
+          {"identifier", identifier},
+          {"full_id", identifier},
+          {"group", ""},
+          {"count", count}};
+}
+
 }  // namespace
 
 std::vector<std::string> honeybee_names(const std::vector<measuring::SensorGrid>& grids) {
@@ -45,7 +55,7 @@ std::vector<std::string> honeybee_names(const std::vector<measuring::SensorGrid>
 
 std::map<std::string, std::string> honeybee_files(const measuring::Measurement& measurement) {
   std::map<std::string, std::string> files;
-  nlohmann::ordered_json grids = nlohmann::ordered_json::array();
+  Json grids = Json::array();
   std::string summary = "Sensor Grid,Sensor Grid ID,Mean,Minimum,Maximum,Uniformity Ratio\n";
   for (const measuring::GridValues& values : measurement) {
     const std::string identifier = identifier_of(values.grid.name);
@@ -63,11 +73,8 @@ std::map<std::string, std::string> honeybee_files(const measuring::Measurement& 
     if (!files.emplace(identifier + ".res", lines).second) {
       throw UsageError(fmt::format("two grids are named '{}'; rename one", values.grid.name));
     }
-    grids.push_back({{"name", values.grid.name},
-                     {"identifier", identifier},
-                     {"full_id", identifier},
-                     {"group", ""},
-                     {"count", values.grid.sensors.size() + values.grid.blanks.size()}});
+    grids.push_back(grid_info(values.grid.name, identifier,
+                              values.grid.sensors.size() + values.grid.blanks.size()));
     const measuring::GridStatistics& statistics = values.total().statistics;
     summary += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.4g}\n", identifier, identifier,
                            statistics.mean.value, statistics.minimum.value,
@@ -80,7 +87,6 @@ std::map<std::string, std::string> honeybee_files(const measuring::Measurement& 
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr std::size_t hours_of_common_year = 8'760;
 constexpr const char* group_of_blinds = "blinds";
 constexpr const char* folder_without_blinds = "__static_apertures__/default";
@@ -94,29 +100,12 @@ std::string folder_of_state(std::size_t state) {
 
 /// Four digits, or all before the point.
 void append_lux(std::string& text, float lux) {
-  struct Form {
-    float below;
-    int decimals;
-    double scale;
-  };
-  constexpr std::array<Form, 5> forms{
-      {{1, 4, 1e4}, {10, 3, 1e3}, {100, 2, 1e2}, {1000, 1, 10}, {1e18f, 0, 1}}};
-  const Form* form = forms.data();
-  while (lux >= form->below && form + 1 < forms.data() + forms.size()) ++form;
-  std::array<char, 24> digits{};
-  const auto number = static_cast<std::uint64_t>(double{lux} * form->scale + 0.5);
-  char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  const auto count = static_cast<int>(end - digits.data());
-  if (number == 0 || form->decimals == 0) {
-    text.append(digits.data(), end);
-    return;
+  const int decimals = lux < 1 ? 4 : lux < 10 ? 3 : lux < 100 ? 2 : lux < 1000 ? 1 : 0;
+  if (lux < 5e-5f) {
+    text += '0';
+  } else {
+    fmt::format_to(std::back_inserter(text), "{:.{}f}", lux, decimals);
   }
-  const int whole = std::max(0, count - form->decimals);
-  if (whole == 0) text += '0';
-  text.append(digits.data(), static_cast<std::size_t>(whole));
-  text += '.';
-  text.append(static_cast<std::size_t>(std::max(0, form->decimals - count)), '0');
-  text.append(digits.data() + whole, static_cast<std::size_t>(count - whole));
 }
 
 /// The hours with the sun up, of one profile.
@@ -216,12 +205,8 @@ std::map<std::string, std::string> annual_files(const DaylightResults& results,
       add_arrays(folder_of_state(state), identifier, results.states[state].grids[g]);
     }
     if (!with_blinds) add_arrays(folder_without_blinds, identifier, grid);
-    info.push_back({{"name", grid.grid.name},
-                    {"identifier", identifier},
-                    {"full_id", identifier},
-                    {"group", ""},
-                    {"count", count},
-                    {"light_path", Json::array({Json::array({path})})}});
+    info.push_back(grid_info(grid.grid.name, identifier, count));
+    info.back()["light_path"] = Json::array({Json::array({path})});
   }
   files["grids_info.json"] = json_text(info, 2);
   files["grid_states.json"] = json_text(states, 2);

@@ -20,15 +20,6 @@ double intensity_at(const IntensityDistribution& lamp, double plane, double angl
   return 1000 * lamp.intensity(direction) / lamp.flux();
 }
 
-/// The least of 1, 2, 2.5 and 5 times powers of ten of which four reach a value.
-double ring_step(double value) {
-  const double power = std::pow(10, std::floor(std::log10(value / 4)));
-  for (const double step : {1.0, 2.0, 2.5, 5.0}) {
-    if (4 * step * power >= value) return step * power;
-  }
-  return 10 * power;
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> data_rows(const IntensityDistribution& lamp) {
@@ -60,7 +51,8 @@ std::string polar_curve_svg(const IntensityDistribution& lamp) {
     }
   }
   if (!(most > 0)) return {};
-  const double ring = ring_step(most), scale = radius / (4 * ring), middle = size / 2;
+  const double ring = rounded_up(most / 4, {1.0, 2.0, 2.5, 5.0}), scale = radius / (4 * ring),
+               middle = size / 2;
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {0}\" width=\"{0}\" "
       "height=\"{0}\" font-family=\"sans-serif\" font-size=\"8\">\n",

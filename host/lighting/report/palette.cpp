@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
 #include <vector>
@@ -15,18 +14,7 @@
 
 namespace photile::report {
 
-namespace {
-
 constexpr int entries = 256;
-
-}  // namespace
-
-const std::vector<std::string>& Palette::names() {
-  static const std::vector<std::string> all{"turbo", "viridis",  "inferno",  "magma", "plasma",
-                                            "heat",  "spectrum", "blue-red", "def",   "spec",
-                                            "pm3d",  "hot",      "eco"};
-  return all;
-}
 
 Palette::Palette(const std::string& name) {
   const auto& known = names();
@@ -35,8 +23,7 @@ Palette::Palette(const std::string& name) {
   }
   for (int i = 0; i < entries; ++i) {
     const double share = static_cast<double>(i) / (entries - 1);
-    const glm::dvec3 rgb =
-        is_radiance_palette(name) ? radiance_palette(name, share) : knot_colour(name, share);
+    const glm::dvec3 rgb = palette_colour(name, share);
     colours_.push_back({image::srgb8_from_linear(static_cast<float>(rgb.r)),
                         image::srgb8_from_linear(static_cast<float>(rgb.g)),
                         image::srgb8_from_linear(static_cast<float>(rgb.b))});
@@ -102,12 +89,10 @@ const std::map<std::string, std::vector<double>>& knots() {
   return all;
 }
 
-}  // namespace
-
-glm::dvec3 knot_colour(const std::string& name, double share) {
-  const std::vector<double>& values = knots().at(name);
+/// Between the knots.
+glm::dvec3 between(const std::vector<double>& values, double share) {
   const std::size_t intervals = values.size() / 3 - 1;
-  const double position = std::clamp(share, 0.0, 1.0) * static_cast<double>(intervals);
+  const double position = share * static_cast<double>(intervals);
   const std::size_t below = std::min(intervals - 1, static_cast<std::size_t>(position));
   const auto colour = [&](std::size_t knot) {
     return glm::dvec3(values[3 * knot], values[3 * knot + 1], values[3 * knot + 2]);
@@ -115,7 +100,7 @@ glm::dvec3 knot_colour(const std::string& name, double share) {
   return glm::mix(colour(below), colour(below + 1), position - static_cast<double>(below));
 }
 
-namespace {
+// As falsecolor.pl of Radiance 5 has them; its tbo is OpenImageIO's turbo.
 
 double clip(double x) { return std::clamp(x, 0.0, 1.0); }
 double linear(double x) { return std::pow(x, 2.2); }
@@ -164,18 +149,28 @@ glm::dvec3 eco(double x) {
   return {linear(clip(2 * x)), linear(clip(2 * (x - 0.5))), linear(clip(2 * (0.5 - x)))};
 }
 
-const std::map<std::string, std::function<glm::dvec3(double)>>& palettes() {
-  static const std::map<std::string, std::function<glm::dvec3(double)>> all{
+using Function = glm::dvec3 (*)(double);
+
+const std::map<std::string, Function>& functions() {
+  static const std::map<std::string, Function> all{
       {"def", def}, {"spec", spec}, {"pm3d", pm3d}, {"hot", hot}, {"eco", eco}};
   return all;
 }
 
 }  // namespace
 
-bool is_radiance_palette(const std::string& name) { return palettes().contains(name); }
+const std::vector<std::string>& Palette::names() {
+  static const std::vector<std::string> all{"turbo", "viridis",  "inferno",  "magma", "plasma",
+                                            "heat",  "spectrum", "blue-red", "def",   "spec",
+                                            "pm3d",  "hot",      "eco"};
+  return all;
+}
 
-glm::dvec3 radiance_palette(const std::string& name, double share) {
-  return glm::clamp(palettes().at(name)(clip(share)), 0.0, 1.0);
+glm::dvec3 palette_colour(const std::string& name, double share) {
+  const auto function = functions().find(name);
+  const glm::dvec3 colour = function == functions().end() ? between(knots().at(name), clip(share))
+                                                          : function->second(clip(share));
+  return glm::clamp(colour, 0.0, 1.0);
 }
 
 }  // namespace photile::report

@@ -29,14 +29,7 @@ class Palette {
   std::vector<std::array<std::uint8_t, 3>> colours_;
 };
 
-/// Linear RGB in [0, 1] of a share in [0, 1] of "turbo", "viridis", "inferno", "magma", "plasma",
-/// "heat", "spectrum" or "blue-red".
-glm::dvec3 knot_colour(const std::string& name, double share);
-
-/// "def", "spec", "pm3d", "hot" or "eco". ("tbo" is OpenImageIO's turbo.)
-bool is_radiance_palette(const std::string& name);
-
-/// Linear RGB in [0, 1] of a share in [0, 1], as falsecolor.pl of Radiance 5 has it.
-glm::dvec3 radiance_palette(const std::string& name, double share);
+/// Linear RGB in [0, 1] of a share in [0, 1] of a palette that is known by this name.
+glm::dvec3 palette_colour(const std::string& name, double share);
 
 }  // namespace photile::report

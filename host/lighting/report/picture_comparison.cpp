@@ -14,6 +14,7 @@
 #include "report/false_colour.hpp"
 #include "report/palette.hpp"
 #include "report/sheet.hpp"
+#include "report/tables.hpp"
 
 namespace photile::report {
 
@@ -48,13 +49,10 @@ Image layer_picture(const Image& image, const image::LayerChannels& channels) {
   return layer;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double high_percentile = 0.95;
 
-double quantile(std::vector<float>& values, double share) {
+template <class Number>
+double quantile(std::vector<Number>& values, double share) {
   const auto place =
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), place, values.end());
@@ -163,16 +161,6 @@ double luminance_at(const Image& image, std::size_t pixel) {
       {plane_of(image, "R")[pixel], plane_of(image, "G")[pixel], plane_of(image, "B")[pixel]});
 }
 
-/// At least `value`: 1, 2 or 5 times a power of ten; 1 for 0.
-double rounded_up(double value) {
-  if (!(value > 0) || !std::isfinite(value)) return 1;
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= value) return factor * power;
-  }
-  return 10 * power;
-}
-
 /// The 99th percentile of the pixels that see no light in `b`: a light that moved would leave
 /// nothing else to see.
 double automatic_scale(const std::vector<double>& all, const Image& b) {
@@ -184,11 +172,8 @@ double automatic_scale(const std::vector<double>& all, const Image& b) {
     }
   }
   if (differences.empty()) return 1;
-  const auto at =
-      differences.begin() +
-      static_cast<std::ptrdiff_t>(percentile * static_cast<double>(differences.size() - 1));
-  std::nth_element(differences.begin(), at, differences.end());
-  return rounded_up(*at);
+  const double most = quantile(differences, percentile);
+  return most > 0 ? rounded_up(most, {1.0, 2.0, 5.0}) : 1;
 }
 
 void draw_legend(Sheet& sheet, int x, int height, double scale, const Palette& palette) {

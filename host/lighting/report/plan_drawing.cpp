@@ -29,12 +29,8 @@ constexpr double pixels_per_millimetre = 4, widest = 130, highest = 160;  // mil
 
 /// N of 1:N for a drawing of so many metres.
 double drawing_scale(double width, double height) {
-  for (double decade = 1;; decade *= 10) {
-    for (const double step : {1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5}) {
-      const double millimetres = 1000 / (step * decade);
-      if (width * millimetres <= widest && height * millimetres <= highest) return step * decade;
-    }
-  }
+  const double least = 1000 * std::max(width / widest, height / highest);
+  return rounded_up(std::max(1.0, least), {1.0, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5});
 }
 
 constexpr double title_baseline = 20, title_size = 14;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -43,6 +44,15 @@ inline std::string number_text(double value, int digits) {
 
 /// The same with groups of three from 10,000 on: "0.5857", "6000", "11,990".
 std::string grouped(double value, int digits);
+
+/// The least of `steps`, ascending from 1, times a power of ten that is not below a value above 0.
+inline double rounded_up(double value, std::initializer_list<double> steps) {
+  const double decade = std::pow(10, std::floor(std::log10(value)));
+  for (const double step : steps) {
+    if (step * decade >= value) return step * decade;
+  }
+  return 10 * decade;
+}
 
 /// A value with so many digits as its standard error leaves meaning, which is given with one:
 /// "230 +-30". Without an error, four digits.
