@@ -17,12 +17,12 @@
 #include "photile/errors.hpp"
 #include "photile/ray_scene.hpp"
 #include "report/honeybee_files.hpp"
+#include "report/page.hpp"
 #include "report/plan_drawing.hpp"
 #include "report/plan_lines.hpp"
 #include "report/printing.hpp"
 #include "report/report.hpp"
 #include "report/tables.hpp"
-#include "report/words.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {

@@ -205,7 +205,7 @@ std::string daylight_csv(const DaylightResults& results) {
   if (results.states.empty()) return text + "\n" + csv_rows(results.grids, "");
   text += ",blinds\n" + csv_rows(results.grids, ",by schedule");
   for (const DaylightState& state : results.states)
-    text += csv_rows(state.grids, "," + csv_field(state.name));
+    text += csv_rows(state.grids, fmt::format(",{}", csv_field(state.name)));
   return text;
 }
 

@@ -1,7 +1,9 @@
-#include "report/words.hpp"
+// The words of reports in other languages.
 
 #include <algorithm>
 #include <array>
+
+#include "report/page.hpp"
 
 namespace photile::report {
 namespace {
