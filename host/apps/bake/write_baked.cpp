@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "gltf/binary_file.hpp"
 #include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
@@ -159,28 +159,18 @@ class Document {
     return json_["bufferViews"].size() - 1;
   }
 
-  /// The header of glTF 2.0's binary form and its two chunks, filled up to multiples of four bytes.
   void write_binary() {
-    std::string text = json_text(json_), bytes = buffer_;
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    bytes.resize((bytes.size() + 3) / 4 * 4);
-    constexpr std::size_t header_bytes = 12, chunk_bytes = 8;
-    constexpr std::uint32_t magic = 0x46546C67, version = 2, json_chunk = 0x4E4F534A,
-                            binary_chunk = 0x004E4942;
-    const std::size_t whole = header_bytes + 2 * chunk_bytes + text.size() + bytes.size();
-    if (whole > std::numeric_limits<std::uint32_t>::max()) {
+    buffer_.resize((buffer_.size() + 3) / 4 * 4);
+    const std::string chunk = gltf::BinaryFile::buffer_head(buffer_.size());
+    const std::string head =
+        gltf::BinaryFile::head(json_text(json_), chunk.size() + buffer_.size());
+    if (head.size() + chunk.size() + buffer_.size() > std::numeric_limits<std::uint32_t>::max()) {
       output_.fail("a .glb has at most 4 GiB; write a .gltf");
     }
-    const auto put = [&](std::initializer_list<std::size_t> numbers) {
-      for (const std::size_t number : numbers) {
-        const auto word = static_cast<std::uint32_t>(number);
-        output_.write(&word, sizeof word);
-      }
-    };
-    put({magic, version, whole, text.size(), json_chunk});
-    output_.write(text.data(), text.size());
-    put({bytes.size(), binary_chunk});
-    output_.write(bytes.data(), bytes.size());
+    for (const std::string_view part :
+         {std::string_view(head), std::string_view(chunk), std::string_view(buffer_)}) {
+      output_.write(part.data(), part.size());
+    }
   }
 
   const std::filesystem::path file_;

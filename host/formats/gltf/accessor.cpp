@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gltf/document.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {
@@ -77,11 +78,8 @@ bool is_index_type(int type) {
 }  // namespace
 
 const tinygltf::Accessor& AccessorReader::at(int accessor, const std::string& use) const {
-  if (accessor < 0 || static_cast<std::size_t>(accessor) >= model_.accessors.size()) {
-    throw context_.error(
-        fmt::format("{}: there is no accessor {}; export it again", use, accessor));
-  }
-  return model_.accessors[static_cast<std::size_t>(accessor)];
+  if (const tinygltf::Accessor* const found = element(model_.accessors, accessor)) return *found;
+  throw context_.error(fmt::format("{}: there is no accessor {}; export it again", use, accessor));
 }
 
 std::uint64_t AccessorReader::count(int accessor, const std::string& use) const {
@@ -94,23 +92,24 @@ bool AccessorReader::has_data(int accessor, const std::string& use) const {
 }
 
 std::span<const unsigned char> AccessorReader::view(int buffer_view, const std::string& use) const {
-  if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= model_.bufferViews.size()) {
+  const tinygltf::BufferView* const view = element(model_.bufferViews, buffer_view);
+  if (view == nullptr) {
     throw context_.error(
         fmt::format("{}: there is no buffer view {}; export it again", use, buffer_view));
   }
-  const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(buffer_view)];
-  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model_.buffers.size()) {
+  const tinygltf::Buffer* const buffer = element(model_.buffers, view->buffer);
+  if (buffer == nullptr) {
     throw context_.error(
-        fmt::format("{}: there is no buffer {}; export it again", use, view.buffer));
+        fmt::format("{}: there is no buffer {}; export it again", use, view->buffer));
   }
-  const auto& data = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
-  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
+  const auto& data = buffer->data;
+  if (view->byteOffset > data.size() || view->byteLength > data.size() - view->byteOffset) {
     throw context_.error(
         fmt::format("{}: buffer view {} ends beyond its buffer of {} bytes; "
                     "export it again",
                     use, buffer_view, data.size()));
   }
-  return {data.data() + view.byteOffset, view.byteLength};
+  return {data.data() + view->byteOffset, view->byteLength};
 }
 
 AccessorReader::Elements AccessorReader::elements(int buffer_view, std::uint64_t offset,

@@ -28,6 +28,24 @@ bool has_orientation(const glm::dmat4& world) {
   return std::isfinite(area) && area > 0.0 && scene::within_limit(glm::dvec3(world[3]));
 }
 
+/// The camera of a node, which looks along its -z.
+Camera camera_at(const glm::dmat4& world, double field_of_view, const std::string& name,
+                 double aspect_ratio) {
+  const glm::dvec3 position(world[3]);
+  Camera camera = Camera::look_at(position, position - glm::normalize(glm::dvec3(world[2])),
+                                  glm::normalize(glm::dvec3(world[1])), field_of_view);
+  camera.name = name;
+  camera.aspect_ratio = aspect_ratio;
+  return camera;
+}
+
+/// What a visited node's camera is called: as the node, or by its own name where that has none.
+std::string name_of_camera(const tinygltf::Model& model, const NodeVisit& visit,
+                           const tinygltf::Camera& camera) {
+  const bool unnamed = visit.source->name.empty() && !camera.name.empty();
+  return unnamed ? camera.name : node_name(model, visit.node);
+}
+
 void add_camera(const tinygltf::Camera& source, const std::string& name, const glm::dmat4& world,
                 reading::ImportContext& context) {
   if (source.type != "perspective") {
@@ -39,13 +57,9 @@ void add_camera(const tinygltf::Camera& source, const std::string& name, const g
     context.warnings.add("camera", name, "no sensible field of view or orientation; skipped");
     return;
   }
-  const glm::dvec3 position(world[3]);
-  Camera camera = Camera::look_at(position, position - glm::normalize(glm::dvec3(world[2])),
-                                  glm::normalize(glm::dvec3(world[1])), field_of_view);
-  camera.name = name;
   const double aspect = source.perspective.aspectRatio;
-  camera.aspect_ratio = std::isfinite(aspect) && aspect > 0.0 ? aspect : 0.0;
-  context.scene.cameras.push_back(std::move(camera));
+  context.scene.cameras.push_back(
+      camera_at(world, field_of_view, name, std::isfinite(aspect) && aspect > 0.0 ? aspect : 0.0));
 }
 
 }  // namespace
@@ -53,15 +67,13 @@ void add_camera(const tinygltf::Camera& source, const std::string& name, const g
 void add_gltf_cameras(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
                       reading::ImportContext& context) {
   for (const NodeVisit& visit : visits) {
-    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(visit.node)];
-    if (node.camera < 0) continue;
-    if (static_cast<std::size_t>(node.camera) >= model.cameras.size()) {
+    if (visit.source->camera < 0) continue;
+    const tinygltf::Camera* const camera = element(model.cameras, visit.source->camera);
+    if (camera == nullptr) {
       throw context.error(fmt::format("node '{}': there is no camera {}; export it again",
-                                      node_name(model, visit.node), node.camera));
+                                      node_name(model, visit.node), visit.source->camera));
     }
-    const tinygltf::Camera& camera = model.cameras[static_cast<std::size_t>(node.camera)];
-    const bool unnamed = node.name.empty() && !camera.name.empty();
-    add_camera(camera, unnamed ? camera.name : node_name(model, visit.node), visit.world, context);
+    add_camera(*camera, name_of_camera(model, visit, *camera), visit.world, context);
   }
 }
 
@@ -128,11 +140,8 @@ std::vector<int> chain_to(const tinygltf::Model& model, int node) {
 std::optional<int> camera_node(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
                                const std::string& name) {
   for (const NodeVisit& visit : visits) {
-    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(visit.node)];
-    if (node.camera < 0 || static_cast<std::size_t>(node.camera) >= model.cameras.size()) continue;
-    const std::string& camera = model.cameras[static_cast<std::size_t>(node.camera)].name;
-    const bool unnamed = node.name.empty() && !camera.empty();
-    if ((unnamed ? camera : node_name(model, visit.node)) == name) return visit.node;
+    const tinygltf::Camera* const camera = element(model.cameras, visit.source->camera);
+    if (camera && name_of_camera(model, visit, *camera) == name) return visit.node;
   }
   return std::nullopt;
 }
@@ -159,23 +168,21 @@ class AnimationReader {
   Channel read(const tinygltf::Animation& animation,
                const tinygltf::AnimationChannel& source) const {
     const std::string use = fmt::format("{} of animation '{}'", source.target_path, animation.name);
-    if (source.sampler < 0 ||
-        static_cast<std::size_t>(source.sampler) >= animation.samplers.size()) {
+    const tinygltf::AnimationSampler* const sampler = element(animation.samplers, source.sampler);
+    if (sampler == nullptr) {
       throw context_.error(
           fmt::format("{}: there is no sampler {}; export it again", use, source.sampler));
     }
-    const tinygltf::AnimationSampler& sampler =
-        animation.samplers[static_cast<std::size_t>(source.sampler)];
     Channel channel{source.target_node,
                     source.target_path,
-                    sampler.interpolation,
+                    sampler->interpolation,
                     components_of(source.target_path),
                     {},
                     {}};
     if (channel.interpolation.empty()) channel.interpolation = "LINEAR";
-    const std::vector<float> times = accessors_.floats(sampler.input, 1, "times of " + use);
+    const std::vector<float> times = accessors_.floats(sampler->input, 1, "times of " + use);
     channel.times.assign(times.begin(), times.end());
-    channel.values = accessors_.floats(sampler.output, channel.components, use);
+    channel.values = accessors_.floats(sampler->output, channel.components, use);
     const std::size_t per_key = channel.interpolation == "CUBICSPLINE" ? 3 : 1;
     const bool ascending = std::adjacent_find(channel.times.begin(), channel.times.end(),
                                               std::greater_equal<>()) == channel.times.end();
@@ -232,14 +239,8 @@ reading::CameraMotion motion_of(AnimatedChain chain, const Camera& base) {
   }
   auto shared = std::make_shared<const AnimatedChain>(std::move(chain));
   return {begin, end, [shared, base](double time) {
-            const glm::dmat4 world = shared->world(time);
-            const glm::dvec3 position(world[3]);
-            Camera camera =
-                Camera::look_at(position, position - glm::normalize(glm::dvec3(world[2])),
-                                glm::normalize(glm::dvec3(world[1])), base.vertical_field_of_view);
-            camera.name = base.name;
-            camera.aspect_ratio = base.aspect_ratio;
-            return camera;
+            return camera_at(shared->world(time), base.vertical_field_of_view, base.name,
+                             base.aspect_ratio);
           }};
 }
 

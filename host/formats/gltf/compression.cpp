@@ -1,5 +1,3 @@
-#include "gltf/compression.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,8 +40,8 @@ std::span<const unsigned char> bytes_of(const tinygltf::Model& model, int buffer
                                         std::uint64_t offset, std::uint64_t length,
                                         const std::string& use,
                                         const reading::ImportContext& context) {
-  if (buffer >= 0 && static_cast<std::size_t>(buffer) < model.buffers.size()) {
-    const std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(buffer)].data;
+  if (const tinygltf::Buffer* const found = element(model.buffers, buffer)) {
+    const std::vector<unsigned char>& data = found->data;
     if (offset <= data.size() && length <= data.size() - offset) {
       return std::span(data).subspan(offset, length);
     }
@@ -134,15 +132,15 @@ class Unpacking {
            std::clamp(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor->type)),
                       1, 16)});
     }
-    const int number = integer_member(*packing, "bufferView", -1);
-    if (number < 0 || static_cast<std::size_t>(number) >= model_.bufferViews.size()) {
+    const tinygltf::BufferView* const view =
+        element(model_.bufferViews, integer_member(*packing, "bufferView", -1));
+    if (view == nullptr) {
       throw context_.error(use + ": its Draco data has no buffer view; export it again");
     }
-    const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(number)];
     DracoMesh mesh;
     const std::string problem = codec<decltype(photile_unpack_draco)>("photile_unpack_draco")(
-        bytes_of(model_, view.buffer, view.byteOffset, view.byteLength, use, context_), attributes,
-        mesh);
+        bytes_of(model_, view->buffer, view->byteOffset, view->byteLength, use, context_),
+        attributes, mesh);
     if (!problem.empty()) {
       throw context_.error(fmt::format("{}: its Draco data is {}; export it again", use, problem));
     }
@@ -195,9 +193,7 @@ class Unpacking {
 
   const tinygltf::Accessor* accessor_of(const tinygltf::Primitive& primitive,
                                         const std::string& name) const {
-    const int number = attribute(primitive, name);
-    const bool there = number >= 0 && static_cast<std::size_t>(number) < model_.accessors.size();
-    return there ? &model_.accessors[static_cast<std::size_t>(number)] : nullptr;
+    return element(model_.accessors, attribute(primitive, name));
   }
 
   int add_accessor(tinygltf::Accessor accessor, std::vector<unsigned char> values,

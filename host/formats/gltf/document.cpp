@@ -17,41 +17,12 @@
 
 #include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
-#include "gltf/compression.hpp"
+#include "gltf/binary_file.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::gltf {
 
 namespace {
-
-/// The JSON text of a file: all of a .gltf, the first chunk of a .glb.
-std::string_view json_chunk(std::span<const unsigned char> bytes, bool binary) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  constexpr std::size_t binary_header = 20;  // file header and the header of the first chunk
-  if (!binary) return text;
-  if (text.size() <= binary_header) return {};
-  const std::size_t length =
-      bytes[12] | bytes[13] << 8 | bytes[14] << 16 | static_cast<std::size_t>(bytes[15]) << 24;
-  return text.substr(binary_header, length);
-}
-
-/// A file with other JSON text in place of the first `length` bytes of its own.
-std::vector<unsigned char> with_json(std::span<const unsigned char> bytes, bool binary,
-                                     std::size_t length, std::string json) {
-  if (!binary) return {json.begin(), json.end()};
-  constexpr std::size_t header = 12, chunk_header = 8, alignment = 4;
-  json.resize((json.size() + alignment - 1) / alignment * alignment, ' ');
-  std::vector<unsigned char> changed(bytes.begin(), bytes.begin() + header + chunk_header);
-  changed.insert(changed.end(), json.begin(), json.end());
-  const std::size_t rest = std::min(bytes.size(), header + chunk_header + length);
-  changed.insert(changed.end(), bytes.begin() + static_cast<std::ptrdiff_t>(rest), bytes.end());
-  const auto write = [&](std::size_t at, std::size_t value) {
-    for (std::size_t i = 0; i < 4; ++i) changed[at + i] = value >> (8 * i) & 0xFF;
-  };
-  write(8, changed.size());
-  write(header, json.size());
-  return changed;
-}
 
 /// tinygltf asks for a file under several folders; SceneFolder alone decides what is read.
 tinygltf::FsCallbacks file_callbacks(files::SceneFolder& folder) {
@@ -91,20 +62,19 @@ std::string first_line(std::string text) {
 
 tinygltf::Model read_gltf(reading::ImportContext& context) {
   std::vector<unsigned char> bytes = context.folder.read_scene_file();
-  const std::string_view magic(reinterpret_cast<const char*>(bytes.data()),
-                               std::min<std::size_t>(bytes.size(), 4));
-  const bool binary = magic == "glTF";
-  auto size = static_cast<unsigned int>(bytes.size());
+  const std::string_view whole(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const bool binary = BinaryFile::is(whole);
+  const BinaryFile parts(whole);
+  const std::string_view json = binary ? parts.json : whole;
+  check_required_extensions(check_json(json, context), context);
+  std::string changed = without_packed_parts(json);
+  if (!changed.empty()) {
+    if (binary) changed = BinaryFile::head(changed, parts.rest.size()).append(parts.rest);
+    bytes.assign(changed.begin(), changed.end());
+  }
+  const auto size = static_cast<unsigned int>(bytes.size());
   // tinygltf 2.7 leaves the 8 bytes of the second chunk's header out of its length check.
   bytes.resize(bytes.size() + 8, 0);
-  const std::string_view json = json_chunk(std::span(bytes).first(size), binary);
-  check_required_extensions(check_json(json, context), context);
-  const std::string changed = without_packed_parts(json);
-  if (!changed.empty()) {
-    bytes = with_json(std::span(bytes).first(size), binary, json.size(), changed);
-    size = static_cast<unsigned int>(bytes.size());
-    bytes.resize(bytes.size() + 8, 0);
-  }
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(file_callbacks(context.folder));
   loader.SetImageLoader(keep_encoded, nullptr);
@@ -163,6 +133,16 @@ const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
                                       const std::string& name) {
   const auto found = extensions.find(name);
   return found == extensions.end() ? nullptr : &found->second;
+}
+
+const tinygltf::Value* light_of_extension(const tinygltf::Model& model,
+                                          const std::string& extension, double number) {
+  const tinygltf::Value* const defined = find_extension(model.extensions, extension);
+  if (defined == nullptr || !defined->Has("lights")) return nullptr;
+  const tinygltf::Value& lights = defined->Get("lights");
+  const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
+  const bool there = number >= 0.0 && number < static_cast<double>(count);
+  return there ? &lights.Get(static_cast<int>(number)) : nullptr;
 }
 
 glm::dvec3 rgb_of(const std::vector<double>& values, const glm::dvec3& fallback) {

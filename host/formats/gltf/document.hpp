@@ -1,6 +1,7 @@
 // A glTF file, parsed and with its buffers read, before any of it is interpreted.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,18 @@ void check_required_extensions(const std::vector<std::string>& required,
 /// Names every extension that the file uses and photile does not understand in a warning.
 void warn_of_extensions(const tinygltf::Model& model, reading::ImportContext& context);
 
+// Compressed meshes: EXT_meshopt_compression and KHR_draco_mesh_compression.
+
+/// The JSON of a file with compressed meshes without what a reader stumbles over that does not know
+/// them: buffers that stand for what meshopt has packed, and have no bytes, and indices that only
+/// Draco's data has. "" where nothing has to be changed.
+std::string without_packed_parts(std::string_view json);
+
+/// Unpacks what is compressed into buffers of its own, so that the model is read as any other.
+/// Errors: InputError that names a view or mesh which is damaged; UsageError where photile was
+/// built without the decoders.
+void unpack_meshes(tinygltf::Model& model, const reading::ImportContext& context);
+
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.
 double number_member(const tinygltf::Value& object, const std::string& key, double fallback);
 
@@ -43,6 +56,17 @@ std::string string_member(const tinygltf::Value& object, const std::string& key)
 /// An extension's JSON object, or nullptr when `extensions` lacks it.
 const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
                                       const std::string& name);
+
+/// The element that a file numbers so; null where there is none.
+template <class T>
+const T* element(const std::vector<T>& all, int number) {
+  const bool there = number >= 0 && static_cast<std::size_t>(number) < all.size();
+  return there ? &all[static_cast<std::size_t>(number)] : nullptr;
+}
+
+/// A light that an extension defines for the file; null where there is none of that number.
+const tinygltf::Value* light_of_extension(const tinygltf::Model& model,
+                                          const std::string& extension, double number);
 
 /// Three numbers of a factor such as emissiveFactor; `fallback` where absent.
 glm::dvec3 rgb_of(const std::vector<double>& values, const glm::dvec3& fallback);

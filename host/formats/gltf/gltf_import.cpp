@@ -70,10 +70,8 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
                       const std::vector<NodeVisit>& visits, const reading::ImportContext& context) {
   std::vector<std::uint64_t> places(model.meshes.size(), 0);
   for (const NodeVisit& visit : visits) {
-    const int mesh = model.nodes[static_cast<std::size_t>(visit.node)].mesh;
-    if (mesh >= 0 && static_cast<std::size_t>(mesh) < places.size()) {
-      ++places[static_cast<std::size_t>(mesh)];
-    }
+    const int mesh = visit.source->mesh;
+    if (element(model.meshes, mesh)) ++places[static_cast<std::size_t>(mesh)];
   }
   const std::uint64_t buffer_bytes = bytes_of_buffers(model);
   std::uint64_t triangles = 0, most = 0;
@@ -127,10 +125,8 @@ void move_to_origin(const tinygltf::Model& model, const AccessorReader& accessor
                     std::vector<NodeVisit>& visits, reading::ImportContext& context) {
   std::map<int, std::vector<const NodeVisit*>> visits_of;  // each mesh is read once
   for (const NodeVisit& visit : visits) {
-    const int mesh = model.nodes[static_cast<std::size_t>(visit.node)].mesh;
-    if (mesh >= 0 && static_cast<std::size_t>(mesh) < model.meshes.size()) {
-      visits_of[mesh].push_back(&visit);
-    }
+    const int mesh = visit.source->mesh;
+    if (element(model.meshes, mesh)) visits_of[mesh].push_back(&visit);
   }
   reading::SceneOrigin origin;
   for (const auto& [mesh, places] : visits_of) {
@@ -153,15 +149,13 @@ const tinygltf::Value* light_of_scene(const tinygltf::Model& model,
   const tinygltf::Value* reference =
       find_extension(model.scenes[*scene].extensions, extension_name);
   if (reference == nullptr) return nullptr;
-  const tinygltf::Value* extension = find_extension(model.extensions, extension_name);
-  const int light = integer_member(*reference, "light", -1);
-  const std::size_t count =
-      extension != nullptr && extension->Has("lights") ? extension->Get("lights").ArrayLen() : 0;
-  if (light < 0 || static_cast<std::size_t>(light) >= count) {
+  const int number = integer_member(*reference, "light", -1);
+  const tinygltf::Value* const light = light_of_extension(model, extension_name, number);
+  if (light == nullptr) {
     throw context.error(fmt::format("scene {}: there is no light {} of {}; export it again", *scene,
-                                    light, extension_name));
+                                    number, extension_name));
   }
-  return &extension->Get("lights").Get(light);
+  return light;
 }
 
 glm::dquat rotation_of(const tinygltf::Value& light) {

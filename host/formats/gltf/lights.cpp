@@ -148,20 +148,15 @@ std::uint32_t GltfProfiles::find_or_read(const std::string& key, const Read& rea
 }
 
 std::uint32_t GltfProfiles::from_extension(double light, const std::string& node) {
-  const tinygltf::Value* extension = find_extension(model_.extensions, ies_extension);
-  const tinygltf::Value lights = extension != nullptr && extension->Has("lights")
-                                     ? extension->Get("lights")
-                                     : tinygltf::Value();
-  const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
-  if (!(light >= 0.0 && light < static_cast<double>(count))) {
+  const tinygltf::Value* const profile = light_of_extension(model_, ies_extension, light);
+  if (profile == nullptr) {
     throw files::ResourceError(
         fmt::format("node '{}': there is no light {} of {}", node, light, ies_extension));
   }
-  const tinygltf::Value& profile = lights.Get(static_cast<int>(light));
-  const std::string uri = string_member(profile, "uri");
+  const std::string uri = string_member(*profile, "uri");
   if (uri.empty()) {
     const std::string key = fmt::format("light {} of {}", light, ies_extension);
-    const auto view = integer_member(profile, "bufferView", -1);
+    const auto view = integer_member(*profile, "bufferView", -1);
     return find_or_read(key, [&] { return accessors_.view(view, key); });
   }
   if (uri.starts_with("data:")) {
@@ -259,7 +254,7 @@ class LightImporter {
       : model_(model), context_(context), profiles_(model, accessors, context) {}
 
   void add(const NodeVisit& visit) {
-    const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+    const tinygltf::Node& node = *visit.source;
     const tinygltf::Light* source = punctual_light(visit.node);
     const std::optional<NodeProfile> profile = profiles_.of(visit.node);
     if (source == nullptr && !profile) return;

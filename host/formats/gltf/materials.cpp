@@ -75,16 +75,11 @@ struct TextureReference {
   bool given() const { return index != -1; }
 };
 
+/// Of a texture's info, a normal map's or that of an occlusion.
 template <class Info>
-TextureReference reference(const Info& info) {
+TextureReference reference_of(const Info& info) {
   return {info.index,
           coordinates_of(info.texCoord, find_extension(info.extensions, transform_name))};
-}
-
-TextureReference reference_of(const tinygltf::TextureInfo& info) { return reference(info); }
-TextureReference reference_of(const tinygltf::NormalTextureInfo& info) { return reference(info); }
-TextureReference reference_of(const tinygltf::OcclusionTextureInfo& info) {
-  return reference(info);
 }
 
 /// The texture that the member `name` of an extension refers to; not given where it is absent.
@@ -268,23 +263,18 @@ void Converter::warn_about_glass(const tinygltf::Material& source, const Metalli
 }
 
 std::uint32_t Converter::load_texture(int texture, pictures::TextureContent content) {
-  if (texture < 0 || static_cast<std::size_t>(texture) >= model_.textures.size()) {
-    throw files::ResourceError(fmt::format("there is no texture {}", texture));
-  }
-  const tinygltf::Texture& source = model_.textures[static_cast<std::size_t>(texture)];
-  const auto* webp = find_extension(source.extensions, "EXT_texture_webp");
+  const tinygltf::Texture* const source = element(model_.textures, texture);
+  if (source == nullptr) throw files::ResourceError(fmt::format("there is no texture {}", texture));
+  const auto* webp = find_extension(source->extensions, "EXT_texture_webp");
   const int picture =
-      source.source >= 0 || webp == nullptr ? source.source : integer_member(*webp, "source", -1);
-  if (picture < 0 || static_cast<std::size_t>(picture) >= model_.images.size()) {
+      source->source >= 0 || webp == nullptr ? source->source : integer_member(*webp, "source", -1);
+  if (element(model_.images, picture) == nullptr) {
     throw files::ResourceError(
         fmt::format("texture {} has no picture of a format that is read", texture));
   }
+  const tinygltf::Sampler* const sampler = element(model_.samplers, source->sampler);
   const auto has_wrap = [&](int mode) {
-    if (source.sampler < 0 || static_cast<std::size_t>(source.sampler) >= model_.samplers.size()) {
-      return false;
-    }
-    const tinygltf::Sampler& sampler = model_.samplers[static_cast<std::size_t>(source.sampler)];
-    return sampler.wrapS == mode || sampler.wrapT == mode;
+    return sampler != nullptr && (sampler->wrapS == mode || sampler->wrapT == mode);
   };
   if (has_wrap(TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) ||
       has_wrap(TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)) {

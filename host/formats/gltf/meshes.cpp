@@ -199,7 +199,7 @@ class MeshImporter {
                                  has_normal_map(context.scene)}),
         instances_(context.scene),
         plain_materials_(context.scene) {
-    for (const NodeVisit& visit : visits) ++uses_[mesh_of(visit)];
+    for (const NodeVisit& visit : visits) ++uses_[visit.source->mesh];
   }
 
   void add(const NodeVisit& visit, std::uint64_t visit_number);
@@ -211,9 +211,6 @@ class MeshImporter {
   }
 
  private:
-  int mesh_of(const NodeVisit& visit) const {
-    return model_.nodes[static_cast<std::size_t>(visit.node)].mesh;
-  }
   void add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                      std::uint64_t visit_number, const std::string& mesh_name);
   PlacedVertices read_vertices(const tinygltf::Primitive& primitive, const glm::dmat4& world,
@@ -239,20 +236,20 @@ class MeshImporter {
 };
 
 void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
-  const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+  const tinygltf::Node& node = *visit.source;
   if (node.mesh < 0) return;
-  if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
+  const tinygltf::Mesh* const mesh = element(model_.meshes, node.mesh);
+  if (mesh == nullptr) {
     throw context_.error(fmt::format("node '{}': there is no mesh {}; export it again",
                                      node_name(model_, visit.node), node.mesh));
   }
-  const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
   const std::string name = name_of_mesh(model_, node.mesh);
   if (node.skin >= 0) {
     context_.warnings.add("node", node_name(model_, visit.node), "skin is ignored: rest pose");
   }
   const auto first = static_cast<std::uint32_t>(context_.scene.triangles.size());
   kept_.clear();
-  for (const tinygltf::Primitive& primitive : mesh.primitives) {
+  for (const tinygltf::Primitive& primitive : mesh->primitives) {
     if (!has_triangles(primitive.mode)) {
       context_.warnings.add("mesh", name, "points and lines are ignored");
     } else if (!is_usable(primitive, fmt::format("mesh '{}'", name), accessors_)) {
@@ -275,10 +272,9 @@ void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number)
     panel_material_ = static_cast<std::uint32_t>(context_.scene.materials.size());
     context_.scene.materials.emplace_back().name = "panel";  // black
   }
-  reading::LightTraits traits = light_traits(
-      model_.nodes[static_cast<std::size_t>(visit.node)].extras, name, context_.warnings);
+  reading::LightTraits traits = light_traits(visit.source->extras, name, context_.warnings);
   traits.lumens = 0;  // the panel's own say so
-  traits.lamp = lamp_of(model_.nodes[static_cast<std::size_t>(visit.node)], "EXT_lights_area");
+  traits.lamp = lamp_of(*visit.source, "EXT_lights_area");
   const std::uint32_t light =
       context_.area_lights.find_or_add(reading::first_panel_object + visit_number, name,
                                        panel_material_, {panel->radiance, false}, traits);
@@ -308,7 +304,7 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   }
   // A mirrored node turns the winding of its triangles round.
   const bool mirrored = glm::determinant(glm::dmat3(visit.world)) < 0.0;
-  const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(visit.node)];
+  const tinygltf::Node& node = *visit.source;
   reading::LightTraits traits =
       light_traits(node.extras, node_name(model_, visit.node), context_.warnings);
   traits.lamp = fmt::format("mesh {}", node.mesh);
@@ -324,9 +320,9 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
 
 std::uint32_t MeshImporter::material_of(const tinygltf::Primitive& primitive,
                                         const std::string& use) const {
-  const std::size_t default_material = model_.materials.size();
-  if (primitive.material < 0) return static_cast<std::uint32_t>(default_material);
-  if (static_cast<std::size_t>(primitive.material) >= default_material) {
+  if (primitive.material < 0)
+    return static_cast<std::uint32_t>(model_.materials.size());  // default
+  if (element(model_.materials, primitive.material) == nullptr) {
     throw context_.error(
         fmt::format("{}: there is no material {}; export it again", use, primitive.material));
   }

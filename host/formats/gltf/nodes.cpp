@@ -17,16 +17,19 @@
 namespace photile::gltf {
 namespace {
 
+/// Marks those of the numbers that there are.
+void mark(const std::vector<int>& numbers, std::vector<bool>& marks) {
+  for (const int number : numbers) {
+    if (number >= 0 && static_cast<std::size_t>(number) < marks.size()) {
+      marks[static_cast<std::size_t>(number)] = true;
+    }
+  }
+}
+
 /// The nodes that no other one has as a child.
 std::vector<int> parentless_nodes(const tinygltf::Model& model) {
   std::vector<bool> is_child(model.nodes.size(), false);
-  for (const tinygltf::Node& node : model.nodes) {
-    for (const int child : node.children) {
-      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) {
-        is_child[static_cast<std::size_t>(child)] = true;
-      }
-    }
-  }
+  for (const tinygltf::Node& node : model.nodes) mark(node.children, is_child);
   std::vector<int> roots;
   for (std::size_t i = 0; i < is_child.size(); ++i) {
     if (!is_child[i]) roots.push_back(static_cast<int>(i));
@@ -131,7 +134,8 @@ class Walk {
 
  private:
   void enter(int node, const glm::dmat4& parent, std::vector<NodeVisit>& visits) {
-    if (node < 0 || static_cast<std::size_t>(node) >= model_.nodes.size()) {
+    const tinygltf::Node* const source = element(model_.nodes, node);
+    if (source == nullptr) {
       throw context_.error(fmt::format("there is no node {}; export it again", node));
     }
     if (on_path_[static_cast<std::size_t>(node)]) {
@@ -144,11 +148,10 @@ class Walk {
     }
     if (context_.is_hidden(node_name(model_, node))) return;
     on_path_[static_cast<std::size_t>(node)] = true;
-    const glm::dmat4 world = parent * local_transform(model_.nodes[static_cast<std::size_t>(node)]);
-    const int mesh = model_.nodes[static_cast<std::size_t>(node)].mesh;
-    const bool has_mesh = mesh >= 0 && static_cast<std::size_t>(mesh) < model_.meshes.size();
-    if (!has_mesh || !context_.is_hidden(name_of_mesh(model_, mesh))) {
-      visits.push_back({node, world});
+    const glm::dmat4 world = parent * local_transform(*source);
+    const bool has_mesh = element(model_.meshes, source->mesh) != nullptr;
+    if (!has_mesh || !context_.is_hidden(name_of_mesh(model_, source->mesh))) {
+      visits.push_back({node, source, world});
     }
     path_.push_back({node, 0, world});
   }
@@ -167,15 +170,9 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
                        [&](const LuminousPanel& panel) { return panel.node == node.name; });
   };
   std::vector<bool> is_joint(model.nodes.size(), false);
-  for (const tinygltf::Skin& skin : model.skins) {
-    for (const int joint : skin.joints) {
-      if (joint >= 0 && static_cast<std::size_t>(joint) < is_joint.size()) {
-        is_joint[static_cast<std::size_t>(joint)] = true;
-      }
-    }
-  }
+  for (const tinygltf::Skin& skin : model.skins) mark(skin.joints, is_joint);
   for (const NodeVisit& visit : visits) {
-    const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(visit.node)];
+    const tinygltf::Node& node = *visit.source;
     if (node.mesh < 0 && node.camera < 0 && node.children.empty() && node.extensions.empty() &&
         !is_joint[static_cast<std::size_t>(visit.node)] && !has_profile(node) && !has_panel(node) &&
         !asked_for(node)) {

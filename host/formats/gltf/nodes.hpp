@@ -13,8 +13,9 @@ namespace photile::gltf {
 
 /// One appearance of a node in the scene.
 struct NodeVisit {
-  int node;
-  glm::dmat4 world;  ///< node to world space
+  int node;                      ///< its number
+  const tinygltf::Node* source;  ///< in the model
+  glm::dmat4 world;              ///< node to world space
 };
 
 /// Every node of the scene that SceneLoadOptions::scene names, else of the default scene (or of the

@@ -68,17 +68,13 @@ std::optional<Panel> panel_of_extras(const tinygltf::Node& node, const std::stri
 std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
                                         const tinygltf::Value& reference, const std::string& name,
                                         reading::ImportContext& context) {
-  const tinygltf::Value* extension = find_extension(model.extensions, area_extension);
-  const tinygltf::Value lights = extension != nullptr && extension->Has("lights")
-                                     ? extension->Get("lights")
-                                     : tinygltf::Value();
   const double index = number_member(reference, "light", -1.0);
-  const std::size_t count = lights.IsArray() ? lights.ArrayLen() : 0;
-  if (!(index >= 0.0 && index < static_cast<double>(count))) {
+  const tinygltf::Value* const found = light_of_extension(model, area_extension, index);
+  if (found == nullptr) {
     throw context.error(fmt::format("node '{}': there is no light {} of {}; export it again", name,
                                     index, area_extension));
   }
-  const tinygltf::Value& light = lights.Get(static_cast<int>(index));
+  const tinygltf::Value& light = *found;
   const std::string type = string_member(light, "type");
   Panel panel;
   panel.disc = type == "disk" || type == "disc";

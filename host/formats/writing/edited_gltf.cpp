@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +10,7 @@
 
 #include "common/files.hpp"
 #include "files/scene_files.hpp"
+#include "gltf/binary_file.hpp"
 #include "photile/errors.hpp"
 #include "writing/edited_scene.hpp"
 
@@ -247,31 +246,6 @@ class Document {
   std::set<reading::LightSource::LampKey> seen_;  ///< lamps of shared ones
 };
 
-/// A .glb in its parts: JSON, and all that follows its chunk.
-struct BinaryFile {
-  static constexpr std::size_t header = 12, chunk_header = 8;
-
-  explicit BinaryFile(const std::string& bytes) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, bytes.data() + header, sizeof(length));
-    json = bytes.substr(header + chunk_header, length);
-    rest = bytes.substr(std::min<std::size_t>(bytes.size(), header + chunk_header + length));
-  }
-
-  std::string joined(std::string text) const {
-    static_assert(std::endian::native == std::endian::little);
-    text.append((4 - text.size() % 4) % 4, ' ');  // chunks begin at multiples of 4
-    const auto number = [](std::size_t value) {
-      const auto word = static_cast<std::uint32_t>(value);
-      return std::string(reinterpret_cast<const char*>(&word), sizeof(word));
-    };
-    const std::size_t size = header + chunk_header + text.size() + rest.size();
-    return "glTF" + number(2) + number(size) + number(text.size()) + "JSON" + text + rest;
-  }
-
-  std::string json, rest;
-};
-
 }  // namespace
 
 void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::path& copy,
@@ -279,11 +253,14 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
                     std::vector<std::string>& left_out) {
   const std::vector<unsigned char> file = files::SceneFolder(scene, true).read_scene_file();
   const std::string bytes(file.begin(), file.end());
-  const bool binary = bytes.starts_with("glTF");
+  const bool binary = gltf::BinaryFile::is(bytes);
+  const gltf::BinaryFile parts(bytes);
   try {
-    Json json = Json::parse(binary ? BinaryFile(bytes).json : bytes);
+    Json json = Json::parse(binary ? parts.json : bytes);
     Document(json, options, left_out).set(settings);
-    write_file(copy, binary ? BinaryFile(bytes).joined(json.dump()) : json.dump(2) + "\n");
+    write_file(copy, binary
+                         ? gltf::BinaryFile::head(json.dump(), parts.rest.size()).append(parts.rest)
+                         : json.dump(2) + "\n");
   } catch (const Json::exception&) {  // its text means something to programmers alone
     throw InputError(fmt::format(
         "{}: its lights cannot be set, for it is malformed; export it again", scene.string()));
