@@ -8,7 +8,6 @@
 #include <cmath>
 #include <random>
 
-#include "bake/open_sides.hpp"
 #include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
 #include "test_scenes.hpp"

@@ -11,6 +11,7 @@
 #include "cache/node_visibility.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::bake {
@@ -38,6 +39,12 @@ struct BakeParameters {
   std::vector<double> powers;      ///< per layer, by which the brighter side of a surface is told
   std::vector<std::uint8_t> open;  ///< as open_sides; empty = all sides are
 };
+
+/// Which surface anybody can see, or light can reach: the insides of closed things need no light
+/// maps. Per oriented face 1 where paths from the cameras and the lights come to it, or to its
+/// sheet: what goes on over common edges. Else 0. Paths leave surfaces by the cosine and go on
+/// through glass and cutouts, too. Depends on the scene alone.
+std::vector<std::uint8_t> open_sides(const RayScene& rays);
 
 /// The charts of the light maps side by side: of each triangle the side on which more light falls,
 /// and the other where it is open and lit, too. Texels are points of the charts' lattices, so that

@@ -1,9 +1,8 @@
-#include "bake/open_sides.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <atomic>
 
+#include "bake/baked_light.hpp"
 #include "geometry/disjoint_sets.hpp"
 #include "photile/camera.hpp"
 #include "surface/surface_mesh.hpp"

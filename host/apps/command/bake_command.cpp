@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/open_sides.hpp"
 #include "bake/write_baked.hpp"
 #include "command/command_line.hpp"
 #include "command/option_group.hpp"

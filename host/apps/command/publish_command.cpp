@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/open_sides.hpp"
 #include "bake/write_baked.hpp"
 #include "cache/charts.hpp"
 #include "command/command_line.hpp"
