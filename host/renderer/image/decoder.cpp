@@ -15,7 +15,9 @@ namespace photile::image {
 
 namespace {
 
-std::unique_ptr<Decoder> open_by_openimageio(PictureFormat format, Encoded bytes) {
+constexpr std::string_view exr_reader = "openexr";
+
+std::unique_ptr<Decoder> open_by_openimageio(const char* reader, Encoded bytes) {
   // It stays loaded: OpenImageIO and what it is made of are not made to be unloaded.
   static const Module& module = *new Module("photile_openimageio.so");
   static auto* const open =
@@ -25,40 +27,40 @@ std::unique_ptr<Decoder> open_by_openimageio(PictureFormat format, Encoded bytes
         "pictures other than EXR cannot be read: {}; install the package photile-openimageio",
         module.error()));
   }
-  return std::unique_ptr<Decoder>(open(format, bytes));
+  return std::unique_ptr<Decoder>(open(reader, bytes));
 }
 
 }  // namespace
 
-PictureFormat format_of(const std::string& name, Encoded bytes) {
+const char* reader_of(const std::string& name, Encoded bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   using namespace std::string_view_literals;
-  if (text.starts_with("\x89PNG"sv)) return PictureFormat::png;
-  if (text.starts_with("\xFF\xD8"sv)) return PictureFormat::jpeg;
-  if (text.starts_with("\x76\x2F\x31\x01"sv)) return PictureFormat::exr;
-  if (text.starts_with("#?"sv)) return PictureFormat::radiance;
-  if (text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv)) return PictureFormat::tiff;
-  if (text.starts_with("BM"sv)) return PictureFormat::bmp;
-  if (text.starts_with("GIF8"sv)) return PictureFormat::gif;
+  if (text.starts_with("\x89PNG"sv)) return "png";
+  if (text.starts_with("\xFF\xD8"sv)) return "jpeg";
+  if (text.starts_with("\x76\x2F\x31\x01"sv)) return exr_reader.data();
+  if (text.starts_with("#?"sv)) return "hdr";
+  if (text.starts_with("II*\0"sv) || text.starts_with("MM\0*"sv)) return "tiff";
+  if (text.starts_with("BM"sv)) return "bmp";
+  if (text.starts_with("GIF8"sv)) return "gif";
   if (text.size() > 12 && text.starts_with("RIFF"sv) && text.substr(8).starts_with("WEBP"sv)) {
-    return PictureFormat::webp;
+    return "webp";
   }
   const std::string extension = lower(std::filesystem::path(name).extension().string());
-  if (extension == ".tga") return PictureFormat::targa;
+  if (extension == ".tga") return "targa";
   if (extension == ".pbm" || extension == ".pgm" || extension == ".ppm" || extension == ".pnm") {
-    return PictureFormat::pnm;
+    return "pnm";
   }
   throw DecodeError("not a picture format that is read (EXR, PNG, JPEG, ...)");
 }
 
 std::unique_ptr<Decoder> open_picture(const std::string& name, Encoded bytes) {
-  const PictureFormat format = format_of(name, bytes);
+  const char* const reader = reader_of(name, bytes);
   std::unique_ptr<Decoder> decoder;
-  if (format == PictureFormat::exr) {
+  if (reader == exr_reader) {
     decoder = open_exr(bytes);
   } else {
-    check_encoded(format, bytes);
-    decoder = open_by_openimageio(format, bytes);
+    check_encoded(reader, bytes);
+    decoder = open_by_openimageio(reader, bytes);
   }
   check_shape(decoder->shape(), bytes.size());
   return decoder;

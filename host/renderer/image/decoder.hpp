@@ -18,11 +18,10 @@ struct DecodeError : std::runtime_error {
 
 using Encoded = std::span<const unsigned char>;
 
-enum class PictureFormat { exr, png, jpeg, radiance, tiff, webp, bmp, gif, targa, pnm };
-
-/// By signature, or else by the extension of the few formats without one.
-/// Errors: DecodeError where it is none of them.
-PictureFormat format_of(const std::string& name, Encoded bytes);
+/// What OpenImageIO calls the reader of a picture's format: by its signature, or else by the
+/// extension of the few formats without one.
+/// Errors: DecodeError where it is no format that is read.
+const char* reader_of(const std::string& name, Encoded bytes);
 
 /// How the values of a picture are stored.
 enum class Sample { byte, word, real };
@@ -76,6 +75,6 @@ extern "C" {
 /// OpenImageIO's readers, in a module of their own (host/renderer/openimageio): opens a picture of
 /// any format but EXR, which `bytes` must outlive; the caller deletes it. Errors: DecodeError.
 __attribute__((visibility("default"))) photile::image::Decoder* photile_openimageio_decoder(
-    photile::image::PictureFormat format, photile::image::Encoded bytes);
+    const char* reader, photile::image::Encoded bytes);
 
 }  // extern "C"

@@ -175,24 +175,17 @@ void check_shape(const PictureShape& shape, std::size_t encoded) {
   }
 }
 
-void check_encoded(PictureFormat format, Encoded bytes) {
-  switch (format) {
-    case PictureFormat::png:
-      return check_png(bytes);
-    case PictureFormat::gif:
-      return check_gif(bytes);
-    case PictureFormat::webp:
-      return check_webp(bytes);
-    case PictureFormat::bmp:
-      return check_bmp(bytes);
-    case PictureFormat::targa:
-      return check_targa(bytes);
-    case PictureFormat::tiff:
-      return check_tiff(bytes);
-    case PictureFormat::radiance:
-      return check_radiance(bytes);
-    default:
-      return;
+void check_encoded(std::string_view reader, Encoded bytes) {
+  using Check = void (*)(Encoded);
+  constexpr std::array<std::pair<std::string_view, Check>, 7> checks{{{"png", check_png},
+                                                                      {"gif", check_gif},
+                                                                      {"webp", check_webp},
+                                                                      {"bmp", check_bmp},
+                                                                      {"targa", check_targa},
+                                                                      {"tiff", check_tiff},
+                                                                      {"hdr", check_radiance}}};
+  for (const auto& [name, check] : checks) {
+    if (name == reader) check(bytes);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/decoder.hpp"
@@ -27,7 +28,8 @@ void check_shape(const PictureShape& shape, std::size_t encoded);
 
 /// Refuses a picture for OpenImageIO for which its reader would reserve too much memory, which it
 /// would read as another picture, or past whose bytes it would read. Errors: DecodeError.
-void check_encoded(PictureFormat format, Encoded bytes);
+///   reader   as reader_of
+void check_encoded(std::string_view reader, Encoded bytes);
 
 /// Decoded bytes that are not worth a check. Fuzzers take fewer: an input is to take microseconds.
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION

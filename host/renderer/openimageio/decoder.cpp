@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "photile/limits.hpp"
 
@@ -60,32 +61,6 @@ Silence::~Silence() {
   stderr = standard_error;
 }
 
-const char* reader_of(image::PictureFormat format) {
-  switch (format) {
-    case image::PictureFormat::png:
-      return "png";
-    case image::PictureFormat::jpeg:
-      return "jpeg";
-    case image::PictureFormat::radiance:
-      return "hdr";
-    case image::PictureFormat::tiff:
-      return "tiff";
-    case image::PictureFormat::webp:
-      return "webp";
-    case image::PictureFormat::bmp:
-      return "bmp";
-    case image::PictureFormat::gif:
-      return "gif";
-    case image::PictureFormat::targa:
-      return "targa";
-    case image::PictureFormat::pnm:
-      return "pnm";
-    case image::PictureFormat::exr:
-      break;  // photile's own
-  }
-  throw image::DecodeError("not a picture format that is read");
-}
-
 /// For the process, once.
 void set_up() {
   static const bool done = [] {
@@ -111,8 +86,8 @@ std::string reason_of(const OIIO::ImageInput& input) {
 
 class OpenImageIODecoder : public image::Decoder {
  public:
-  OpenImageIODecoder(image::PictureFormat format, image::Encoded bytes)
-      : memory_(bytes.data(), bytes.size()), input_(OIIO::ImageInput::create(reader_of(format))) {
+  OpenImageIODecoder(std::string_view reader, image::Encoded bytes)
+      : memory_(bytes.data(), bytes.size()), input_(OIIO::ImageInput::create(std::string(reader))) {
     if (!input_) throw image::DecodeError("OpenImageIO has no reader for it");
     const Silence silence;
     OIIO::ImageSpec options, spec;
@@ -122,10 +97,10 @@ class OpenImageIODecoder : public image::Decoder {
     if (!input_->open("the file", spec, options)) throw image::DecodeError(reason_of(*input_));
     shape_ = {spec.width, spec.height, spec.nchannels, sample_of(spec.format)};
     const bool alpha = spec.alpha_channel >= 0;
-    if (format == image::PictureFormat::tiff && alpha && spec["compression"].get() == "jpeg") {
+    if (reader == "tiff" && alpha && spec["compression"].get() == "jpeg") {
       throw image::DecodeError("alpha beside JPEG's compression is not read; save it with another");
     }
-    associated_ = format == image::PictureFormat::webp && alpha;
+    associated_ = reader == "webp" && alpha;
   }
 
   image::Pixels decode() override {
@@ -175,8 +150,8 @@ class OpenImageIODecoder : public image::Decoder {
 }  // namespace
 }  // namespace photile::openimageio
 
-photile::image::Decoder* photile_openimageio_decoder(photile::image::PictureFormat format,
+photile::image::Decoder* photile_openimageio_decoder(const char* reader,
                                                      photile::image::Encoded bytes) {
   photile::openimageio::set_up();
-  return new photile::openimageio::OpenImageIODecoder(format, bytes);
+  return new photile::openimageio::OpenImageIODecoder(reader, bytes);
 }
