@@ -1,4 +1,7 @@
 // `photile daylight`, daylight factors and skies of other hours on the command line.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <catch2/catch.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -6,6 +9,7 @@
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
+#include "command/daylight_results.hpp"
 #include "file_folder.hpp"
 #include "weather_text.hpp"
 
@@ -95,6 +99,32 @@ TEST_CASE("a year of daylight fills its files") {
              Contains("'shape': (" + std::to_string(points) + ", " + std::to_string(hours) + ")"));
   CHECK(array.size() % 64 == 4 * points * hours % 64);
   CHECK(array.size() > 4 * points * hours);
+}
+
+TEST_CASE("the window's year is that of photile daylight, and is refined") {
+  const FileFolder folder;
+  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  const Outcome once =
+      succeed(quick("daylight", scene, {"--inside", "0,0,0", "--weather", weather}));
+  app::DaylightOptions options;
+  options.render.scene = scene;
+  options.render.load.situation.weather = weather;
+  options.parameters.repeats = 2;
+  options.parameters.gathering.rays = 64;
+  options.places.plane.height = "floor+0.75";
+  options.places.plane.wall_band = 0.2;
+  options.places.plane.inside = {0, 0, 0};
+  options.seconds = 1e-3;
+  std::vector<std::string> told;
+  app::refine_year(
+      options,
+      [&](const std::vector<std::string>& lines) {
+        told.push_back(fmt::format("{}\n", fmt::join(lines, "\n")));
+      },
+      Progress::none());
+  REQUIRE(told.size() == 3);  // after one round, two and four
+  CHECK(told.front() == once.output);
+  CHECK_THAT(told.back(), Contains("UDI") && Contains("+-") && Contains("(certain)"));
 }
 
 TEST_CASE("in a given time figures get standard errors, and sDA a verdict") {

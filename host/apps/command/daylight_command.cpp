@@ -185,27 +185,56 @@ std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year
   return sky_states(year, scene, groups, progress);
 }
 
-/// Rounds, and after the second, fourth, eighth and so on what is known by then.
-SkyRounds rounds_of(const DaylightOptions& options, const Year& year, Scene& scene,
-                    const std::vector<measuring::SensorGrid>& grids,
-                    const std::function<double()>& elapsed, Progress& progress) {
+/// A scene and what its year is found of.
+struct PreparedYear {
+  Year year;
+  Scene scene;
+  std::vector<measuring::SensorGrid> grids;
+};
+
+PreparedYear prepare_year(DaylightOptions& options, Progress& progress) {
+  const RenderOptions& render = options.render;
+  weather::WeatherYear weather = weather::read_weather(render.load.situation.weather);
+  if (render.load.situation.site) weather.site = *render.load.situation.site;
+  PreparedYear prepared{{{}, weather::sky_patches(options.patches), {}, options.suns == "rays", {}},
+                        scene_under_sky(render.scene, render.load, progress),
+                        {}};
+  auto& [year, scene, grids] = prepared;
+  year.hours = sky_hours(weather, year.patches, options.ground);
+  options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
+  grids = grids_of(options, scene, weather.hours.size(), progress);
+  take_windows(options, grids, scene);
+  if (scene.portals.empty()) {
+    progress.note(
+        "no windows were found: rays look for the sky everywhere; name the panes' material by "
+        "--set portals=GLOB if there are some");
+  }
+  for (const auto& grid : grids)
+    year.sensors.insert(year.sensors.end(), grid.sensors.begin(), grid.sensors.end());
+  year.parameters = {options.parameters,
+                     render.load.situation.north_degrees * std::numbers::pi / 180,
+                     mean_luminances(year.hours, year.patches)};
+  year.parameters.measuring.photons = render.parameters;
+  return prepared;
+}
+
+/// Rounds.
+///   told   after the first, second, fourth, eighth and so on
+SkyRounds rounds_of(const DaylightOptions& options, PreparedYear& prepared,
+                    const std::function<double()>& elapsed,
+                    const std::function<void(const SkyRounds&)>& told, Progress& progress) {
   constexpr std::size_t fewest = 4;  // in the shortest time, for an error
+  auto& [year, scene, grids] = prepared;
   SkyRounds rounds;
   rounds.add(states_of(options, year, scene, grids, progress));
   warn_of_darkness(rounds, progress);
+  told(rounds);
   QuietProgress quiet(progress);
   double begin = elapsed(), longest = 0;
   while (options.seconds > 0 &&
          (rounds.count() < fewest || elapsed() + longest < options.seconds)) {
     rounds.add(states_of(options, rounds.year_of_next(year), scene, grids, quiet));
-    if (std::has_single_bit(rounds.count())) {
-      const auto results = daylight_results(options, year, grids, rounds);
-      for (const report::GridDaylight& grid : results.grids) {
-        progress.note(fmt::format("{}, {} rounds: {}: {}", format_seconds(elapsed()),
-                                  rounds.count(), grid.grid.name,
-                                  report::autonomy_text(grid, options.asked, rounds.count())));
-      }
-    }
+    if (std::has_single_bit(rounds.count())) told(rounds);
     longest = std::max(longest, elapsed() - begin);
     begin = elapsed();
   }
@@ -233,14 +262,8 @@ void run_daylight(DaylightOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  weather::WeatherYear weather = weather::read_weather(render.load.situation.weather);
-  if (render.load.situation.site) weather.site = *render.load.situation.site;
-  Year year{{}, weather::sky_patches(options.patches), {}, options.suns == "rays", {}};
-  year.hours = sky_hours(weather, year.patches, options.ground);
-  options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
-
-  Scene scene = scene_under_sky(render.scene, render.load, progress);
-  const auto grids = grids_of(options, scene, weather.hours.size(), progress);
+  PreparedYear prepared = prepare_year(options, progress);
+  const auto& [year, scene, grids] = prepared;
   if (!options.honeybee.empty()) {
     const std::filesystem::path folder = options.honeybee;
     for (const std::string& name : report::annual_names(grids, states_of_blinds(options))) {
@@ -248,21 +271,18 @@ void run_daylight(DaylightOptions& options) {
     }
   }
   note_plans(options.outputs, 2 * planes_of(grids));  // DA and UDI
-  take_windows(options, grids, scene);
-  if (scene.portals.empty()) {
-    progress.note(
-        "no windows were found: rays look for the sky everywhere; name the panes' material by "
-        "--set portals=GLOB if there are some");
-  }
   const LightMix mix = mix_of(scene, render);
-  for (const auto& grid : grids)
-    year.sensors.insert(year.sensors.end(), grid.sensors.begin(), grid.sensors.end());
-  year.parameters = {options.parameters,
-                     render.load.situation.north_degrees * std::numbers::pi / 180,
-                     mean_luminances(year.hours, year.patches)};
-  year.parameters.measuring.photons = render.parameters;
+  const auto told = [&](const SkyRounds& rounds) {
+    if (rounds.count() == 1) return;
+    const auto results = daylight_results(options, prepared.year, prepared.grids, rounds);
+    for (const report::GridDaylight& grid : results.grids) {
+      progress.note(fmt::format("{}, {} rounds: {}: {}", format_seconds(watch.seconds()),
+                                rounds.count(), grid.grid.name,
+                                report::autonomy_text(grid, options.asked, rounds.count())));
+    }
+  };
   const SkyRounds rounds = rounds_of(
-      options, year, scene, grids, [&] { return watch.seconds(); }, progress);
+      options, prepared, [&] { return watch.seconds(); }, told, progress);
   const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
   const report::DaylightResults results = daylight_results(options, year, grids, rounds, lamps);
   write(options, scene, results, year.hours);
@@ -305,6 +325,21 @@ void add_year(CLI::App& command, DaylightOptions& options) {
 
 }  // namespace
 
+void refine_year(DaylightOptions options, const std::function<void(std::vector<std::string>)>& tell,
+                 Progress& progress) {
+  const Stopwatch watch;
+  options.asked.occupancy.set_hours(options.occupied);
+  options.asked.occupancy.set_days(options.days);
+  QuietProgress quiet(progress);
+  PreparedYear prepared = prepare_year(options, quiet);
+  const auto told = [&](const SkyRounds& rounds) {
+    tell(report::daylight_lines(daylight_results(options, prepared.year, prepared.grids, rounds),
+                                options.asked));
+  };
+  rounds_of(
+      options, prepared, [&] { return watch.seconds(); }, told, quiet);
+}
+
 void add_daylight_command(CLI::App& photile) {
   auto options = std::make_shared<DaylightOptions>();
   CLI::App* command = photile.add_subcommand(
@@ -318,8 +353,6 @@ void add_daylight_command(CLI::App& photile) {
              "folder for the lux of every hour, as annual recipes leave it");
   add_place_options(*command, options->places);
   add_year(*command, *options);
-  options->parameters.repeats = defaults::daylight_repeats;
-  options->parameters.gathering.rays = defaults::daylight_rays;
   add_maintenance_option(measuring, options->parameters);
   add_sensor_options(measuring, options->parameters);
   measuring.add("--for", options->seconds, "TIME",

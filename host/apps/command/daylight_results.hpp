@@ -1,6 +1,7 @@
 // The figures of `photile daylight` from light by the hour.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "daylight/sky_states.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"
+#include "photile/progress.hpp"
 #include "photile/sensors.hpp"
 #include "report/daylight_tables.hpp"
 
@@ -31,6 +33,11 @@ struct DaylightOptions {
   double lamp_efficacy = defaults::lamp_efficacy;
   double seconds = 0;  ///< for which rounds are added; 0 = one round
 
+  DaylightOptions() {
+    parameters.repeats = defaults::daylight_repeats;
+    parameters.gathering.rays = defaults::daylight_rays;
+  }
+
   /// Whether blinds are another scene.
   bool blinds_are_scene() const {
     return blinds.size() == 1 && blinds.front().find('=') == std::string::npos;
@@ -51,5 +58,12 @@ report::DaylightResults daylight_results(const DaylightOptions& options, const d
                                          const std::vector<measuring::SensorGrid>& grids,
                                          const daylight::SkyRounds& rounds,
                                          const YearLamps& lamps = {});
+
+/// Rounds of a year for the options' seconds, without outputs, lamps and blinds.
+///   tell   is given the lines of `photile daylight` after the first round, the second, the fourth
+///          and so on
+/// Errors: those of loading; Interrupted, when `progress` says so.
+void refine_year(DaylightOptions options, const std::function<void(std::vector<std::string>)>& tell,
+                 Progress& progress);
 
 }  // namespace photile::app

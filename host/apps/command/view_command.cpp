@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "command/command_line.hpp"
+#include "command/daylight_results.hpp"
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
@@ -39,6 +40,14 @@ LightMix mix_again(const Scene& scene, const RenderOptions& options) {
   }
 }
 
+constexpr const char* year_plane = "floor+0.85";  // EN 17037
+constexpr double year_seconds = 30;               // for which figures of the year are refined
+
+/// Whether the sky is that of a weather file, so that a year of it can be measured.
+bool has_year(const SceneLoadOptions& load) {
+  return !load.situation.weather.empty() && !load.sky && !load.sun && load.environment.file.empty();
+}
+
 void run_view(ViewOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
@@ -61,6 +70,15 @@ void run_view(ViewOptions& options) {
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
+  view::YearWorker::Measure measure_year;
+  if (has_year(render.load)) {
+    DaylightOptions year;
+    year.render = render;
+    year.render.load.situation.time.reset();
+    year.places.plane.height = year_plane;
+    year.seconds = year_seconds;
+    measure_year = [year](const auto& tell, Progress& stop) { refine_year(year, tell, stop); };
+  }
   const SkySituation situation = view::take_moving_sky(render.load);
   const loading::SourcedScene sourced =
       loading::load_sourced_scene(render.scene, render.load, progress);
@@ -90,6 +108,7 @@ void run_view(ViewOptions& options) {
   parameters.mix_of = [&](const Scene& edited) { return mix_again(edited, render); };
   parameters.luminaire_file = luminaires;
   parameters.luminaires = sourced.luminaires;
+  parameters.measure_year = std::move(measure_year);
   parameters.notes = &progress;
   parameters.interrupted = [&progress] { return progress.cancelled(); };
   view::run_viewer(

@@ -163,6 +163,30 @@ bool draw_moods(PanelState& state, PanelEvents& events) {
 
 // Day and hour of the sky.
 
+namespace {
+
+/// What a year of it gives, while that is refined.
+void draw_year(YearWorker& year) {
+  if (ImGui::SmallButton("the year")) year.start();
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip(
+        "daylight autonomy of the first camera's room, by rays, with standard errors");
+  }
+  if (year.running()) {
+    ImGui::SameLine();
+    ImGui::TextUnformatted("refined ...");
+  }
+  for (std::string line : year.lines()) {
+    // Blanks that make columns in a terminal only break the lines here.
+    line.erase(
+        std::unique(line.begin(), line.end(), [](char a, char b) { return a == ' ' && b == ' '; }),
+        line.end());
+    ImGui::TextWrapped("%s", line.c_str());
+  }
+}
+
+}  // namespace
+
 bool draw_daylight(PanelState& state) {
   const MovingSky* const sky = state.lights.sky();
   if (!sky || !ImGui::CollapsingHeader("Daylight", ImGuiTreeNodeFlags_DefaultOpen)) return false;
@@ -187,6 +211,7 @@ bool draw_daylight(PanelState& state) {
     changed = true;
   }
   ImGui::TextWrapped("%s", sky->text(daylight.moment).c_str());
+  if (state.year.possible()) draw_year(state.year);
   return changed;
 }
 

@@ -13,6 +13,7 @@
 #include "view/photon_map.hpp"
 #include "view/photon_worker.hpp"
 #include "view/point_worker.hpp"
+#include "view/year_worker.hpp"
 
 namespace photile::view {
 
@@ -41,6 +42,7 @@ struct PanelState {
   const std::vector<ClickedPoint>& points;  ///< the newest last
   PointSettings& point_settings;
   const Scene& scene;
+  YearWorker& year;
   LuminaireTool* luminaires = nullptr;  ///< null where no file of them is edited
   bool closing = false;  ///< the window is asked to close, and there are unsaved changes
 };

@@ -24,6 +24,7 @@
 #include "view/settings_history.hpp"
 #include "view/snapshots.hpp"
 #include "view/window.hpp"
+#include "view/year_worker.hpp"
 
 namespace photile::view {
 namespace {
@@ -52,6 +53,7 @@ class Viewer {
         window_(fmt::format("{} - photile", scene.source.filename().string()),
                 parameters_.render.film.width, parameters_.render.film.height),
         points_(scene_),
+        year_(parameters_.measure_year),
         frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second),
         photons_(std::move(open_devices), parameters_.light_map_bytes) {
     inspector_.emplace(scene);
@@ -320,6 +322,7 @@ class Viewer {
                      points,
                      point_settings_,
                      *scene_,
+                     year_,
                      luminaires_ ? &luminaires_->tool() : nullptr,
                      closing()};
     return draw_panels(
@@ -361,6 +364,7 @@ class Viewer {
   Window window_;
   std::optional<PhotonInspector> inspector_;
   PointWorker points_;
+  YearWorker year_;
   PointSettings point_settings_;
   std::optional<LuminaireSession> luminaires_;  ///< where a file of them is edited
   std::optional<SettingsHistory> history_;

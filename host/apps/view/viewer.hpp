@@ -12,6 +12,7 @@
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "view/photon_worker.hpp"
+#include "view/year_worker.hpp"
 
 namespace photile::view {
 
@@ -42,6 +43,7 @@ struct ViewerParameters {
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
   /// Is given the light maps of all photons at the end, where there are any; may be empty.
   std::function<void(const LightMapContents&)> keep_light_maps;
+  YearWorker::Measure measure_year;  ///< of daylight, when it is asked for; may be empty
   /// Told after each redraw; may be empty.
   std::function<void(const Redraw&)> redrawn;
   /// Asked before each redraw: true ends the walkthrough.
