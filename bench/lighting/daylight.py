@@ -6,12 +6,15 @@
 FOLDER holds Radiance's commands and, in ../lib, its library: that of the Python package pyradiance, say, where
 it is pyradiance/bin. rfluxmtx finds the daylight coefficients, gendaymtx the skies and dctimestep their product;
 both programs have 577 patches, the sun in the four nearest of them, ground of reflectance 0.2 and the weather of
-weather_year.py. Needs numpy.
+weather_year.py. Radiance runs several times, with the points in another order each time and so by other random
+numbers: the scatter tells its own noise. Needs numpy.
 """
 
 import argparse
+import csv
 import dataclasses
 import json
+import math
 import os
 import pathlib
 import sys
@@ -30,6 +33,7 @@ import numpy as np
 
 RGB_TO_LUX = np.array([47.4, 119.9, 11.6])
 HOURS = 8760
+RUNS = 4  # of Radiance
 RADIANCE = ["-ab", "7", "-ad", "4096", "-lw", "2e-5"]
 
 
@@ -159,19 +163,40 @@ def by_radiance(given, room, folder, weather):
     seconds = {name: timed(["bash", "-c", f"cd {folder} && {command}"])[1] for name, command in steps.items()}
     content = (folder / "lux.mtx").read_bytes()
     values = np.frombuffer(content[content.index(b"\n\n") + 2:], dtype=np.float32)
-    return figures(values.reshape(count, HOURS, 3) @ RGB_TO_LUX), seconds
+    return values.reshape(count, HOURS, 3) @ RGB_TO_LUX, seconds
+
+
+def radiance_runs(given, room, folder, weather):
+    """Lux of the mean of all runs, the relative standard error of its annual means by point, and seconds of a run."""
+    points = np.array((folder / "radiance.pts").read_text().splitlines())
+    runs, seconds = [], []
+    for run in range(1 if given.quick else RUNS):
+        order = np.random.default_rng(run).permutation(len(points)) if run else np.arange(len(points))
+        (folder / "radiance.pts").write_text("\n".join(points[order]) + "\n")
+        lux, steps = by_radiance(given, room, folder, weather)
+        runs.append(lux[np.argsort(order)])
+        seconds.append(steps)
+    annual = np.array([lux.mean(axis=1) for lux in runs])
+    error = annual.std(axis=0, ddof=1) / np.sqrt(len(runs)) if len(runs) > 1 else np.zeros(len(points))
+    return (np.mean(runs, axis=0), error / annual.mean(axis=0),
+            {step: float(np.mean([each[step] for each in seconds])) for step in seconds[0]})
 
 
 def by_photile(given, folder, weather):
     options = ["--photons", "20k", "--rays", "64"] if given.quick else []
     _, seconds, _ = timed([given.photile, "daylight", folder / "room.obj", "--weather", weather,
                            "--points", folder / "room.pts", "--suns", "patches", "--honeybee", folder / "bee",
-                           "-o", folder / "room.json", "--quiet", *options])
+                           "-o", folder / "room.csv", "--quiet", *options])
     up = [int(float(hour)) for hour in (folder / "bee/sun-up-hours.txt").read_text().split()]
     lux = np.zeros((len((folder / "room.pts").read_text().splitlines()), HOURS))
     lux[:, up] = np.loadtxt(folder / "bee/room.ill", ndmin=2)
-    stated = json.loads((folder / "room.json").read_text())[0]["mean_relative_error"]
+    with open(folder / "room.csv", encoding="utf-8") as table:
+        stated = np.array([float(row["relative_error"]) for row in csv.DictReader(table)])
     return figures(lux), seconds, stated
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def measure(given, room, folder):
@@ -180,25 +205,29 @@ def measure(given, room, folder):
     weather = folder / "year.epw"
     weather.write_text(weather_text(52.5, 13.4, 1, 1))
     own, own_seconds, stated = by_photile(given, folder, weather)
-    other, seconds = by_radiance(given, room, folder, weather)
+    lux, other_error, seconds = radiance_runs(given, room, folder, weather)
+    other = figures(lux)
     ratios = own["points"] / other["points"]
     return {"room": room.name, "points": len(ratios), "sDA": [own["sDA"], other["sDA"]],
             "DA": [own["DA"], other["DA"]], "mean": [own["mean"], other["mean"]],
-            "rms of points": float(np.sqrt(np.mean((ratios - 1) ** 2))),
-            "stated error": stated, "seconds": [own_seconds, sum(seconds.values())], "radiance": seconds}
+            "rms of points": rms(ratios - 1), "stated error": rms(stated), "Radiance's error": rms(other_error),
+            "seconds": [own_seconds, sum(seconds.values())], "radiance": seconds}
 
 
 def section(results):
-    lines = ["| room | points | sDA 300/50% | mean DA | annual mean, lux | rms of the points | of it photile's noise "
-             "| processor seconds |", "|---|--:|--:|--:|--:|--:|--:|--:|"]
+    lines = ["| room | points | sDA 300/50% | mean DA | annual mean, lux | rms of the points | photile's and "
+             "Radiance's errors, together | processor seconds |", "|---|--:|--:|--:|--:|--:|--:|--:|"]
     for row in results:
+        errors = ("stated error", "Radiance's error")
         own, other = zip(row["sDA"], row["DA"], row["mean"], row["seconds"])
         lines.append(
             f"| {row['room']} | {row['points']} | {own[0]:.1%} / {other[0]:.1%} | {own[1]:.1%} / {other[1]:.1%} "
             f"| {own[2]:.1f} / {other[2]:.1f} ({own[2] / other[2] - 1:+.1%}) | {row['rms of points']:.1%} "
-            f"| {row['stated error']:.1%} | {own[3]:.1f} / {other[3]:.1f} ({other[3] / own[3]:.1f}x) |")
+            f"| {row['stated error']:.1%}, {row[errors[1]]:.1%}: {math.hypot(*(row[error] for error in errors)):.1%} "
+            f"| {own[3]:.1f} / {other[3]:.1f} ({other[3] / own[3]:.1f}x) |")
     lines += ["", "First photile, then Radiance (" + " ".join(RADIANCE) + "); the rms is that of the annual means of "
-              "the points, one over the other; its part that is photile's is the mean of the stated standard errors.", ""]
+              f"the points, photile's over the mean of {RUNS} runs of Radiance. Errors are the rms of those that photile states, "
+              "and of Radiance's by the scatter of its runs; seconds are those of one run.", ""]
     return "\n".join(lines + [f"- **{room.name}**: {room.caption}" for room in ROOMS])
 
 
