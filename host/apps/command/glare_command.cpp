@@ -11,6 +11,7 @@
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
+#include "command/report_contents.hpp"
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
@@ -150,18 +151,6 @@ void check_outputs_of(const GlareOptions& options) {
   check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
 }
 
-void write_outputs(const GlareOptions& options, const Scene& scene, const LightMix& mix,
-                   const std::optional<measuring::PlaneLayout>& plane,
-                   std::span<const glare::ObserverGlare> all) {
-  for (const std::string& file : options.outputs) {
-    if (ends_in(file, ".csv")) {
-      write_file(file, report::glare_csv(all));
-    } else {
-      write_file(file, json_text(run_json(options, scene, mix, plane, all)));
-    }
-  }
-}
-
 void run_glare(const CLI::App& command, GlareOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
@@ -201,7 +190,9 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   const auto all =
       glare::measure_glare(scene, observers, mix, coverage_of(options, scene, observers.front()),
                            devices, parameters, keep, progress);
-  write_outputs(options, scene, mix, plane, all);
+  write_results(options.outputs,
+                {.csv = [&] { return report::glare_csv(all); },
+                 .json = [&] { return json_text(run_json(options, scene, mix, plane, all)); }});
   for (const auto& line : report::glare_lines(all)) std::cout << line << '\n';
   if (const auto judgement = judged(options, all)) {
     std::cout << fmt::format("target {}: {}\n", options.target,

@@ -9,7 +9,7 @@
 #include "command/command_line.hpp"
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
-#include "common/ascii_text.hpp"
+#include "command/report_contents.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
@@ -75,10 +75,9 @@ void run_ies(const IesOptions& options) {
   }
   glare::UgrTable table = glare::ugr_table(lamp, options.spacing);
   if (options.per_thousand_lumens) scale_to_thousand_lumens(lamp.flux(), table);
-  for (const std::string& file : options.outputs) {
-    write_file(file, ends_in(file, ".csv") ? report::ugr_table_csv(table)
-                                           : json_text(report::ugr_table_json(table)));
-  }
+  write_results(options.outputs,
+                {.csv = [&] { return report::ugr_table_csv(table); },
+                 .json = [&] { return json_text(report::ugr_table_json(table)); }});
   for (const auto& line : report::ugr_table_lines(table)) std::cout << line << '\n';
 }
 

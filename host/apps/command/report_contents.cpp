@@ -1,5 +1,6 @@
 #include "command/report_contents.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,12 +76,7 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
 
 }  // namespace
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
-}
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
 
 bool has_any(const std::vector<std::string>& files, std::initializer_list<const char*> endings) {
   return std::any_of(files.begin(), files.end(), [&](const std::string& file) {

@@ -28,8 +28,8 @@ std::string today();
 /// The outputs of a command by the endings of their names: a table, plans, a report.
 struct Results {
   std::function<std::string()> csv, json;
-  std::function<std::vector<std::string>()> plans;  ///< SVG
-  std::function<std::string()> page;                ///< HTML
+  std::function<std::vector<std::string>()> plans = {};  ///< SVG
+  std::function<std::string()> page = {};                ///< HTML
 };
 
 /// Whether any of the files ends in one of these, in small letters or capitals.

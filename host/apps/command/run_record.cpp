@@ -204,22 +204,16 @@ void set_settings(PictureHeader& picture, const std::string& settings) {
 }
 
 bool is_finished(const std::filesystem::path& picture, const std::string& settings) {
-  std::error_code error;
-  if (!std::filesystem::exists(picture, error)) return false;
   try {
     const PictureHeader header = read_header(picture);
     const auto found = header.attributes.find(attribute);
-    if (found == header.attributes.end() || found->second != settings) return false;
-    check_pixels(picture);
-    return true;
+    return found != header.attributes.end() && found->second == settings && is_whole(picture);
   } catch (const Error&) {
-    return false;  // another program's file, or a damaged one: made anew
+    return false;  // not there, another program's file, or a damaged one: made anew
   }
 }
 
 bool is_whole(const std::filesystem::path& picture) {
-  std::error_code error;
-  if (!std::filesystem::exists(picture, error)) return false;
   try {
     check_pixels(picture);
     return true;

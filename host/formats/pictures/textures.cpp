@@ -15,6 +15,7 @@
 
 #include "files/scene_files.hpp"
 #include "image/decoder.hpp"
+#include "image/display.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/surface_models.hpp"
@@ -59,11 +60,6 @@ std::uint8_t byte_of(float value) {
   return static_cast<std::uint8_t>(c * 255.0f + 0.5f);
 }
 
-std::uint8_t srgb_byte(float linear) {
-  const float c = std::isnan(linear) ? 0.0f : std::clamp(linear, 0.0f, 1.0f);
-  return byte_of(c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f);
-}
-
 /// Red, green, blue and alpha of a pixel of 1 (grey), 2 (grey, alpha), 3, 4 or more channels.
 /// `alpha` is that of pixels without one.
 template <typename T>
@@ -93,7 +89,8 @@ std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture, TextureCon
         texels.push_back({byte_of(r), byte_of(g), byte_of(b), byte_of(a)});
       } else {
         const auto encoded = [&](float value) {
-          return content == TextureContent::color ? srgb_byte(value) : byte_of(value);
+          return content == TextureContent::color ? image::srgb8_from_linear(value)
+                                                  : byte_of(value);
         };
         texels.push_back({encoded(r), encoded(g), encoded(b), byte_of(a)});
       }

@@ -39,7 +39,7 @@ Camera read_radiance_view(const std::filesystem::path& file) {
   std::string view;
   const std::string text = read_input_text(file);
   for (const std::string_view line : lines_of(text)) {
-    if (const std::size_t at = (" " + std::string(line)).find(" -v"); at != std::string::npos) {
+    if (const std::size_t at = fmt::format(" {}", line).find(" -v"); at != std::string::npos) {
       view = line.substr(at);
     }
   }
