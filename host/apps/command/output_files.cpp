@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "command/option_group.hpp"
 #include "command/processes.hpp"
@@ -143,19 +144,11 @@ ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& pictur
   return shown;
 }
 
-PictureOutputs::PictureOutputs(const PictureOptions& options)
-    : illuminance_(options.illuminance), luminance_(options.luminance), options_(options) {
-  for (const std::string& file : options.outputs) {
-    (ends_in(file, ".exr") ? exr_ : ends_in(file, ".hdr") ? hdr_ : png_).emplace_back(file);
-  }
-}
-
 std::vector<std::filesystem::path> PictureOutputs::files() const {
-  std::vector<std::filesystem::path> all = exr_;
-  all.insert(all.end(), png_.begin(), png_.end());
-  all.insert(all.end(), hdr_.begin(), hdr_.end());
-  if (!illuminance_.empty()) all.push_back(illuminance_);
-  if (!luminance_.empty()) all.push_back(luminance_);
+  std::vector<std::filesystem::path> all(options_.outputs.begin(), options_.outputs.end());
+  for (const std::string& drawing : {options_.illuminance, options_.luminance}) {
+    if (!drawing.empty()) all.emplace_back(drawing);
+  }
   return all;
 }
 
@@ -164,7 +157,9 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
   // First, for the picture may lack them.
   std::vector<float> lux, candela;
   Image root, displayed;
-  if (exr_.size() < files().size()) {
+  const auto all = files();
+  if (!std::all_of(all.begin(), all.end(),
+                   [](const auto& file) { return ends_in(file.string(), ".exr"); })) {
     root = picture.root();
     const ToneMapping shown = shown_as(options_, picture);
     if (shown.white != ToneMapping{}.white) {
@@ -174,14 +169,16 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
     displayed = tone_map(root, shown);
   }
   about_file(source, [&] {
-    if (!illuminance_.empty()) lux = report::illuminance_of(picture);
-    if (!luminance_.empty()) candela = report::luminance_of(root);
+    if (!options_.illuminance.empty()) lux = report::illuminance_of(picture);
+    if (!options_.luminance.empty()) candela = report::luminance_of(root);
   });
 
-  for (const auto& file : exr_) write_exr(file, picture, options_.precision);
-  for (const auto& file : png_) write_png(file, displayed);
-  for (const auto& file : hdr_) write_hdr(file, root);
-  const auto draw = [&](const std::filesystem::path& file, const std::vector<float>& values,
+  for (const std::string& file : options_.outputs) {
+    if (ends_in(file, ".exr")) write_exr(file, picture, options_.precision);
+    if (ends_in(file, ".png")) write_png(file, displayed);
+    if (ends_in(file, ".hdr")) write_hdr(file, root);
+  }
+  const auto draw = [&](const std::string& file, const std::vector<float>& values,
                         const char* unit) {
     if (file.empty()) return;
     write_png(file,
@@ -190,10 +187,10 @@ void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
     notes.warn(
         fmt::format("{}: the legend has no numbers without the font DejaVu Sans; "
                     "install fonts-dejavu-core",
-                    file.string()));
+                    file));
   };
-  draw(illuminance_, lux, "lux");
-  draw(luminance_, candela, "cd/m2");
+  draw(options_.illuminance, lux, "lux");
+  draw(options_.luminance, candela, "cd/m2");
   for (const std::string& line : picture.overflows()) notes.warn(line);
 }
 

@@ -79,10 +79,10 @@ ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& pictur
 /// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
-/// Files to be written, each with its format.
+/// Files to be written, each in the format that its name ends in.
 class PictureOutputs {
  public:
-  explicit PictureOutputs(const PictureOptions& options);
+  explicit PictureOutputs(const PictureOptions& options) : options_(options) {}
 
   bool empty() const { return files().empty(); }
   std::vector<std::filesystem::path> files() const;
@@ -97,8 +97,6 @@ class PictureOutputs {
              const std::filesystem::path& source = {}) const;
 
  private:
-  std::vector<std::filesystem::path> exr_, png_, hdr_;
-  std::filesystem::path illuminance_, luminance_;  ///< empty: none
   PictureOptions options_;
 };
 
