@@ -23,8 +23,9 @@
 // queries are in Morton order.
 //
 // Variants that were slower on an H200 than one of their kind that is here are left out (all are in
-// results/cuda): lists in registers and sorted ones, builders by surface area, edge length or
-// radix, splits of x, y and z in turns, and leaves of 1, 4 and 64 points.
+// results/cuda): lists in registers and sorted ones, traversals of the balanced tree with a stack,
+// builders by surface area, edge length or radix, splits of x, y and z in turns, wide BVHs of 4,
+// and leaves of 1, 4 and 64 points.
 //
 // Each structure runs in a child process: where one fails, hangs or crashes the rest goes on.
 #include <cuda_runtime.h>
@@ -233,39 +234,28 @@ struct PointAndAxisTraits : cukd::default_data_traits<float3> {
   static inline __host__ __device__ void set_dim(PointAndAxis& p, int axis) { p.axis = axis; }
 };
 
-enum class Traversal { stack, stack_free, closest_corner };
-using Wide4 = cuBQL::WideBVH<float, 3, 4>;
-using Wide8 = cuBQL::WideBVH<float, 3, 8>;
-
-template <int k, Traversal traversal>
+template <int k>
 struct BalancedSearch {
   const PointAndAxis* nodes;
   int count;
-  cukd::box_t<float3> bounds;
   __host__ __device__ float2 operator()(const float3& query, float radius) const {
     using List = cukd::HeapCandidateList<k>;
     List list(radius);
-    if constexpr (traversal == Traversal::stack) {
-      cukd::stackBased::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, nodes, count);
-    } else if constexpr (traversal == Traversal::stack_free) {
-      cukd::stackFree::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, nodes, count);
-    } else {
-      cukd::cct::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, bounds, nodes, count);
-    }
+    cukd::stackFree::knn<List, PointAndAxis, PointAndAxisTraits>(list, query, nodes, count);
     return answer<k>(list);
   }
 };
 
-template <int k, Traversal traversal>
+template <int k, bool closest_corner>
 struct SpatialSearch {
   cukd::SpatialKDTree<float3> tree;
   __host__ __device__ float2 operator()(const float3& query, float radius) const {
     using List = cukd::HeapCandidateList<k>;
     List list(radius);
-    if constexpr (traversal == Traversal::stack) {
-      cukd::stackBased::knn<List, float3>(list, tree, query);
-    } else {
+    if constexpr (closest_corner) {
       cukd::cct::knn<List, float3>(list, tree, query);
+    } else {
+      cukd::stackBased::knn<List, float3>(list, tree, query);
     }
     return answer<k>(list);
   }
@@ -301,28 +291,29 @@ class Balanced {
     for (const float3& point : cloud.host) host_.push_back({point, 0});
     if (!cloud.device) return;
     nodes_ = std::make_unique<DeviceArray<PointAndAxis>>(host_);
-    box_ = std::make_unique<DeviceArray<cukd::box_t<float3>>>(1);
+    bounds_ = std::make_unique<DeviceArray<cukd::box_t<float3>>>(1);
   }
   void build() {
+    using Traits = PointAndAxisTraits;
     const int count = static_cast<int>(host_.size());
-    if (!nodes_) {
-      return cukd::buildTree_host<PointAndAxis, PointAndAxisTraits>(host_.data(), count, &bounds_);
+    if (nodes_) {
+      return cukd::buildTree<PointAndAxis, Traits>(nodes_->data(), count, bounds_->data());
     }
-    cukd::buildTree<PointAndAxis, PointAndAxisTraits>(nodes_->data(), count, box_->data());
-    bounds_ = box_->read()[0];
+    cukd::box_t<float3> bounds;
+    cukd::buildTree_host<PointAndAxis, Traits>(host_.data(), count, &bounds);
   }
-  template <int k, Traversal traversal>
-  BalancedSearch<k, traversal> search() const {
-    return {nodes_ ? nodes_->data() : host_.data(), static_cast<int>(host_.size()), bounds_};
+  template <int k>
+  BalancedSearch<k> search() const {
+    return {nodes_ ? nodes_->data() : host_.data(), static_cast<int>(host_.size())};
   }
 
  private:
   std::vector<PointAndAxis> host_;
   std::unique_ptr<DeviceArray<PointAndAxis>> nodes_;
-  std::unique_ptr<DeviceArray<cukd::box_t<float3>>> box_;
-  cukd::box_t<float3> bounds_{};
+  std::unique_ptr<DeviceArray<cukd::box_t<float3>>> bounds_;  ///< that the builder asks for
 };
 
+template <bool closest_corner>
 class Spatial {
  public:
   Spatial(const Cloud& cloud, int leaf) : cloud_(cloud), leaf_(leaf) {}
@@ -332,8 +323,8 @@ class Spatial {
     cukd::buildTree(tree_, const_cast<float3*>(cloud_.device), cloud_.size(),
                     cukd::BuildConfig{leaf_});
   }
-  template <int k, Traversal traversal>
-  SpatialSearch<k, traversal> search() const {
+  template <int k>
+  SpatialSearch<k, closest_corner> search() const {
     return {tree_};
   }
 
@@ -384,7 +375,7 @@ class CubqlBvh {
     CHECK(cudaGetLastError());
     cuBQL::gpuBuilder(bvh_, boxes_->data(), count, config_, 0, memory_);
   }
-  template <int k, Traversal>
+  template <int k>
   BvhSearch<Bvh, k> search() const {
     return {bvh_, points()};
   }
@@ -521,7 +512,7 @@ std::string start_device() {
   return properties.name;
 }
 
-template <class Structure, int k, Traversal traversal>
+template <class Structure, int k>
 void measure(const Row& row, const Workload& work, bool host) {
   const std::string device = host ? "host" : start_device();
   std::unique_ptr<DeviceArray<float3>> photons;
@@ -537,7 +528,7 @@ void measure(const Row& row, const Workload& work, bool host) {
   // What a library did not look at: its answers are checked all the same.
   const cudaError_t left = host ? cudaSuccess : cudaGetLastError();
   if (left != cudaSuccess) std::fprintf(stderr, "build: %s\n", cudaGetErrorString(left));
-  const auto search = structure.template search<k, traversal>();
+  const auto search = structure.template search<k>();
   if (host) {
     const Clock::time_point start = Clock::now();
     std::vector<float2> answers;
@@ -562,16 +553,9 @@ void measure(const Row& row, const Workload& work, bool host) {
 
 template <int k>
 std::vector<Row> rows_of() {
-  using T = Traversal;
-  const auto balanced = [](const char* traversal, auto run) {
-    return Row{"cudaKDTree", "balanced k-d tree, widest axis", "thrust", traversal, "heap", 1, true,
-               run};
-  };
-  std::vector<Row> rows{
-      balanced("closest-corner", measure<Balanced, k, T::closest_corner>),
-      balanced("stack", measure<Balanced, k, T::stack>),
-      balanced("stack-free", measure<Balanced, k, T::stack_free>),
-  };
+  using Wide = cuBQL::WideBVH<float, 3, 8>;
+  std::vector<Row> rows{{"cudaKDTree", "balanced k-d tree, widest axis", "thrust", "stack-free",
+                         "heap", 1, true, measure<Balanced, k>}};
   for (const int leaf : {8, 16, 32}) {
     const auto spatial = [&](const char* traversal, auto run) {
       rows.push_back({"cudaKDTree", "spatial k-d tree", "spatial median", traversal, "heap", leaf,
@@ -581,11 +565,10 @@ std::vector<Row> rows_of() {
       rows.push_back({"cuBQL", structure, "spatial median", "stack", "heap of cudaKDTree", leaf,
                       on_host, run});
     };
-    spatial("closest-corner", measure<Spatial, k, T::closest_corner>);
-    spatial("stack", measure<Spatial, k, T::stack>);
-    bvh("binary BVH", true, measure<CubqlBvh<cuBQL::bvh3f>, k, T::stack>);
-    bvh("wide BVH of 4", false, measure<CubqlBvh<Wide4>, k, T::stack>);
-    bvh("wide BVH of 8", false, measure<CubqlBvh<Wide8>, k, T::stack>);
+    spatial("closest-corner", measure<Spatial<true>, k>);
+    spatial("stack", measure<Spatial<false>, k>);
+    bvh("binary BVH", true, measure<CubqlBvh<cuBQL::bvh3f>, k>);
+    bvh("wide BVH of 8", false, measure<CubqlBvh<Wide>, k>);
   }
   return rows;
 }
@@ -597,31 +580,38 @@ std::vector<Row> rows_of(int k) {
   throw std::runtime_error("k is compiled in: 50, 200 or 1000");
 }
 
-/// Runs `work` in a child process, which is ended after some seconds. Returns what went wrong, or
-/// "".
-std::string run_child(const std::function<void()>& work) {
+/// Runs a row in a child process, which is ended after some seconds. Returns whether it finished;
+/// if not its line says why.
+bool finishes(const Row& row, const Workload& work, bool host) {
   constexpr unsigned most_seconds = 30;
+  const auto fail = [&](const std::string& problem) {
+    row.print_head(work, 32, "");
+    std::printf(R"("failure": "%s"})"
+                "\n",
+                problem.c_str());
+    std::fflush(stdout);
+    return false;
+  };
   std::fflush(stdout);
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("no process can be started");
   if (child == 0) {
     alarm(most_seconds);
     try {
-      work();
+      row.run(row, work, host);
       _exit(0);
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "%s\n", error.what());
+      fail(error.what());
     }
     _exit(1);
   }
   int status = 0;
   waitpid(child, &status, 0);
-  if (WIFSIGNALED(status)) {
-    const int signal = WTERMSIG(status);
-    if (signal == SIGALRM) return "took longer than " + std::to_string(most_seconds) + " seconds";
-    return "ended by signal " + std::to_string(signal);
-  }
-  return WEXITSTATUS(status) == 0 ? "" : "failed";
+  if (!WIFSIGNALED(status)) return WEXITSTATUS(status) == 0;
+  const int signal = WTERMSIG(status);
+  if (signal == SIGALRM)
+    return fail("took longer than " + std::to_string(most_seconds) + " seconds");
+  return fail("ended by signal " + std::to_string(signal));
 }
 
 struct Options {
@@ -743,13 +733,7 @@ int run(const Options& options) {
                      options.seconds);
         break;
       }
-      const std::string problem = run_child([&] { row.run(row, work, options.host); });
-      if (problem.empty()) continue;
-      row.print_head(work, 32, "");
-      std::printf(R"("failure": "%s"})"
-                  "\n",
-                  problem.c_str());
-      failed = true;
+      failed |= !finishes(row, work, options.host);
     }
   }
   std::fprintf(stderr, "all took %.1f s\n", seconds_since(start));
