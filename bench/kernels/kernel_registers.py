@@ -97,7 +97,7 @@ class Nvidia:
         self.compiler.compile(source, symbols, "nvptx64-nvidia-nvcl", "sm_80",
                               "nvptx64--nvidiacl.bc", ptx)
         log = run([self.ptxas, "-v", f"-arch={self.architecture}", ptx, "-o", f"{folder}/code"])
-        own = log[log.index(f"Compiling record function '{kernel}'"):]
+        own = log[log.index(f"Compiling entry function '{kernel}'"):]
         number = lambda pattern: int((re.search(pattern, own) or [0, 0])[1])  # noqa: E731
         registers = number(r"Used (\d+) registers")
         stack = number(r"(\d+) bytes stack frame")
