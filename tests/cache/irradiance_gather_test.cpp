@@ -243,6 +243,30 @@ TEST_CASE("gathering: a board within a rim of metal is lit as paths find it") {
   CHECK(sum[1] / expected[1] == Approx(1).margin(0.01));  // 0.984 by them
 }
 
+TEST_CASE("gathering: what slats reflect into a room is the light of the parts that it sees") {
+  // Their outer edges, next to the window, are much brighter than what the room sees of them, and
+  // an estimate of photons is wider than a slat.
+  SceneBuilder builder;
+  builder.box(glm::vec3(0), glm::vec3(4, 3, 2.7f), builder.add(diffuse(glm::vec3(0.02f))), true);
+  builder.grid({1.2f, 0.002f, 0.9f}, {0, 0, 1.2f}, {1.6f, 0, 0}, 1,
+               builder.add(diffuse(glm::vec3(0.0f))), builder.add(area_light("window")));
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.7f)));
+  for (float z = 0.9f; z < 2.1f; z += 0.022f) {
+    builder.grid({1.2f, 0.01f, z}, {1.6f, 0, 0}, {0, 0.0205f, 0.0143f}, 1, white);
+  }
+  GatheringScene room(builder.build(), looked_up(200'000));
+  const std::vector<Sensor> sensors = sensors_on({1, 0.8, 0}, {2, 0, 0}, {0, 1.6, 0}, up, 8);
+  const cache::GatheredIrradiance light = room.at(sensors, {.rays = 1024, .near = 0.08});
+  const PathReference truth = by_paths(room.rays, sensors, 4096);
+  double sum = 0, expected = 0;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    sum += lux(light, i);
+    expected += truth.lux[i];
+  }
+  CAPTURE(sum, expected);
+  CHECK(sum / expected == Approx(1).margin(0.03));
+}
+
 TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
   Scene scene = furnished_room();
   SECTION("a coat on the floor and the walls") {

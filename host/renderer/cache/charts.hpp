@@ -26,6 +26,8 @@ struct Chart {
   std::uint32_t first_root = 0;         ///< its tiles of the coarsest level: [first_root ..)
   std::uint32_t root_columns() const { return (columns + 7) / 8; }
   std::uint32_t root_rows() const { return (rows + 7) / 8; }
+  /// The shorter side of its rectangle, metres.
+  double width() const { return std::min(columns * spacing.x, rows * spacing.y); }
 };
 
 /// The lattice position of a point, for queries: a float each, in cells of the coarsest level.

@@ -313,6 +313,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
 
   const int rays_per_batch = per_batch(rays, parameters_.batches);
   const int light_samples_per_batch = per_batch(light_samples, parameters_.batches);
+  const float near = caustics_ ? 0.0f : static_cast<float>(parameters_.near);
   const trace::HemisphereParameters hemisphere{
       .batches = parameters_.batches,
       .rays = rays_per_batch,
@@ -324,7 +325,9 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
           light_samples_per_batch > 0
               ? static_cast<float>(rays_per_batch) / static_cast<float>(light_samples_per_batch)
               : 0.0f,
-      .near = caustics_ ? 0.0f : static_cast<float>(parameters_.near)};
+      .near = near,
+      .slats = near > 0 && rays > 0 && points.size() > 0 ? secondary_.slats(near / 2)
+                                                         : std::span<const std::uint8_t>{}};
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
       std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));

@@ -25,8 +25,9 @@ struct IrradianceGatherParameters {
   /// in each: their scatter is the error.
   int batches = 8;
   /// Surface nearer than this, metres, is not read but gathered from by one ray and one light
-  /// sample, for photon estimates blur over such distances and miss what hides there. Not where
-  /// there are caustics, which only photons know. 0 = all is read.
+  /// sample, for photon estimates blur over such distances and miss what hides there; and so are
+  /// slats narrower than half of it. Not where there are caustics, which only photons know. 0 = all
+  /// is read.
   double near = 0;
   /// Photons of an estimate of caustics, which tell its error.
   int caustic_neighbours = defaults::neighbours;

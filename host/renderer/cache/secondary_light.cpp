@@ -8,10 +8,12 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "cache/charts.hpp"
 #include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/ray_query.hpp"
+#include "trace/surface.hpp"
 
 namespace photile::cache {
 namespace {
@@ -63,6 +65,36 @@ std::vector<BilinearWeights> SecondaryLight::nodes_around(const PrimaryHits& hit
                       }
                     });
   return nodes;
+}
+
+std::span<const std::uint8_t> SecondaryLight::slats(double width) {
+  if (!slats_.empty()) return slats_;
+  if (!maps_) maps_.emplace(rays_, parameters_);
+  const Scene& scene = rays_.scene();
+  const Charts& charts = maps_->maps.charts();
+  const std::span<const std::uint32_t> chart_of = charts.chart_of();
+  std::vector<std::uint8_t> is_slat(charts.size(), 0);
+  tbb::parallel_for(std::size_t{0}, chart_of.size(), [&](std::size_t face) {
+    const std::uint32_t chart = chart_of[face];
+    if (chart == none || !(charts[chart].width() < width)) return;
+    const auto oriented_face = static_cast<std::uint32_t>(face);
+    const auto corners = scene.corners(triangle_of(oriented_face));
+    const glm::vec3 reach =
+        static_cast<float>(charts[chart].width()) * glm::vec3(face_normal(scene, oriented_face));
+    const glm::vec3 sum = corners[0] + corners[1] + corners[2];
+    for (const glm::vec3& corner : corners) {
+      const glm::vec3 foot = (sum + 3.0f * corner) / 6.0f;
+      if (!trace::occluded(rays_, foot + defaults::visibility_ray_offset * reach, foot + reach)) {
+        continue;
+      }
+      std::atomic_ref(is_slat[chart]).store(1, std::memory_order_relaxed);
+      return;
+    }
+  });
+  for (const std::uint32_t chart : chart_of) {
+    slats_.push_back(chart == none ? std::uint8_t{0} : is_slat[chart]);
+  }
+  return slats_;
 }
 
 std::uint64_t SecondaryLight::bytes() const {

@@ -82,6 +82,10 @@ class SecondaryLight {
   /// alone.
   auto* processes() const { return parameters_.processes; }
 
+  /// 1 for each oriented face of a slat: a chart narrower than so many metres, before which other
+  /// surface lies nearer than it is wide. Found once, for the first width.
+  std::span<const std::uint8_t> slats(double width);
+
   /// Metres, from node to node: as wide as the estimates that value them.
   double spacing() const { return parameters_.spacing; }
 
@@ -123,7 +127,8 @@ class SecondaryLight {
   };
   const LightMapParameters parameters_;
   std::optional<Maps> maps_;  ///< made when the first ray ends
-  Costs costs_;               ///< without nodes
+  std::vector<std::uint8_t> slats_;
+  Costs costs_;  ///< without nodes
 };
 
 }  // namespace photile::cache

@@ -67,9 +67,10 @@ std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsd
   return Onward{*direction, bsdf.reflected(*direction) / density, density};
 }
 
-/// Replaces the last ray hit by light that reaches it, as long as it is surface near the point. A
-/// photon estimate there would show its blur, and on a narrow frame it would count the photons of
-/// faces that lie at angles to the hit's.
+/// Replaces the last ray hit by light that reaches it, as long as it is surface near the point, or
+/// a slat. A photon estimate there would show its blur: on a narrow frame it would count the
+/// photons of faces that lie at angles to the hit's, and of a slat its bright edge, which is not
+/// seen.
 ///   from     the point
 ///   before   hits of the rays before
 ///   stream   of the ray; those of later ones are `streams` apart
@@ -85,7 +86,11 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
   };
   for (int bounce = 1; ray_hits.hits.size() > before; ++bounce) {
     EyeHit hit = ray_hits.hits.back();
-    if (glm::distance(from.position, hit.position) >= run.parameters.near) return;
+    const std::span<const std::uint8_t> slats = run.parameters.slats;
+    if (glm::distance(from.position, hit.position) >= run.parameters.near &&
+        (slats.empty() || slats[hit.oriented_face] == 0)) {
+      return;
+    }
     const std::uint32_t triangle = triangle_of(hit.oriented_face);
     const HitReflection reflection = reflection_of(ray_hits, ray_hits.hits.size() - 1);
     if (bounce > defaults::most_near_surfaces) {

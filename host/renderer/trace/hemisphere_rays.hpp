@@ -26,6 +26,9 @@ struct HemisphereParameters {
   /// Surface nearer than this, metres, does not end a ray: one more light sample and one more ray
   /// find what light falls there, a few times over. 0 = all opaque surface ends rays.
   float near = 0;
+  /// Where `near` is not 0: 1 for each oriented face that ends no ray either, however far it is;
+  /// empty = none.
+  std::span<const std::uint8_t> slats = {};
 };
 
 /// Rays of a run of points that end on an opaque surface, in the order point, batch, ray.
