@@ -33,8 +33,10 @@ struct DeviceInfo {
   std::uint64_t max_work_group_size = 0;
   std::uint32_t native_float_width = 0;  ///< the device's native vector width for float
   std::uint32_t lanes = 0;  ///< work-items that it runs in step, where it says so; else 0
-  /// NVIDIA's "compute capability", 10 times the major number and the minor; 0 of others.
-  std::uint32_t compute_capability = 0;
+  /// Work-items that it runs in step can read each other's registers by instructions that kernels
+  /// know: those of NVIDIA's processors of compute capability 8.0 and later, or sub-groups of a
+  /// size that is asked for, as Intel's runtimes have them.
+  bool shuffles = false;
   /// Single-precision numbers below 1.2e-38 are kept, and quotients and roots are correctly
   /// rounded. Without, results are right but for their last bits.
   bool denormals = false, exact_division = false;

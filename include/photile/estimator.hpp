@@ -38,8 +38,8 @@ struct EstimateTuning {
   int hits_per_item = 1;
   /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
   int work_group_size = 64;
-  /// `lanes` of 16 or 32 on NVIDIA's devices of compute capability 8.0 and later: whether they
-  /// exchange values by shuffles in place of local memory and barriers. The same bits.
+  /// `lanes` of 16 or 32 on devices with shuffles: whether they exchange values by these in place of
+  /// local memory and barriers. The same bits.
   bool shuffles = false;
 
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;

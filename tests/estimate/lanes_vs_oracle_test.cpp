@@ -183,6 +183,24 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
   CHECK(relative_difference(of_lanes.irradiance, of_vectors.irradiance) > 0);
 }
 
+// Hidden: on runtimes that have shuffles (tests/runtimes).
+TEST_CASE("shuffles give lanes the bits of local memory", "[.shuffles]") {
+  REQUIRE(device().info().shuffles);
+  for (const Kind& kind : {kinds[0], Kind{"glossy, several lights", 3, true, AreaMode::clipped}}) {
+    for (const int width : {16, 32}) {
+      const Subject subject(kind, 61);
+      EstimateTuning tuning = lanes(width);
+      const Estimates plain = subject.estimate(tuning, k, kind.area);
+      tuning.shuffles = true;
+      CAPTURE(kind.name, width);
+      check(kind, tuning, k, 61);
+      const Estimates shuffled = subject.estimate(tuning, k, kind.area);
+      CHECK(shuffled.irradiance == plain.irradiance);
+      CHECK(shuffled.radiance == plain.radiance);
+    }
+  }
+}
+
 TEST_CASE("lanes that take hits in turn estimate the bits of each alone", "[slow]") {
   const Subject subject({"several lights", 3}, 62);
   EstimateTuning tuning = lanes(32);

@@ -30,7 +30,7 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
     const auto& widths = estimate::lane_widths;
     const auto in_step = static_cast<int>(device.lanes);
     const bool is_width = std::find(widths.begin(), widths.end(), in_step) != widths.end();
-    tuning.shuffles = device.compute_capability >= 80;
+    tuning.shuffles = device.shuffles;
     int width = tuning.shuffles ? width_of_shuffles : is_width ? in_step : usual_width;
     while (width > widths.front() && static_cast<unsigned>(width) > device.max_work_group_size) {
       width /= 2;
