@@ -21,9 +21,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = (
     ("plane, k = 50", ["--workload", "plane", "-k", "50"]),
     ("plane, k = 200", ["--workload", "plane", "-k", "200"]),
+    ("plane, k = 1000", ["--workload", "plane", "-k", "1000"]),
     ("living-room, k = 50", ["--workload", "living-room", "-k", "50"]),
+    ("living-room, k = 200", ["--workload", "living-room", "-k", "200"]),
+    ("classroom, k = 200", ["--workload", "classroom", "-k", "200"]),
     ("the paper's frame", ["--workload", "waved-hall", "--photons", "4000000", "--side", "500"]),
 )
+SHARED = pathlib.Path(os.environ.get("PHOTILE_SHARED_SCENES", ROOT.parent / "shared/scenes"))
 QUICK = ["--photons", "2000", "--side", "64", "--cells", "8", "--seconds", "0.5"]
 SAMPLES_PER_SECOND = 997
 
@@ -158,6 +162,8 @@ def profile(options):
         raise NoProfile("perf is not installed (Debian packages linux-perf and binutils)")
     rows = []
     for name, case in CASES:
+        if "classroom" in case and not (SHARED / "classroom").is_dir():
+            continue
         with tempfile.TemporaryDirectory(prefix="photile-profile-") as folder:
             command = [options.benches / "photile_profiled_estimate", *case,
                        *(QUICK if options.quick else [])]

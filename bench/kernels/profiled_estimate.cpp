@@ -29,7 +29,9 @@ Workload workload_of(const Settings& settings) {
   if (settings.workload == "plane") {
     return plane_workload(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   }
-  Scene scene = settings.workload == "living-room" ? living_room() : waved_hall(settings.cells);
+  Scene scene = settings.workload == "living-room"  ? living_room()
+                : settings.workload == "waved-hall" ? waved_hall(settings.cells)
+                                                    : shared_interior(settings.workload).value();
   return interior_workload(settings.workload, std::move(scene), side, side);
 }
 
@@ -63,7 +65,7 @@ int main(int argument_count, char** arguments) {
   // so.
   command.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   command.add_option("--workload", settings.workload)
-      ->check(CLI::IsMember({"plane", "living-room", "waved-hall"}));
+      ->check(CLI::IsMember({"plane", "living-room", "waved-hall", "classroom"}));
   command.add_option("--photons", settings.photons);
   command.add_option("--neighbours,-k", settings.neighbours);
   command.add_option("--side", settings.side);
