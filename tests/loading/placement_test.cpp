@@ -312,6 +312,14 @@ TEST_CASE("origin: an OBJ a thousand kilometres off loses nothing") {
   }
 }
 
+TEST_CASE("origin: a hall ten kilometres off is as exact as one at the file's origin") {
+  const std::vector<glm::dvec3> hall = {{0, 0, 0}, {12, 0, 0}, {12, 14, 0}, {0, 14, 0}};
+  const glm::dvec3 offset(10'000.3, 5.1, 5'000.7);
+  const Scene scene = load_obj(vertices(hall, offset) + lamp_face, lamp_and_wall);
+  CHECK(glm::distance(scene.origin, offset) < 20);
+  CHECK(largest_error(scene, hall, offset) < 1e-5);  // rounded at 10 km: 5e-4
+}
+
 TEST_CASE("origin: glTF nodes far off, with their camera and lamp") {
   json document = square_document();
   document["extensionsUsed"] = {"KHR_lights_punctual"};

@@ -271,7 +271,7 @@ void SceneOrigin::add(const std::array<glm::dvec3, 3>& corners) {
 }
 
 glm::dvec3 SceneOrigin::best() const {
-  constexpr double far = 1024.0, gain = 16.0;
+  constexpr double far = 64.0, gain = 16.0;
   if (corners_ == 0) return glm::dvec3(0.0);
   const double mean_square = squares_ / static_cast<double>(corners_);
   if (!(mean_square > far * far)) return glm::dvec3(0.0);
