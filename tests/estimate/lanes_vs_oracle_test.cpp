@@ -186,7 +186,8 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
 // Hidden: on runtimes that have shuffles (tests/runtimes).
 TEST_CASE("shuffles give lanes the bits of local memory", "[.shuffles]") {
   REQUIRE(device().info().shuffles);
-  for (const Kind& kind : {kinds[0], Kind{"glossy, several lights", 3, true, AreaMode::clipped}}) {
+  for (const Kind& kind : {kinds[0], Kind{"glossy, several lights", 3, true},
+                           Kind{"clipped", 3, false, AreaMode::clipped}}) {
     for (const int width : {16, 32}) {
       const Subject subject(kind, 61);
       EstimateTuning tuning = lanes(width);

@@ -42,15 +42,19 @@ std::uint32_t lanes_of(cl_device_id device) {
   return 0;
 }
 
-bool has_shuffles(cl_device_id device, const std::string& extensions) {
+/// As DeviceInfo has it. Intel's runtime for CPUs refuses sub-groups of a given size where its
+/// vectorizer has a mode (keep_intel_from_vectorizing).
+bool has_shuffles(cl_device_id device, const DeviceInfo& info) {
   cl_uint major = 0, minor = 0;
   const bool told = clGetDeviceInfo(device, CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV, sizeof major,
                                     &major, nullptr) == CL_SUCCESS &&
                     clGetDeviceInfo(device, CL_DEVICE_COMPUTE_CAPABILITY_MINOR_NV, sizeof minor,
                                     &minor, nullptr) == CL_SUCCESS;
   if (told) return major >= 8;
-  return extensions.find("cl_intel_subgroups") != std::string::npos &&
-         extensions.find("cl_intel_required_subgroup_size") != std::string::npos;
+  const char* const mode = std::getenv("CL_CONFIG_CPU_VECTORIZER_MODE");
+  if (info.platform == "Intel(R) OpenCL" && mode && std::string_view(mode) != "0") return false;
+  return info.extensions.find("cl_intel_subgroups") != std::string::npos &&
+         info.extensions.find("cl_intel_required_subgroup_size") != std::string::npos;
 }
 
 DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
@@ -71,7 +75,7 @@ DeviceInfo describe(cl_platform_id platform, cl_device_id device) {
   info.max_work_group_size = device_property<std::size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE);
   info.native_float_width = device_property<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
   if (info.type != DeviceType::cpu) info.lanes = lanes_of(device);
-  info.shuffles = has_shuffles(device, info.extensions);
+  info.shuffles = has_shuffles(device, info);
   const auto single = device_property<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
   info.denormals = (single & CL_FP_DENORM) != 0;
   info.exact_division = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
