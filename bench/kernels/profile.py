@@ -44,6 +44,7 @@ STAGES = {
     "add_counters": "counting",
     "counted": "counting",
     "edge_above": "selection",
+    "select_nearest": "selection",
     "reach_for": "block of cells",
     "block_within": "block of cells",
     "records_in": "block of cells",
@@ -139,12 +140,12 @@ def stage_of(functions):
     return functions[-1]
 
 
-def stages(data, begin, end):
-    """Samples by stage."""
+def stages(folder, data, begin, end):
+    """Samples by stage; compiled kernels are below the folder."""
     counts = collections.Counter()
     in_kernels = collections.defaultdict(collections.Counter)
     for symbol, offset, shared_object in samples(data, begin, end):
-        if shared_object.endswith("/estimate.so"):
+        if pathlib.Path(shared_object).is_relative_to(folder):
             in_kernels[shared_object][symbol, offset] += 1
         elif "kernel" in shared_object:
             counts["operating system"] += 1
@@ -167,7 +168,7 @@ def profile(options):
         with tempfile.TemporaryDirectory(prefix="photile-profile-") as folder:
             command = [options.benches / "photile_profiled_estimate", *case,
                        *(QUICK if options.quick else [])]
-            counts = stages(*record(command, pathlib.Path(folder)))
+            counts = stages(folder, *record(command, pathlib.Path(folder)))
         total = sum(counts.values())
         shares = {stage: count / total for stage, count in counts.most_common()}
         rows.append({"case": name, "samples": total, "shares": shares})
