@@ -247,6 +247,10 @@ TEST_CASE("daylight without weather, or with a sky of its own, is refused in a l
   };
   CHECK_THAT(groups(4), Contains("none.epw"));
   CHECK_THAT(groups(5), Contains("--blinds: 5 groups") && Contains("more than 4"));
+  const Outcome broken = run_photile(quick("daylight", folder.write("broken.obj", "f 1 2 3\n"),
+                                           {"--weather", write_weather(folder)}));
+  CHECK(broken.exit_code == 3);
+  CHECK_THAT(broken.errors, Contains("broken.obj"));
 }
 
 TEST_CASE("daylight factors are per cent of the sky's lux") {

@@ -61,8 +61,10 @@ TEST_CASE("a picture that takes gigabytes is told before anything is traced") {
   run.signal = SIGTERM;
   const Outcome outcome = run_photile(run);
   CHECK(last_error(outcome, 130) == "interrupted");
-  CHECK_THAT(outcome.errors, Contains("16384 x 16384 pixels with 2 lights takes"));
-  CHECK_THAT(outcome.errors, !Contains("photons:"));
+  const auto told = outcome.errors.find("16384 x 16384 pixels with 2 lights takes");
+  CHECK(told != std::string::npos);
+  // On a busy machine the first line of progress may come before the signal.
+  CHECK(outcome.errors.find("photons:") > told);
 }
 
 /// Runs a line of shell text in which $photile is the command.

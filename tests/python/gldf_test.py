@@ -1,0 +1,72 @@
+"""GLDF files as luminaires: a zip that is made here, of a lamp with two lights."""
+
+import json
+import subprocess
+import sys
+import zipfile
+
+IES = """IESNA:LM-63-2002
+TILT=NONE
+1 1000 1 3 1 1 2 0.1 0.1 0 1 1 10
+0 45 90
+0
+400 300 0
+"""
+PRODUCT = """<Root><GeneralDefinitions>
+<Files><File id="f1" contentType="ldc/ies" type="localFileName">down.ies</File>
+<File id="f2" contentType="ldc/ies" type="localFileName">missing.ies</File></Files>
+<Photometries><Photometry id="p1"><PhotometryFileReference fileId="f1"/></Photometry>
+<Photometry id="p2"><PhotometryFileReference fileId="f2"/></Photometry></Photometries>
+<Emitters><Emitter id="direct"><FixedLightEmitter><PhotometryReference photometryId="p1"/>
+<RatedLuminousFlux>1500</RatedLuminousFlux></FixedLightEmitter></Emitter>
+<Emitter id="indirect"><ChangeableLightEmitter><PhotometryReference photometryId="p1"/>
+</ChangeableLightEmitter></Emitter>
+<Emitter id="absent"><FixedLightEmitter><PhotometryReference photometryId="p2"/></FixedLightEmitter>
+</Emitter></Emitters></GeneralDefinitions>
+<ProductDefinitions><Variants><Variant id="v 1"><Geometry><ModelGeometryReference geometryId="g">
+<EmitterReference emitterId="direct"/><EmitterReference emitterId="indirect"/>
+<EmitterReference emitterId="absent"/></ModelGeometryReference></Geometry></Variant></Variants>
+</ProductDefinitions></Root>"""
+
+
+def converted(*arguments):
+    return subprocess.run([sys.executable, "-m", "photile.from_gldf", *map(str, arguments)],
+                          capture_output=True, text=True)
+
+
+def archive(path, product=PRODUCT):
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr("product.xml", product)
+        file.writestr("ldc/down.ies", IES)
+    return path
+
+
+def test_each_light_of_a_variant_is_a_luminaire(tmp_path):
+    run = converted(archive(tmp_path / "lamp.gldf"), tmp_path / "lamp")
+    assert run.returncode == 0 and run.stderr == ""
+    assert run.stdout.splitlines()[-1] == f"--luminaires {tmp_path}/lamp/luminaires.json"
+    entries = json.loads((tmp_path / "lamp/luminaires.json").read_text())
+    assert entries == [
+        {"name": "v_1_direct", "file": "v_1_direct.ies", "position": "ceiling", "lumens": 1500},
+        {"name": "v_1_indirect", "file": "v_1_indirect.ies", "position": "ceiling"}]
+    for entry in entries:
+        assert (tmp_path / "lamp" / entry["file"]).read_text() == IES
+
+
+def test_bad_files_are_told_in_one_line(tmp_path):
+    (tmp_path / "text.gldf").write_text("no zip")
+    empty = PRODUCT.replace("f1", "f3")
+    for file, told in ((tmp_path / "text.gldf", "is no GLDF file"),
+                       (archive(tmp_path / "none.gldf", empty), "no variant has a photometric file"),
+                       (archive(tmp_path / "bad.gldf", "<Root>"), "is no GLDF file"),
+                       (tmp_path / "absent.gldf", "absent.gldf")):
+        run = converted(file, tmp_path / "out")
+        assert run.returncode == 1 and run.stdout == ""
+        assert told in run.stderr and run.stderr.count("\n") == 1
+        assert not (tmp_path / "out").exists()
+    full = tmp_path / "full"
+    full.mkdir()
+    (full / "mine").write_text("kept")
+    run = converted(archive(tmp_path / "lamp.gldf"), full)
+    assert run.returncode == 1 and "is not empty" in run.stderr
+    assert [file.name for file in full.iterdir()] == ["mine"]
