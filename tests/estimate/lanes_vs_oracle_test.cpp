@@ -183,9 +183,12 @@ TEST_CASE("lanes differ from vectors in the order of sums alone") {
   CHECK(relative_difference(of_lanes.irradiance, of_vectors.irradiance) > 0);
 }
 
-// Hidden: on runtimes that have shuffles (tests/runtimes).
-TEST_CASE("shuffles give lanes the bits of local memory", "[.shuffles]") {
-  REQUIRE(device().info().shuffles);
+// On runtimes that have them: tests/runtimes fails where this one says that there are none.
+TEST_CASE("shuffles give lanes the bits of local memory", "[slow][shuffles]") {
+  if (!device().info().shuffles) {
+    WARN("this device has no shuffles");
+    return;
+  }
   for (const Kind& kind : {kinds[0], Kind{"glossy, several lights", 3, true},
                            Kind{"clipped", 3, false, AreaMode::clipped}}) {
     for (const int width : {16, 32}) {
