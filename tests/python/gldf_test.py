@@ -55,7 +55,7 @@ def test_each_light_of_a_variant_is_a_luminaire(tmp_path):
 
 def test_bad_files_are_told_in_one_line(tmp_path):
     (tmp_path / "text.gldf").write_text("no zip")
-    empty = PRODUCT.replace("f1", "f3")
+    empty = PRODUCT.replace('fileId="f1"', 'fileId="f3"')
     for file, told in ((tmp_path / "text.gldf", "is no GLDF file"),
                        (archive(tmp_path / "none.gldf", empty), "no variant has a photometric file"),
                        (archive(tmp_path / "bad.gldf", "<Root>"), "is no GLDF file"),
