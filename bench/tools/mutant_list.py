@@ -124,7 +124,7 @@ MUTANTS = (
            "adds = is_near & (light_of_lane >= (simd_int)((int)light));",
            (("estimate", "*irradiance for several lights"),)),
     Mutant("all that tie count", "kernels/estimate/candidates.clh",
-           "<= neighbourhood->last_tied", "<= 0xFFFFFFFFu", (("estimate", "photons in one point: ties*,extremes: photons*"),)),
+           "lanes_up_to(neighbourhood->last_tied, c->photon + record,", "lanes_up_to(0xFFFFFFFFu, c->photon + record,", (("estimate", "photons in one point: ties*,extremes: photons*"),)),
     Mutant("slack of cells 0", "kernels/grid/size_grids.cl",
            "grid.slack = 16.0f * FLT_EPSILON * (width_u + width_v);", "grid.slack = 0.0f;",
            (EXTREMES,)),
