@@ -89,12 +89,15 @@ inline constexpr double known_error = 0.5;
 /// mean over many.
 inline constexpr double weight_of_parents = 3;
 /// Shadow rays between points of one surface run above it by this part of their length:
-/// roundings and what lies flat on it hide nothing. They end so much short of a node, which may lie
-/// on the foot of a wall.
-inline constexpr float visibility_ray_offset = 0x1p-9f, visibility_left_out = 0x1p-5f;
-/// Rays from a hit to the photons of its estimate are offset from the surface by this part of the
-/// radius.
-inline constexpr float photon_ray_offset = 0x1p-4f;
+/// roundings and what lies flat on it hide nothing. They end so much short of a node, by less than
+/// the node lies off the foot of a wall.
+inline constexpr float visibility_ray_offset = 0x1p-9f, visibility_left_out = 0x1p-9f;
+/// Nodes lie so far off the borders of triangles, by the finest spacing: each is on one side of
+/// what stands there.
+inline constexpr double node_inset = 0x1p-5;
+/// Lines of sight from a hit to the photons of its estimate run above the surface by this part of
+/// the radius.
+inline constexpr float photon_ray_offset = 0x1p-2f;
 
 // Glass
 /// Fraction of a pixel's sample from which on reflection and refraction are both followed. Glass

@@ -1,7 +1,9 @@
 // Which triangles share a chart, and which point of the surface a node stands for.
 #include "cache/charts.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "test_scenes.hpp"
@@ -74,6 +76,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
   const Scene scene = builder.build();
   Charts charts(scene, 0.04, 60);
   constexpr int levels = 4;
+  constexpr double inset = 6 * defaults::node_inset * 0.04 / 8;
   for (std::uint32_t i = 0; i < charts.size(); ++i) {
     const cache::Chart& chart = charts[i];
     CHECK(chart.columns * chart.rows == 29 * 15);
@@ -85,7 +88,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
         const glm::dvec3 point = point_of(scene, charts.support({i, x, y}, levels));
         int corner = 0;
         for (const glm::vec3& expected : {origin, origin + u, origin + v, origin + u + v}) {
-          if (glm::length(point - glm::dvec3(expected)) < 1e-6) met.insert(corner);
+          if (glm::length(point - glm::dvec3(expected)) < inset) met.insert(corner);
           ++corner;
         }
       }
@@ -95,7 +98,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
     const Charts::Support support = charts.support({i, 101, 40}, levels);
     const glm::dvec3 position = chart.origin + 101.0 / 8 * chart.spacing.x * chart.across +
                                 40.0 / 8 * chart.spacing.y * chart.along;
-    CHECK(glm::length(point_of(scene, support) - position) < 1e-6);
+    CHECK(glm::length(point_of(scene, support) - position) < inset);
     CHECK(charts.chart_of()[oriented(support.where.triangle, support.side)] == i);
   }
 }
@@ -121,7 +124,11 @@ TEST_CASE("A node beyond an edge stands for the nearest point of the edge") {
           p = {t, 1 - t};
         }
         const glm::dvec3 point = point_of(scene, charts.support({i, x, y}, 1));
-        REQUIRE(glm::length(point - glm::dvec3(p, 0.0)) < 1e-6);
+        const double off = glm::length(point - glm::dvec3(p, 0.0));
+        REQUIRE(off < 4 * defaults::node_inset * 0.04);
+        // Nodes at the edge are within it.
+        REQUIRE(std::min({point.x, point.y, (1 - point.x - point.y) / std::sqrt(2.0)}) >
+                0.4 * defaults::node_inset * std::min(chart.spacing.x, chart.spacing.y));
       }
     }
   }

@@ -26,7 +26,7 @@ struct GatheredMaps {
                double spacing = 0.16)
       : gather(scene.gather({})),
         parameters(parameters_of(scene, spacing)),
-        nodes(scene.scene, gather, scene.estimators.layer_powers(), rays),
+        nodes(gather, scene.estimators.layer_powers(), rays),
         maps(scene.scene, parameters) {}
 
   static LightMapParameters parameters_of(GatheringScene& scene, double spacing) {
@@ -67,7 +67,7 @@ struct GatheredMaps {
   LightMaps maps;
 };
 
-constexpr cache::GatheredNodesParameters few_rays{{32, 32}, {16, 16}, 1e-4};
+constexpr cache::GatheredNodesParameters few_rays{{32, 32}, {16, 16}};
 
 /// The hits of one half of the room, and of the other.
 std::array<PrimaryHits, 2> halves(const PrimaryHits& hits) {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 #include <vector>
 
 #include "photile/sensors.hpp"
@@ -60,7 +61,53 @@ double error_of(const std::vector<double>& values, const std::vector<double>& tr
   return sum / static_cast<double>(values.size());
 }
 
+/// A closed room of 2 m on a yard of 8 m under an even sky. Its walls are sheets, or boxes, or
+/// sheets that stand above the ceiling.
+Scene room_in_a_yard(float thickness, float above) {
+  SceneBuilder builder;
+  const std::uint32_t paint = builder.add(diffuse(glm::vec3(0.7f)));
+  builder.grid({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, 1, paint);
+  builder.grid({-1, -1, 1.5f}, {2, 0, 0}, {0, 2, 0}, 1, paint);
+  const float side = 1 + thickness, height = 1.5f + above;
+  for (const float end : {-1.0f, 1.0f}) {
+    if (thickness > 0) {
+      const float low = std::min(end, end * side), high = std::max(end, end * side);
+      builder.box({low, -side, 0}, {high, side, height}, paint, false);
+      builder.box({-1, low, 0}, {1, high, height}, paint, false);
+    } else {
+      builder.grid({end, -1, 0}, {0, 2, 0}, {0, 0, height}, 1, paint);
+      builder.grid({-1, end, 0}, {2, 0, 0}, {0, 0, height}, 1, paint);
+    }
+  }
+  builder.add_surroundings("sky", EnvironmentMap("sky", 1, 1, {glm::vec3(1.0f)}));
+  return builder.build();
+}
+
 }  // namespace
+
+TEST_CASE("No light comes through the walls of a closed room") {
+  const auto [thickness, above] =
+      GENERATE(std::pair{0.0f, 0.0f}, std::pair{0.1f, 0.0f}, std::pair{0.0f, 0.4f});
+  const auto [mode, rays] =
+      GENERATE(std::pair{LightMapMode::automatic, 0}, std::pair{LightMapMode::on, 0},
+               std::pair{LightMapMode::on, 64});
+  CAPTURE(thickness, above, rays, name_of(mode));
+  const Scene scene = room_in_a_yard(thickness, above);
+  constexpr std::size_t within = 16, beside = 16;
+  std::vector<Sensor> sensors = grid_on_floor(1.6, 4);
+  for (Sensor& sensor : sensors) sensor.position.z = 0.7;
+  for (std::size_t i = 0; i < beside; ++i) {
+    const double along = -0.9 + 0.12 * static_cast<double>(i);
+    sensors.push_back({{1.2 + thickness, along, 0}, {0, 0, 1}});
+  }
+  const std::vector<double> lux =
+      lux_of(gather(scene, sensors, {.rays = 256}, one_device(), parameters_of(mode, rays)));
+  double inside = 0, yard = 0;
+  for (std::size_t i = 0; i < within; ++i) inside += lux[i] / within;
+  for (std::size_t i = within; i < lux.size(); ++i) yard += lux[i] / beside;
+  CAPTURE(inside, yard);
+  CHECK(inside < 1e-4 * yard);
+}
 
 TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes") {
   SceneBuilder builder;

@@ -40,7 +40,9 @@ TEST_CASE("Light maps give back light that varies linearly over a wall") {
   maps.fill(hits, source, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const double expected = light(hits.position[i], 0);
-    REQUIRE(read(maps, hits.position[i], hits.oriented_face[i]) == Approx(expected).epsilon(1e-5));
+    // Nodes lie a little within their triangles.
+    REQUIRE(read(maps, hits.position[i], hits.oriented_face[i]) ==
+            Approx(expected).margin(std::sqrt(6.0) * 4 * defaults::node_inset * 0.04 / 8));
   }
 }
 

@@ -126,14 +126,17 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   Device device;
   RenderParameters parameters;
   parameters.neighbours = 20;
-  parameters.light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
-  KernelPreparation(scene, std::span(&device, 1), parameters).wait();
+  const bool lists = GENERATE(false, true);
+  KernelPreparation(scene, std::span(&device, 1), parameters, lists).wait();
   const std::uint64_t prepared = device.programs_built() + device.programs_from_cache();
-  CHECK(prepared == 2);
+  CHECK(prepared == (lists ? 3 : 2));
   const PhotonMaps maps(device, scene, photons,
                         find_map_groups(scene, photons, parameters.maps, {0.2}), {.radius = 0.2});
   CHECK(maps.statistics().normal_filtered_maps > 0);
-  Estimator(maps, scene, {.neighbours = 20}).estimate(test::uniform_hits(scene, 93, 92));
+  Estimator estimator(maps, scene, {.neighbours = 20});
+  const PrimaryHits hits = test::uniform_hits(scene, 93, 92);
+  estimator.estimate(hits);
+  if (lists) estimator.nearest(hits);
   CHECK(device.programs_built() + device.programs_from_cache() == prepared);
 }
 
@@ -148,7 +151,7 @@ TEST_CASE("kernels are prepared for whatever materials and lights a scene has") 
   Device device;
   RenderParameters parameters;
   parameters.neighbours = 20;
-  CHECK_NOTHROW(KernelPreparation(scene, std::span(&device, 1), parameters).wait());
+  CHECK_NOTHROW(KernelPreparation(scene, std::span(&device, 1), parameters, false).wait());
   CHECK(device.programs_built() + device.programs_from_cache() == 2);
 }
 

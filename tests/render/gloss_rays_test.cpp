@@ -138,7 +138,7 @@ TEST_CASE("gloss by rays: lobes read, where nodes gather, what walls reflect of 
     parameters.light_map_rays = 16;
     parameters.film.samples_per_pixel = 64;
     // Few nodes lie on the plate, or are seen in it, and share the photons that they see.
-    parameters.photons.emitted_photons = 200'000;
+    parameters.photons.emitted_photons = 800'000;
     if (albedo > 0) parameters.light_map_rays = 64;
     const RenderResult result = render(scene, camera, device(), parameters);
     radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "photile/defaults.hpp"
+
 namespace photile::cache {
 
 namespace {
@@ -78,6 +80,28 @@ std::vector<glm::dvec3> directions_in_plane(const Scene& scene, std::uint32_t tr
     direction = glm::normalize(direction - glm::dot(direction, normal) * normal);
   }
   return directions;
+}
+
+/// The nearest point of a triangle that is so far from its edges, or half as far as its middle is:
+/// nearest to a point a little towards the middle, for walls may stand on the triangle itself.
+NearestPoint nearest_within(const Corners2& c, glm::dvec2 p, double inset) {
+  const double opposite[3] = {glm::distance(c[1], c[2]), glm::distance(c[2], c[0]),
+                              glm::distance(c[0], c[1])};
+  const double around = opposite[0] + opposite[1] + opposite[2];
+  const glm::dvec2 u = c[1] - c[0], v = c[2] - c[0];
+  const double radius = std::abs(u.x * v.y - u.y * v.x) / around;  // of the circle in the triangle
+  const glm::dvec3 weights = glm::dvec3(opposite[0], opposite[1], opposite[2]) / around;
+  const glm::dvec2 middle = weights.x * c[0] + weights.y * c[1] + weights.z * c[2];
+  const double way = glm::distance(p, middle);
+  if (way > 0) p += std::min(inset, way) / way * (middle - p);
+  const double kept = 1 - std::min(0.5, inset / radius);
+  NearestPoint nearest =
+      nearest_on({middle + kept * (c[0] - middle), middle + kept * (c[1] - middle),
+                  middle + kept * (c[2] - middle)},
+                 p);
+  nearest.u = kept * nearest.u + (1 - kept) * weights.y;
+  nearest.v = kept * nearest.v + (1 - kept) * weights.z;
+  return nearest;
 }
 
 }  // namespace
@@ -173,7 +197,15 @@ Charts::Support Charts::support(const NodeCoordinates& node, int levels) const {
   const Chart& chart = charts_[node.chart];
   const glm::dvec2 finest = chart.spacing / static_cast<double>(std::uint32_t{1} << (levels - 1));
   // A cell that surface lies in is no farther from it than the cell's diagonal.
-  return support(node.chart, {node.x * finest.x, node.y * finest.y}, glm::length(finest));
+  const glm::dvec2 position(node.x * finest.x, node.y * finest.y);
+  Support found = support(node.chart, position, glm::length(finest));
+  const auto corners = scene_.corners(found.where.triangle);
+  const NearestPoint within = nearest_within(
+      {in_plane(chart, corners[0]), in_plane(chart, corners[1]), in_plane(chart, corners[2])},
+      position, defaults::node_inset * std::min(finest.x, finest.y));
+  found.where.u = static_cast<float>(within.u);
+  found.where.v = static_cast<float>(within.v);
+  return found;
 }
 
 Charts::Support Charts::support(std::uint32_t index, const glm::dvec2& position,

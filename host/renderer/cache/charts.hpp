@@ -78,8 +78,9 @@ class Charts {
     std::uint32_t side;
   };
   /// The surface that a node stands for: the triangle of the chart whose projection is nearest to
-  /// it, the lowest of several at one distance, and the nearest point of that. So a node beyond
-  /// an edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
+  /// it, the lowest of several at one distance, and the nearest point of that, a little towards
+  /// its middle: at an edge nothing says on which side of a wall the node is. So a node beyond an
+  /// edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
   ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
   Support support(const NodeCoordinates& node, int levels) const;
   /// The surface that any position of the chart stands for.

@@ -22,35 +22,6 @@ constexpr NoiseTolerance of_indirect{.errors = defaults::tolerated_errors};
 constexpr NoiseTolerance of_direct{.errors = defaults::tolerated_errors,
                                    .ratio = defaults::tolerated_error_ratio};
 
-/// The point of a triangle next to this one that is so far from its edges; the middle of triangles
-/// that have none.
-glm::vec3 inset_point(const Scene& scene, std::uint32_t triangle, const glm::vec3& position,
-                      double inset) {
-  const auto corners = scene.corners(triangle);
-  const std::array<glm::dvec3, 3> corner{glm::dvec3(corners[0]), glm::dvec3(corners[1]),
-                                         glm::dvec3(corners[2])};
-  const glm::dvec3 normal =
-      glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
-  glm::dvec3 point(position);
-  const auto depth = [&](std::size_t edge, glm::dvec3& inwards) {
-    inwards = glm::normalize(glm::cross(normal, corner[(edge + 1) % 3] - corner[edge]));
-    return glm::dot(point - corner[edge], inwards);
-  };
-  glm::dvec3 inwards;
-  for (int round = 0; round < 2; ++round) {
-    for (std::size_t edge = 0; edge < 3; ++edge) {
-      const double lacking = inset - depth(edge, inwards);
-      if (lacking > 0) point += lacking * inwards;
-    }
-  }
-  for (std::size_t edge = 0; edge < 3; ++edge) {
-    if (depth(edge, inwards) < 0.5 * inset) {
-      return glm::vec3((corner[0] + corner[1] + corner[2]) / 3.0);
-    }
-  }
-  return glm::vec3(point);
-}
-
 std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
                                       std::span<const std::uint32_t> chosen) {
   std::vector<std::uint64_t> numbers;
@@ -82,7 +53,7 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
 
 }  // namespace
 
-GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset) {
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse) {
   // Shadow borders stand at the finer levels: there light samples matter more than rays.
   // Nine of these are averaged. In the open a shadow has a hundredth of the light of the sun beside
   // it, and few light samples find the sky through a window: what single ones find would show.
@@ -95,7 +66,7 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
     return std::min((open ? 1 : defaults::light_samples_per_ray) * of_rays,
                     limits::max_direct_rays);
   };
-  return {{rays, light_samples_of(rays)}, {fine, light_samples_of(open ? rays : fine)}, inset};
+  return {{rays, light_samples_of(rays)}, {fine, light_samples_of(open ? rays : fine)}};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
@@ -169,16 +140,6 @@ Estimates GatheredNodes::errors() const {
   return errors;
 }
 
-PrimaryHits GatheredNodes::points_at(const NodeBatch& batch,
-                                     std::span<const std::uint32_t> chosen) const {
-  PrimaryHits points = estimate::reordered(batch.points, 0, chosen);
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    points.position[i] = inset_point(scene_, triangle_of(points.oriented_face[i]),
-                                     points.position[i], parameters_.inset);
-  }
-  return points;
-}
-
 /// Gathers at points that have no rays yet.
 void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points,
                                const NodeRays& rays, const Progress& progress) {
@@ -186,8 +147,9 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
   for (const std::uint32_t point : points) {
     if (!raw_of_.contains(batch.number[point])) fresh.push_back(point);
   }
-  GatheredParts found = gather_.gather(points_at(batch, fresh), numbers_at(batch, fresh), rays.rays,
-                                       rays.light_samples, progress);
+  GatheredParts found =
+      gather_.gather(estimate::reordered(batch.points, 0, fresh), numbers_at(batch, fresh),
+                     rays.rays, rays.light_samples, progress);
   for (const std::uint32_t point : fresh) {
     raw_of_.insert({batch.number[point], static_cast<std::uint32_t>(raw_of_.size())});
   }

@@ -21,14 +21,11 @@ struct NodeRays {
 struct GatheredNodesParameters {
   NodeRays coarse{64, 64};  ///< at the coarsest level
   NodeRays fine{25, 32};    ///< at all others
-  /// Rays start so far within a node's triangle, metres: at an edge nothing says on which side of
-  /// a wall they are.
-  double inset = 0;
 };
 
 /// So many rays at the coarsest level and a quarter at others, and defaults::light_samples_per_ray;
 /// where the sun or a sky shines more light samples, and as many at all levels.
-GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double inset);
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse);
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
@@ -38,9 +35,9 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double ins
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. One LightMaps uses it.
-  GatheredNodes(const Scene& scene, IrradianceGather& gather, std::span<const double> layer_powers,
+  GatheredNodes(IrradianceGather& gather, std::span<const double> layer_powers,
                 const GatheredNodesParameters& parameters)
-      : scene_(scene), gather_(gather), layer_powers_(layer_powers), parameters_(parameters) {}
+      : gather_(gather), layer_powers_(layer_powers), parameters_(parameters) {}
 
   Surroundings surroundings() const override;
   NodeValues value(const NodeBatch& batch, const Progress& progress) override;
@@ -63,9 +60,6 @@ class GatheredNodes : public NodeSource {
                                const NodeBatch& batch, std::span<const std::uint32_t> fine,
                                const NoiseTolerance& tolerated) const;
 
-  PrimaryHits points_at(const NodeBatch& batch, std::span<const std::uint32_t> chosen) const;
-
-  const Scene& scene_;
   IrradianceGather& gather_;
   std::span<const double> layer_powers_;
   GatheredNodesParameters parameters_;

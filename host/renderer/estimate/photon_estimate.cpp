@@ -15,8 +15,8 @@
 namespace photile::estimate {
 namespace {
 
-/// Lists of neighbours at a time: 26 MB of them at k = 100.
-constexpr std::size_t lists_at_a_time = std::size_t{1} << 16;
+/// Neighbours in the lists of one time: 16 MB.
+constexpr std::size_t listed_at_a_time = std::size_t{1} << 22;
 
 }  // namespace
 
@@ -120,11 +120,13 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
 }
 
 void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result) {
-  const std::vector<std::uint32_t> lit =
-      VisiblePhotons::lit(result, points.size(), layer_powers_.size());
-  for (std::size_t first = 0; first < lit.size(); first += lists_at_a_time) {
+  const std::vector<std::uint32_t> beside =
+      seen_->beside_something(points, result, maps_.front().parameters().radius);
+  const std::size_t lists =
+      std::max<std::size_t>(1, listed_at_a_time / static_cast<std::size_t>(level.neighbours));
+  for (std::size_t first = 0; first < beside.size(); first += lists) {
     const std::span<const std::uint32_t> chosen =
-        std::span(lit).subspan(first, std::min(lists_at_a_time, lit.size() - first));
+        std::span(beside).subspan(first, std::min(lists, beside.size() - first));
     const NeighbourLists near = level.estimators.front().nearest(reordered(points, 0, chosen));
     seen_->leave_out_hidden(points, chosen, near, result);
   }

@@ -2,16 +2,59 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <optional>
 
 #include "estimate/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
 #include "trace/ray_query.hpp"
+#include "trace/sampling.hpp"
 
 namespace photile::estimate {
-VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons)
+namespace {
+
+/// Short lines around a hit, which find what stands beside it. A wall is missed where less than 1%
+/// of the disc lies behind it.
+constexpr int directions = 8;
+/// Part of the height of lines of sight: roundings and what lies flat on a surface cover nothing.
+constexpr float just_above = 0x1p-4f;
+/// Photons of a light that are looked at first. Where more than one of them is seen, much of its
+/// light is left.
+constexpr int most_probes = 5, most_probes_seen = 1;
+/// Places of the disc, each of the same area: the share that is seen is known to a tenth of the
+/// disc.
+constexpr int positions = 24;
+/// The part of an estimate that must be left for it to stand.
+constexpr float most_kept = 0.25f;
+/// Photons farther from the hit's plane do not count (docs/density.md).
+constexpr float flat = 0.2f;
+/// Of the angle between the normals of surfaces that share light.
+constexpr float least_cosine = 0.5f;
+
+}  // namespace
+
+struct VisiblePhotons::Disc {
+  trace::SurfaceLocation here;
+  float squared_radius;                    ///< m2
+  std::span<const std::uint32_t> photons;  ///< the neighbours
+  float height;                            ///< of lines of sight above the surface, metres
+};
+
+/// What is known of a light's photons in a disc.
+struct VisiblePhotons::Layer {
+  int photons = 0, passed = 0;  ///< how many there are, and are behind in the list
+  int probes = 0, probes_seen = 0;
+  double all = 0, seen = 0;  ///< flux, weighted by the kernel
+
+  bool doubtful() const { return probes > 0 && probes_seen <= most_probes_seen; }
+};
+
+VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel)
     : rays_(rays),
+      kernel_(kernel),
       position_(photons.position),
       oriented_face_(photons.oriented_face),
       light_(photons.light) {
@@ -21,49 +64,162 @@ VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons)
   }
 }
 
-std::vector<std::uint32_t> VisiblePhotons::lit(const Estimates& estimates, std::size_t hits,
-                                               std::size_t lights) {
-  std::vector<std::uint32_t> lit;
-  for (std::uint32_t hit = 0; hit < hits; ++hit) {
-    bool any = false;
-    for_each_estimate(estimates, hit, lights, [&](std::size_t, std::size_t i) {
-      any = any || estimates.irradiance[i] != glm::vec3(0.0f);
+std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& hits,
+                                                            const Estimates& estimates,
+                                                            double radius) const {
+  const Scene& scene = rays_.scene();
+  const auto reach = static_cast<float>(radius);
+  std::vector<std::uint8_t> chosen(hits.size(), 0);
+  tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t hit) {
+    bool lit = false;
+    for_each_estimate(estimates, hit, rays_.needs().light_count, [&](std::size_t, std::size_t i) {
+      lit = lit || estimates.irradiance[i] != glm::vec3(0.0f);
     });
-    if (any) lit.push_back(hit);
+    if (!lit) return;
+    const trace::FlushDenormals flush_denormals;
+    const trace::SurfaceLocation here =
+        trace::location_on(scene, hits.oriented_face[hit], hits.position[hit]);
+    const trace::Frame frame(here.normal);
+    const glm::vec3 origin =
+        here.position + 0.5f * defaults::photon_ray_offset * reach * here.normal;
+    for (int i = 0; i < directions && !chosen[hit]; ++i) {
+      const float angle = glm::two_pi<float>() * static_cast<float>(i) / directions;
+      const glm::vec3 way = frame.to_world({std::cos(angle), std::sin(angle), 0.0f});
+      chosen[hit] = trace::occluded(rays_, origin, origin + reach * way);
+    }
+    if (chosen[hit]) return;
+    // A cavity behind the surface.
+    const float below = just_above * defaults::photon_ray_offset * reach;
+    chosen[hit] = trace::occluded(rays_, here.position - below * here.normal,
+                                  here.position - flat * reach * here.normal);
+  });
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
+    if (chosen[hit]) result.push_back(hit);
   }
-  return lit;
+  return result;
+}
+
+double VisiblePhotons::weight(double relative_squared) const {
+  if (kernel_ == DensityKernel::constant) return 1;
+  return 1 - (kernel_ == DensityKernel::cone ? std::sqrt(relative_squared) : relative_squared);
+}
+
+trace::SurfaceLocation VisiblePhotons::location_of(std::uint32_t photon) const {
+  return trace::location_on(rays_.scene(), oriented_face_[photon], position_[photon]);
+}
+
+bool VisiblePhotons::sees(const trace::SurfaceLocation& here, const trace::SurfaceLocation& there,
+                          float height) const {
+  const float off_plane = std::abs(glm::dot(there.position - here.position, here.normal));
+  // In a cavity of the wall, say.
+  if (off_plane > just_above * height && covered(there, height + off_plane)) return false;
+  // Nodes may lie close to the foot of a wall: the line ends short of them.
+  return trace::see_each_other(rays_, there, here, {height, defaults::visibility_left_out});
+}
+
+bool VisiblePhotons::covered(const trace::SurfaceLocation& point, float height) const {
+  return trace::occluded(rays_, point.position + just_above * height * point.normal,
+                         point.position + height * point.normal);
+}
+
+std::optional<trace::SurfaceLocation> VisiblePhotons::surface_at(
+    const trace::SurfaceLocation& point, float within) const {
+  const glm::vec3 above = point.position + within * point.normal;
+  const auto met = trace::intersect(rays_, above, -point.normal);
+  if (!met) return std::nullopt;
+  const trace::SurfacePoint surface = trace::surface_hit(rays_.scene(), *met, -point.normal);
+  if (glm::dot(surface.normal, point.normal) < least_cosine ||
+      glm::dot(above - surface.position, point.normal) > 2 * within) {
+    return std::nullopt;
+  }
+  return trace::SurfaceLocation{surface.position, surface.normal};
+}
+
+double VisiblePhotons::visible_area(const Disc& disc) const {
+  const trace::SurfaceLocation& here = disc.here;
+  const float radius = std::sqrt(disc.squared_radius);
+  const trace::Frame frame(here.normal);
+  double seen = 0;
+  for (int i = 0; i < positions; ++i) {
+    // Vogel's spiral: the golden angle from one position to the next.
+    const float squared = (static_cast<float>(i) + 0.5f) / positions;
+    const float angle = 2.39996323f * static_cast<float>(i);
+    const glm::vec3 beside =
+        std::sqrt(squared) * radius * frame.to_world({std::cos(angle), std::sin(angle), 0.0f});
+    const auto there = surface_at({here.position + beside, here.normal}, flat * radius);
+    if (!there) continue;
+    if (sees(here, *there, disc.height)) seen += weight(squared);
+  }
+  return seen / positions * glm::pi<double>() * static_cast<double>(radius) * radius;
+}
+
+bool VisiblePhotons::probe(const Disc& disc, std::vector<Layer>& layers) const {
+  for (const std::uint32_t photon : disc.photons) ++layers[layer_of(photon)].photons;
+  for (const std::uint32_t photon : disc.photons) {
+    Layer& layer = layers[layer_of(photon)];
+    const int before = layer.passed++;
+    // Evenly over the list.
+    const bool is_next = before >= layer.probes * layer.photons / most_probes;
+    if (!is_next || layer.probes_seen > most_probes_seen) continue;
+    ++layer.probes;
+    if (sees(disc.here, location_of(photon), disc.height)) ++layer.probes_seen;
+  }
+  return std::any_of(disc.photons.begin(), disc.photons.end(),
+                     [&](std::uint32_t photon) { return layers[layer_of(photon)].doubtful(); });
+}
+
+void VisiblePhotons::sum_seen(const Disc& disc, bool full, std::vector<Layer>& layers) const {
+  for (const std::uint32_t photon : disc.photons) {
+    Layer& layer = layers[layer_of(photon)];
+    if (!layer.doubtful()) continue;
+    const glm::vec3 way = position_[photon] - disc.here.position;
+    const float squared = glm::dot(way, way) / disc.squared_radius;
+    // The k-th tells the radius, and is not counted.
+    if (full && squared >= 1) continue;
+    const float height = glm::dot(way, disc.here.normal);
+    if (height * height > flat * flat * disc.squared_radius) continue;
+    const double counted = weight(static_cast<double>(squared)) * flux_[photon];
+    layer.all += counted;
+    if (sees(disc.here, location_of(photon), disc.height)) layer.seen += counted;
+  }
 }
 
 void VisiblePhotons::leave_out_hidden(const PrimaryHits& hits,
                                       std::span<const std::uint32_t> chosen,
                                       const NeighbourLists& near, Estimates& estimates) const {
-  const Scene& scene = rays_.scene();
   const std::size_t lights = rays_.needs().light_count;
   const auto k = static_cast<std::size_t>(near.k);
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t row) {
     const trace::FlushDenormals flush_denormals;
-    thread_local std::vector<double> all, seen;
-    all.assign(lights, 0.0);
-    seen.assign(lights, 0.0);
     const std::uint32_t hit = chosen[row];
-    const float offset = defaults::photon_ray_offset * std::sqrt(near.squared_radius[row]);
-    const trace::SurfaceLocation here =
-        trace::location_on(scene, hits.oriented_face[hit], hits.position[hit]);
-    for (const std::uint32_t photon : std::span(near.photons).subspan(row * k, k)) {
-      if (photon == none) break;
-      const std::size_t layer = light_.empty() ? 0 : light_[photon];
-      all[layer] += flux_[photon];
-      const trace::SurfaceLocation there =
-          trace::location_on(scene, oriented_face_[photon], position_[photon]);
-      // Nodes may lie on the foot of a wall: the line ends short of them.
-      if (trace::see_each_other(rays_, there, here, {offset, defaults::visibility_left_out}))
-        seen[layer] += flux_[photon];
-    }
-    for_each_estimate(estimates, hit, lights, [&](std::size_t layer, std::size_t i) {
-      if (!(seen[layer] < all[layer])) return;
-      const auto fraction = static_cast<float>(seen[layer] / all[layer]);
-      estimates.irradiance[i] *= fraction;
-      if (!estimates.radiance.empty()) estimates.radiance[i] *= fraction;
+    const std::span<const std::uint32_t> list = std::span(near.photons).subspan(row * k, k);
+    Disc disc{
+        .here = trace::location_on(rays_.scene(), hits.oriented_face[hit], hits.position[hit]),
+        .squared_radius = near.squared_radius[row],
+        .photons = list.first(
+            static_cast<std::size_t>(std::find(list.begin(), list.end(), none) - list.begin())),
+        .height = defaults::photon_ray_offset * std::sqrt(near.squared_radius[row])};
+    if (!(disc.squared_radius > 0)) return;
+    // High enough for cracks along walls not to count, unless the hit lies in a slit.
+    if (covered(disc.here, disc.height)) disc.height *= 0.25f;
+    thread_local std::vector<Layer> layers;
+    layers.resize(lights);
+    for (const std::uint32_t photon : disc.photons) layers[layer_of(photon)] = {};
+    if (!probe(disc, layers)) return;
+    sum_seen(disc, list.size() == disc.photons.size(), layers);
+    std::optional<double> area;  // for all layers
+    for_each_estimate(estimates, hit, lights, [&](std::size_t index, std::size_t i) {
+      const Layer& layer = layers[index];
+      const bool lit = estimates.irradiance[i] != glm::vec3(0.0f);
+      if (!lit || !layer.doubtful() || !(layer.seen < most_kept * layer.all)) return;
+      if (!area) area = visible_area(disc);
+      const double all = luminance(glm::dvec3(estimates.irradiance[i]));
+      const double seen = layer.seen / *area;
+      if (!(*area > 0) || !(seen < most_kept * all)) return;
+      const auto scale = static_cast<float>(seen / all);
+      estimates.irradiance[i] *= scale;
+      if (!estimates.radiance.empty()) estimates.radiance[i] *= scale;
     });
   });
 }

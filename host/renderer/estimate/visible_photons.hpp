@@ -4,37 +4,66 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "photile/estimator.hpp"
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::estimate {
 
-/// Where the wall of a ring stands on a floor, photons inside it lie close to hits outside, and
-/// would show as a bright rim there. Caustics end abruptly at what casts them, so that of these it
-/// matters.
+/// The photons nearest to a hit may lie on the other side of a wall that stands on the same floor:
+/// a dark room would get the light of the yard, and a floor outside a ring of metal that of the
+/// caustic within it. Here the hit's lines of sight along the surface tell which photons count, and
+/// which part of the disc they lie on.
 class VisiblePhotons {
  public:
   /// Keeps a reference to `rays`, and copies of what it needs of the photons.
-  VisiblePhotons(const RayScene& rays, const Photons& photons);
+  ///   kernel   of the estimates
+  VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel);
 
-  /// Hits of which some estimate is not 0: those that need their neighbours looked at.
-  static std::vector<std::uint32_t> lit(const Estimates& estimates, std::size_t hits,
-                                        std::size_t lights);
+  /// The hits whose estimate is not 0, and near which something stands on the surface: those whose
+  /// neighbours need to be looked at.
+  ///   radius   metres, from which no neighbour is farther
+  std::vector<std::uint32_t> beside_something(const PrimaryHits& hits, const Estimates& estimates,
+                                              double radius) const;
 
-  /// Scales each layer's estimate of a hit by that fraction of the flux of its neighbours which the
-  /// hit sees along the surface. The area that they lie on is left whole: beside a wall that stands
-  /// in a caustic the estimate is darker, as at the border of any light.
+  /// Where a hit sees so few of a light's photons that they say less than a quarter of the light,
+  /// on the area that it sees, replaces the light's estimate by what they say. Else the estimate
+  /// stands: it has less noise, and knows the area exactly.
   ///   chosen   of the hits
   ///   near     of the chosen hits
   void leave_out_hidden(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
                         const NeighbourLists& near, Estimates& estimates) const;
 
  private:
+  struct Disc;
+  struct Layer;
+  trace::SurfaceLocation location_of(std::uint32_t photon) const;
+  std::size_t layer_of(std::uint32_t photon) const { return light_.empty() ? 0 : light_[photon]; }
+  /// Whether nothing stands between two points of a disc, at a height above the surface, metres.
+  bool sees(const trace::SurfaceLocation& here, const trace::SurfaceLocation& there,
+            float height) const;
+  /// Whether something lies less than `height` above a point.
+  bool covered(const trace::SurfaceLocation& point, float height) const;
+  /// Looks at a few photons of each light that has some. Returns whether one is in doubt.
+  bool probe(const Disc& disc, std::vector<Layer>& layers) const;
+  /// Sums the photons of the lights that are in doubt, all and those that are seen.
+  ///   full   the farthest photon tells the radius
+  void sum_seen(const Disc& disc, bool full, std::vector<Layer>& layers) const;
+  /// The surface of about this normal, at most so many metres above or below a point.
+  std::optional<trace::SurfaceLocation> surface_at(const trace::SurfaceLocation& point,
+                                                   float within) const;
+  /// What the kernel integrates to over the surface of a disc that is seen from its middle, m2.
+  double visible_area(const Disc& disc) const;
+  /// What a photon counts, by the square of its distance over the radius.
+  double weight(double relative_squared) const;
+
   const RayScene& rays_;
+  DensityKernel kernel_;
   std::vector<glm::vec3> position_;
   std::vector<std::uint32_t> oriented_face_;
   std::vector<float> flux_;           ///< luminance

@@ -61,9 +61,9 @@ bool is_fresh(const Device& device) {
   return device.programs_built() + device.programs_from_cache() == 0;
 }
 
-///   specular   scenes have mirrors or glass: neighbours of caustics are looked at (VisiblePhotons)
+///   lists   lists of neighbours are asked for, too
 void prepare(Device& device, const estimate::PlaneSample& sample,
-             const RenderParameters& parameters, bool specular) {
+             const RenderParameters& parameters, bool lists) {
   try {
     const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
                                                    {sample.radius, parameters.angle_degrees});
@@ -73,7 +73,7 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
         .neighbours = parameters.neighbours, .area = parameters.area, .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);
     estimator.estimate(sample.hits);
-    if (specular && parameters.light_map_rays > 0) estimator.nearest(sample.hits);
+    if (lists) estimator.nearest(sample.hits);
   } catch (const DeviceMemoryError&) {
   }
 }
@@ -81,14 +81,14 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
 }  // namespace
 
 KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devices,
-                                     const RenderParameters& parameters) {
+                                     const RenderParameters& parameters, bool lists) {
   if (std::none_of(devices.begin(), devices.end(), is_fresh)) return;
-  done_ = std::async(std::launch::async, [&scene, devices, &parameters] {
+  done_ = std::async(std::launch::async, [&scene, devices, &parameters, lists] {
     const SceneNeeds needs = needs_of(scene);
     const estimate::PlaneSample sample =
         sample_of(needs, may_mix_normals(scene, parameters.angle_degrees), parameters.neighbours);
     for (Device& device : devices) {
-      if (is_fresh(device)) prepare(device, sample, parameters, needs.specular_paths);
+      if (is_fresh(device)) prepare(device, sample, parameters, lists);
     }
   });
 }

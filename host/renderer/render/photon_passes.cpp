@@ -19,9 +19,6 @@
 namespace photile {
 namespace {
 
-/// Rays of nodes start so far within a triangle, as a part of the spacing of nodes.
-constexpr double inset_of_spacing = 1.0 / 512;
-
 /// Light that is made when it is first asked for.
 class LazyLight : public estimate::LightAtPoints {
  public:
@@ -51,9 +48,8 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
   if (plan.gathers_at_nodes()) {
     gather_.emplace(rays, of_points, of_nodes, photons_.ends, photons_.caustics.of_points.get(),
                     plan.node_gathering(photons_.pass, photons_.first_radius));
-    gathered_.emplace(rays.scene(), *gather_, layer_powers_,
-                      cache::rays_of_nodes(rays.scene(), plan.used().light_map_rays,
-                                           inset_of_spacing * photons_.maps.spacing));
+    gathered_.emplace(*gather_, layer_powers_,
+                      cache::rays_of_nodes(rays.scene(), plan.used().light_map_rays));
   } else {
     by_photons_.emplace(of_nodes);
   }
@@ -102,10 +98,9 @@ PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
   Maps maps = trace_and_build(prepared, keep, progress);
   const Stopwatch stopwatch;
   PassPhotons photons = std::move(maps.facts);
-  photons.all = shared(estimate_of(std::move(maps.photons), nullptr));
-  if (!maps.caustics.empty()) {
-    photons.caustics =
-        shared(estimate_of(std::move(maps.caustics), std::move(maps.visible_caustics)));
+  photons.all = shared(estimate_of(std::move(maps.photons)));
+  if (!maps.caustics.maps.empty()) {
+    photons.caustics = shared(estimate_of(std::move(maps.caustics)));
   }
   costs_.estimators.add(stopwatch.taken());
   ++pass_;
@@ -136,12 +131,9 @@ PassPhotons PhotonPasses::waiting(TracedPhotons& prepared, const KeepPhotons* ke
     const auto light = std::make_shared<LazyLight>(std::move(make));
     return PhotonLight{light, light, nullptr};
   };
-  photons.all = lazy([this, built] { return estimate_of(std::move(built().photons), nullptr); });
+  photons.all = lazy([this, built] { return estimate_of(std::move(built().photons)); });
   if (has_caustics) {
-    photons.caustics = lazy([this, built] {
-      Maps& maps = built();
-      return estimate_of(std::move(maps.caustics), std::move(maps.visible_caustics));
-    });
+    photons.caustics = lazy([this, built] { return estimate_of(std::move(built().caustics)); });
   }
   return photons;
 }
@@ -156,10 +148,9 @@ PassPhotons PhotonPasses::facts(const Photons& photons) const {
   return facts;
 }
 
-std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
-    std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::VisiblePhotons> seen) const {
-  estimate::PhotonEstimate::Parts parts{std::move(maps), plan_.estimates(pass_, surface_),
-                                        std::move(seen)};
+std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(Built built) const {
+  estimate::PhotonEstimate::Parts parts{std::move(built.maps), plan_.estimates(pass_, surface_),
+                                        std::move(built.seen)};
   return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, std::move(parts),
                                                     layer_powers_);
 }
@@ -203,7 +194,9 @@ void PhotonPasses::check_map_memory() const {
 PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhotons* keep,
                                        Progress& progress) {
   if (pass_ == 0 && !prepared) check_map_memory();
-  if (!kernels_) kernels_.emplace(scene_, devices_, plan_.used());  // while photons are traced
+  if (!kernels_)
+    kernels_.emplace(scene_, devices_, plan_.used(),
+                     plan_.leaves_out_hidden());  // while photons are traced
   const Stopwatch trace_watch;
   PhotonTracerResult traced;
   if (prepared) {
@@ -269,15 +262,13 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
   PhotonTracerResult traced = trace(prepared, keep, progress);
   const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
   PassPhotons found = facts(traced.photons);
-  Maps maps{build(std::move(traced.photons), parameters, progress), {}, nullptr, std::move(found)};
-  const PhotonMapStatistics& built = maps.photons.front().statistics();
+  Maps maps{build(std::move(traced.photons), parameters, progress), {}, std::move(found)};
+  const PhotonMapStatistics& built = maps.photons.maps.front().statistics();
   costs_.maps = built.maps;
   costs_.normal_filtered_maps = built.normal_filtered_maps;
   costs_.map_sizes = built.map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.total() > 0) {
-    maps.visible_caustics =
-        std::make_shared<const estimate::VisiblePhotons>(rays_, traced.caustics);
     maps.caustics = build(std::move(traced.caustics), parameters, progress);
   }
   const Stopwatch release_watch;
@@ -286,10 +277,14 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
   return maps;
 }
 
-std::vector<PhotonMaps> PhotonPasses::build(Photons photons, const PhotonMapParameters& parameters,
-                                            Progress& progress) {
+PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParameters& parameters,
+                                        Progress& progress) {
   const Stopwatch stopwatch;
   kernels_->wait();
+  std::shared_ptr<const estimate::VisiblePhotons> seen;
+  if (plan_.leaves_out_hidden()) {
+    seen = std::make_shared<const estimate::VisiblePhotons>(rays_, photons, plan_.used().kernel);
+  }
   std::vector<std::uint8_t> own;
   if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
   std::vector<PhotonMaps> maps = estimate::build_maps_on_each(devices_, scene_, std::move(photons),
@@ -303,7 +298,7 @@ std::vector<PhotonMaps> PhotonPasses::build(Photons photons, const PhotonMapPara
   const PhotonMapStatistics& built = maps.front().statistics();
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
-  return maps;
+  return {std::move(maps), std::move(seen)};
 }
 
 void PhotonPasses::count(const PhotonTracerResult& traced) {

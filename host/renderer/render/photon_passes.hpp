@@ -101,11 +101,13 @@ class PhotonPasses {
   std::string light_map_settings() const;
 
  private:
-  /// On each device.
+  struct Built {
+    std::vector<PhotonMaps> maps;                          ///< the same on each device
+    std::shared_ptr<const estimate::VisiblePhotons> seen;  ///< null: all photons count
+  };
   struct Maps {
-    std::vector<PhotonMaps> photons;
-    std::vector<PhotonMaps> caustics;  ///< for rays that gather, where there are any
-    std::shared_ptr<const estimate::VisiblePhotons> visible_caustics;
+    Built photons;
+    Built caustics;     ///< for rays that gather, where there are any
     PassPhotons facts;  ///< without their light
   };
 
@@ -114,10 +116,8 @@ class PhotonPasses {
   /// Photons of the pass, with all that is found before there are maps.
   PhotonTracerResult trace(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   Maps trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
-  std::vector<PhotonMaps> build(Photons photons, const PhotonMapParameters& parameters,
-                                Progress& progress);
-  std::shared_ptr<estimate::PhotonEstimate> estimate_of(
-      std::vector<PhotonMaps> maps, std::shared_ptr<const estimate::VisiblePhotons> seen) const;
+  Built build(Photons photons, const PhotonMapParameters& parameters, Progress& progress);
+  std::shared_ptr<estimate::PhotonEstimate> estimate_of(Built built) const;
   /// The estimate as it is asked for where several processes have the maps.
   PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.

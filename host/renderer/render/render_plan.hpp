@@ -41,6 +41,9 @@ class RenderPlan {
   /// not follow from the memory.
   bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
   bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
+  /// Whether photons that something hides from a point do not count there. Estimates at the hits of
+  /// a picture's rays, as the paper has them, count all.
+  bool leaves_out_hidden() const { return leaves_out_hidden_; }
   bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
   bool keeps_caustics() const { return gathers_at_nodes(); }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
@@ -82,6 +85,7 @@ class RenderPlan {
  private:
   RenderParameters used_;
   int asked_passes_;
+  bool leaves_out_hidden_ = false;
   double least_radius_;  ///< metres
   std::string scene_;    ///< for messages
 };
