@@ -46,6 +46,21 @@ TEST_CASE("factors multiply, off is zero, and changes apply in order") {
   CHECK(after({"lamp=x2"}).lights[1].power == 50.0);
 }
 
+TEST_CASE("a glob changes all lights that it matches, a name only its own") {
+  const LightMix all = after({"*=x2"});
+  CHECK(all.lights[0].power == 1600.0);
+  CHECK(all.lights[1].power == 100.0);
+  const LightMix some = after({"h*r=off"});
+  CHECK(some.lights[0].power == 800.0);
+  CHECK(some.lights[1].power == 0.0);
+  LightMix starred = two_lights();
+  starred.lights[1].name = "l*";
+  change_lights(starred, {LightChange::parse("l*=off")});
+  CHECK(starred.lights[0].power == 800.0);
+  CHECK(starred.lights[1].power == 0.0);
+  CHECK_THROWS_AS(after({"s*=off"}), UsageError);
+}
+
 TEST_CASE("a colour becomes a tint of luminance 1 with the ratios of linear sRGB") {
   const MixedLight light = after({"lamp=#FF8000"}).lights[0];
   // IEC 61966-2-1: code 128 of 255 is 0.21586 linear, code 255 is 1.

@@ -101,8 +101,10 @@ TEST_CASE("black lights are dropped with a warning") {
 TEST_CASE("an area light that Blender's exporter lost is named") {
   nlohmann::json document = square_document();
   document["nodes"].push_back({{"name", "Area.001"}});
-  document["scenes"][0]["nodes"] = {0, 1};
+  document["nodes"].push_back({{"name", "Cube.001"}});
+  document["scenes"][0]["nodes"] = {0, 1, 2};
   CHECK(warns(load_gltf(document), {"'Area.001'", "area lights"}));
+  CHECK_FALSE(warns(load_gltf(document), {"'Cube.001'"}));
   // Without any other light it is named in the error.
   document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   const std::string error = input_error_of([&] { load_gltf(document); });

@@ -57,6 +57,27 @@ constexpr const char* one = R"({"file": "lamp.ies", "position": [0.5, 0.5, 2], "
 
 }  // namespace
 
+TEST_CASE("a lamp below the ceiling hangs beside a hole in its middle") {
+  const SceneFolderOnDisk folder;
+  // A room of 4 m, 3 m high, whose ceiling leaves out 10 cm around the middle.
+  folder.write("room.obj",
+               "v -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -2 3 -2\nv 2 3 -2\nv 2 3 2\nv -2 3 2\n"
+               "v -.05 3 -2\nv -.05 3 2\nv .05 3 -2\nv .05 3 2\n"
+               "v -.05 3 -.05\nv .05 3 -.05\nv -.05 3 .05\nv .05 3 .05\n"
+               "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+               "f 5 9 10 8\nf 11 6 7 12\nf 9 11 14 13\nf 15 16 12 10\n");
+  folder.write("lamp.ies", ies(lambertian));
+  SceneLoadOptions options;
+  options.luminaires = folder.write(
+      "luminaires.json", R"([{"file": "lamp.ies", "position": "ceiling", "size": [0.1, 0.1]}])");
+  const Scene scene = load_scene(folder.path / "room.obj", options);
+  REQUIRE(scene.lights.size() == 1);
+  const glm::dvec3 lamp =
+      glm::dvec3(scene.corners(scene.lights[0].triangles.at(0))[0]) + scene.origin;
+  CHECK(lamp.y == Approx(3).margin(0.01));
+  CHECK(std::max(std::abs(lamp.x), std::abs(lamp.z)) < 0.3);
+}
+
 TEST_CASE("a placed lamp has the flux of its file, and its place, aim and size") {
   const SceneFolderOnDisk folder;
   const Scene scene = scene_with(folder, one);

@@ -173,6 +173,22 @@ TEST_CASE("a building that is no box is seen from within its largest room, at ey
         Approx(wide * length).epsilon(0.05));
 }
 
+TEST_CASE("beside a stairwell the room is the one in which the point lies") {
+  SceneBuilder builder;
+  const std::uint32_t paint = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.box({0, 0, 0}, {8, 5.4f, 6}, paint, true);
+  // The floor of the upper storey, with a hole from 3 to 5 m.
+  builder.box({0, 2.6f, 0}, {3, 2.8f, 6}, paint, false);
+  builder.box({5, 2.6f, 0}, {8, 2.8f, 6}, paint, false);
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  const double x = GENERATE(1.0, 2.2, 2.9);
+  const auto room = trace::Room::around(rays, trace::PlanAxes(), {x, 1.6, 3});
+  REQUIRE(room.has_value());
+  CHECK(room->cut_height() < 2.6);
+  CHECK(room->cut_height() > 2.2);
+}
+
 TEST_CASE("a room that is open on one side is seen through it, and anything else from above") {
   const int open = GENERATE(-1, 0, 1, 2, 3);  // the wall left out: none, at +z, -z, +x, -x
   SceneBuilder builder;

@@ -58,7 +58,8 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options) {
 
 void add_light_change_option(const OptionGroup& group, std::vector<LightChange>& changes) {
   group.parse("--light", changes, "NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off",
-              "power of a light in its unit, a factor (x2), a colour or off; repeatable");
+              "power of a light, or of all whose names match a glob, in its unit, a factor (x2), a "
+              "colour or off; repeatable");
 }
 
 void add_mood_options(const OptionGroup& group, MoodOptions& options) {

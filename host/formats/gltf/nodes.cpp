@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 
+#include "common/ascii_text.hpp"
 #include "gltf/document.hpp"
 #include "gltf/lights.hpp"
 #include "gltf/meshes.hpp"
@@ -162,6 +164,14 @@ class Walk {
   std::vector<Level> path_;
 };
 
+/// Whether a node is called as lights are: exporters leave many others empty.
+bool sounds_like_light(const std::string& name) {
+  constexpr std::array words{"area", "lamp", "light", "lumi", "leuchte", "spot", "sun"};
+  return std::any_of(words.begin(), words.end(), [name = lower(name)](const char* word) {
+    return name.find(word) != std::string::npos;
+  });
+}
+
 void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<NodeVisit>& visits,
                             reading::ImportContext& context) {
   const auto asked_for = [&](const tinygltf::Node& node) {
@@ -175,7 +185,7 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
     const tinygltf::Node& node = *visit.source;
     if (node.mesh < 0 && node.camera < 0 && node.children.empty() && node.extensions.empty() &&
         !is_joint[static_cast<std::size_t>(visit.node)] && !has_profile(node) && !has_panel(node) &&
-        !asked_for(node)) {
+        !asked_for(node) && sounds_like_light(node.name)) {
       context.warnings.add("node", node_name(model, visit.node),
                            "no mesh, light, camera or child; Blender's exporter drops area lights "
                            "like that: give it a luminous panel, see docs/lights.md");

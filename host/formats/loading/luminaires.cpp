@@ -111,11 +111,20 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   const auto room = trace::Room::of_camera(rays, axes, camera);
   if (!room) return std::nullopt;
   const glm::dvec2 plan = 0.5 * (room->low() + room->high());
-  const auto places = room->positions();
-  if (places.empty()) return std::nullopt;
-  const double height = glm::dot(places.front(), axes.up);
-  const glm::dvec3 below = plan.x * axes.right + plan.y * axes.ahead + height * axes.up;
-  const auto ceiling = trace::intersect(rays, glm::vec3(below), glm::vec3(axes.up));
+  const glm::dvec3 middle =
+      plan.x * axes.right + plan.y * axes.ahead + room->cut_height() * axes.up;
+  const auto above = [&](const glm::dvec3& below) {
+    return trace::intersect(rays, glm::vec3(below), glm::vec3(axes.up));
+  };
+  auto ceiling = above(middle);
+  if (!ceiling) {
+    // A hole there, or a seam.
+    std::vector<glm::dvec3> others = room->positions();
+    std::sort(others.begin(), others.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
+      return std::pair(glm::distance(a, middle), a.x) < std::pair(glm::distance(b, middle), b.x);
+    });
+    for (std::size_t i = 0; i < others.size() && !ceiling; ++i) ceiling = above(others[i]);
+  }
   if (!ceiling) return std::nullopt;
   const trace::SurfacePoint point = trace::surface_hit(scene, *ceiling, glm::vec3(axes.up));
   return glm::dvec3(point.position) - below_ceiling * axes.up;

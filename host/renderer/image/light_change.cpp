@@ -1,6 +1,7 @@
 #include "image/light_change.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
 #include <cmath>
 #include <string_view>
@@ -144,6 +145,16 @@ std::size_t index_of(const LightMix& mix, const std::string& name) {
       fmt::format("there is no light '{}'; there {}", name, scene::names_like(name, names)));
 }
 
+std::vector<std::size_t> indices_of(const LightMix& mix, const std::string& glob) {
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    if (mix.lights[i].name == glob) return {i};
+    if (::fnmatch(glob.c_str(), mix.lights[i].name.c_str(), 0) == 0) all.push_back(i);
+  }
+  if (all.empty()) all.push_back(index_of(mix, glob));
+  return all;
+}
+
 }  // namespace image
 
 LightChange LightChange::parse(const std::string& text) {
@@ -160,8 +171,9 @@ LightChange LightChange::parse(const std::string& text) {
 void change_lights(LightMix& mix, const std::vector<LightChange>& changes) {
   LightMix changed = mix;  // a refused change leaves the mix as it was
   for (const LightChange& change : changes) {
-    image::apply(changed.lights[image::index_of(changed, change.name)], image::understand(change),
-                 changed.lumen_per_watt);
+    for (const std::size_t light : image::indices_of(changed, change.name)) {
+      image::apply(changed.lights[light], image::understand(change), changed.lumen_per_watt);
+    }
   }
   mix = std::move(changed);
 }

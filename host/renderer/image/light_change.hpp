@@ -41,4 +41,8 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt);
 /// Position of a light. Errors: UsageError listing the lights there are.
 std::size_t index_of(const LightMix& mix, const std::string& name);
 
+/// Positions of the light of this name or, where none is called so, of those whose names match the
+/// glob. Errors: UsageError listing the lights there are.
+std::vector<std::size_t> indices_of(const LightMix& mix, const std::string& glob);
+
 }  // namespace photile::image

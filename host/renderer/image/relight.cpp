@@ -29,14 +29,17 @@ double ratio(double now, double before, const std::string& light) {
 
 void apply_to_picture(image::LightRecords& records, const std::vector<LightChange>& changes) {
   for (const LightChange& change : changes) {
-    MixedLight& light = records.mix.lights[image::index_of(records.mix, change.name)];
     const image::Request request = image::understand(change);
-    if (std::holds_alternative<image::SetPower>(request) && records.relative.contains(light.name)) {
-      throw UsageError(
-          fmt::format("light '{}': the picture does not say its power; use xFACTOR, #RRGGBB or off",
-                      light.name));
+    for (const std::size_t index : image::indices_of(records.mix, change.name)) {
+      MixedLight& light = records.mix.lights[index];
+      if (std::holds_alternative<image::SetPower>(request) &&
+          records.relative.contains(light.name)) {
+        throw UsageError(fmt::format(
+            "light '{}': the picture does not say its power; use xFACTOR, #RRGGBB or off",
+            light.name));
+      }
+      image::apply(light, request, records.mix.lumen_per_watt);
     }
-    image::apply(light, request, records.mix.lumen_per_watt);
   }
 }
 

@@ -66,23 +66,29 @@ Room::Room(const RayScene& rays, const PlanAxes& axes, const glm::dvec3& seed, d
 std::optional<Room> Room::around(const RayScene& rays, const PlanAxes& axes,
                                  const glm::dvec3& point) {
   const trace::FlushDenormals flush_denormals;
-  auto most = headroom_at(rays, axes, point);
-  if (!most) return std::nullopt;
-  // What hangs right above the point, such as a luminaire, is not the ceiling.
-  glm::dvec3 seed = point;
-  const double aside = 0.2 * (most->up + most->down);
+  const auto own = headroom_at(rays, axes, point);
+  if (!own) return std::nullopt;
+  // What hangs right above the point, such as a luminaire, is not the ceiling, nor is the one above
+  // a stairwell beside it: the middle of what is above the point and above those around it.
+  struct Position {
+    glm::dvec3 point;
+    Headroom headroom;
+  };
+  std::vector<Position> positions{{point, *own}};
+  const double aside = 0.2 * (own->up + own->down);
   for (const auto& step : steps) {
     const glm::dvec3 direction =
         static_cast<double>(step.x) * axes.right + static_cast<double>(step.y) * axes.ahead;
     const glm::dvec3 other = point + aside * direction;
     if (trace::occluded(rays, glm::vec3(point), glm::vec3(other))) continue;
-    const auto there = headroom_at(rays, axes, other);
-    if (!there || there->up <= most->up) continue;
-    most = there;
-    seed = other;
+    if (const auto there = headroom_at(rays, axes, other)) positions.push_back({other, *there});
   }
-  Room room(rays, axes, seed + cut_fraction * most->up * axes.up,
-            (most->up + most->down) / cells_of_height);
+  std::stable_sort(positions.begin(), positions.end(), [](const Position& a, const Position& b) {
+    return a.headroom.up < b.headroom.up;
+  });
+  const auto& [seed, headroom] = positions[positions.size() / 2];
+  Room room(rays, axes, seed + cut_fraction * headroom.up * axes.up,
+            (headroom.up + headroom.down) / cells_of_height);
   if (!room.spread()) return std::nullopt;
   return room;
 }
