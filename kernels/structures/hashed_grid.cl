@@ -30,7 +30,7 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
   for (int shell = 0; shell <= shells; ++shell) {
     const float to_shell = fmax((float)(shell - 1) + margin, 0.0f) * grid->cell_side;
     if (shell > 0 && to_shell * to_shell > cut_of(list)) break;
-    const int3 from = max(centre - shell, 0), to = min(centre + shell, last);
+    const int3 from = max(centre - shell, (int3)(0)), to = min(centre + shell, last);
     for (int z = from.z; z <= to.z; ++z) {
       const float dz = cells_to(position.z, z);
       for (int y = from.y; y <= to.y; ++y) {
