@@ -35,6 +35,7 @@ done
 release=build/release
 layers=$release/tests/device/layers
 limit=900 # seconds of a part: a driver may hang
+((${#quick[@]})) && limit=3600
 if ((build)); then
   cmake --preset release > /dev/null && cmake --build --preset release --target photile_command \
     photile_fence_layer photile_tests_maps photile_tests_estimate photile_bench_kernels || exit 1
