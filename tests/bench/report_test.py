@@ -91,6 +91,18 @@ class Knn(unittest.TestCase):
             knn = {"device": {"type": kind}, "results": rows}
             self.assertAlmostEqual(report_targets.speedup({"knn": knn}, "plane", 50, report_targets.BEST), faster)
 
+    def test_at_the_limits_all_cores_take_what_a_hit_must_cost(self):
+        size, operations = report_kernels.estimate_cost(50)
+        # A millisecond a hit of the device for the operations, and half of it for the bytes.
+        limits = {"cached bytes per second": 2000 * size, "operations per second": 1000 * operations}
+        rows = [{**knn_row("nanoflann", 9), "processor seconds": timing(2)}, knn_row("uniform-grid", 1)]
+        results = {"kernels": {"settings": {"limits": limits}},
+                   "knn": {"device": {"type": "cpu", "compute units": 2}, "results": rows}}
+        queries = rows[0]["queries"]
+        self.assertAlmostEqual(
+            report_targets.speedup_at_the_limits(results, "plane", 50, report_targets.BEST),
+            2 / queries / (2 * 1e-3))
+
     def test_lists_are_held_against_lists(self):
         result = {"results": [knn_row("nanoflann", 8), knn_row("nanoflann, lists", 6),
                               knn_row("uniform-grid", 1), knn_row("uniform-grid, lists", 3)]}
