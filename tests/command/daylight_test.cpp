@@ -11,6 +11,7 @@
 #include "child_process.hpp"
 #include "command/daylight_results.hpp"
 #include "file_folder.hpp"
+#include "report/daylight_tables.hpp"
 #include "weather_text.hpp"
 
 namespace photile::test {
@@ -221,6 +222,13 @@ TEST_CASE("a room that no sky shines into is warned of") {
   std::erase(arguments, "--quiet");
   const Outcome factors = succeed(arguments);
   CHECK_THAT(factors.errors, Contains("no light of the sky") && Contains("glass"));
+}
+
+TEST_CASE("next to no light of the sky is told of with how much it is") {
+  CHECK_THAT(report::darkness_warning(0), Contains("no light of the sky reaches any point"));
+  CHECK_THAT(report::darkness_warning(0.0123),
+             Contains("next to no light of the sky") && Contains("0.012%") && Contains("glass"));
+  CHECK(report::darkness_warning(0.11).empty());
 }
 
 TEST_CASE("daylight without weather, or with a sky of its own, is refused in a line") {

@@ -166,9 +166,17 @@ void take_windows(const DaylightOptions& options, std::span<const measuring::Sen
 }
 
 void warn_of_darkness(const SkyRounds& rounds, Progress& progress) {
-  const std::vector<float> lux = rounds.mean().front().matrix.from_sky;
-  if (std::any_of(lux.begin(), lux.end(), [](float value) { return value > 0; })) return;
-  progress.note(report::no_sky_warning);
+  // Open ground has pi lux for each cd/m2 of an even sky.
+  const auto mean = rounds.mean();
+  const daylight::DaylightMatrix& matrix = mean.front().matrix;
+  double most = 0;
+  for (std::size_t sensor = 0; sensor < matrix.sensors; ++sensor) {
+    double lux = 0;
+    for (std::size_t i = 0; i < matrix.patches; ++i) lux += matrix.coefficient(sensor, i);
+    most = std::max(most, 100 * lux / std::numbers::pi);
+  }
+  const std::string warning = report::darkness_warning(most);
+  if (!warning.empty()) progress.note(warning);
 }
 
 std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year, Scene& scene,

@@ -71,12 +71,12 @@ void keep_sky(measuring::Measurement& measurement) {
   }
 }
 
-bool all_dark(const measuring::Measurement& measurement) {
-  const auto dark = [](const Measured& reading) { return !(reading.value > 0); };
-  return std::all_of(measurement.begin(), measurement.end(), [&](const auto& grid) {
-    const auto& sensors = grid.total().sensors;
-    return std::all_of(sensors.begin(), sensors.end(), dark);
-  });
+double most_of(const measuring::Measurement& measurement) {
+  double most = 0;
+  for (const auto& grid : measurement) {
+    for (const Measured& reading : grid.total().sensors) most = std::max(most, reading.value);
+  }
+  return most;
 }
 
 /// Everything that the command line asks to be measured.
@@ -169,7 +169,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {
     keep_sky(measurement);
-    if (all_dark(measurement)) progress.note(report::no_sky_warning);
+    const std::string warning = report::darkness_warning(most_of(measurement));
+    if (!warning.empty()) progress.note(warning);
   } else {
     for (const std::string& line : measuring::doubts_of(measurement, mix.lights)) {
       progress.warn(line);

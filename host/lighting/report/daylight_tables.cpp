@@ -128,6 +128,22 @@ Json grid_json(const GridDaylight& grid, const DaylightAsked& asked) {
 
 }  // namespace
 
+std::string darkness_warning(double most_percent) {
+  constexpr double least_percent = 0.1;
+  if (most_percent >= least_percent) return {};
+  const std::string reaches =
+      most_percent > 0 ? fmt::format(
+                             "next to no light of the sky reaches the points, {:.2g}% of that on "
+                             "open ground at most",
+                             most_percent)
+                       : "no light of the sky reaches any point";
+  return fmt::format(
+      "warning: {}: the room has no opening and no pane of glass; leave out what closes its "
+      "windows, or "
+      "make it of glass (KHR_materials_transmission in glTF, d below 1 or illum 4 in MTL)",
+      reaches);
+}
+
 std::string autonomy_text(const GridDaylight& grid, const DaylightAsked& asked,
                           std::size_t rounds) {
   // IES LM-83-12: nominally accepted, and preferred.

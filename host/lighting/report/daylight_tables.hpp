@@ -45,11 +45,10 @@ struct DaylightAsked {
   std::vector<bool> occupied;  ///< by the hour
 };
 
-/// What to say where no light of the sky reaches any point.
-inline constexpr const char* no_sky_warning =
-    "warning: no light of the sky reaches any point: the room has no opening and no pane of glass; "
-    "leave out what closes its windows, or make it of glass (KHR_materials_transmission in glTF, d "
-    "below 1 or illum 4 in MTL)";
+/// What to say where next to no light of the sky reaches any point: less than 0.1%.
+///   most_percent   of the points: per cent of the light on open ground
+/// Empty where there is more.
+std::string darkness_warning(double most_percent);
 
 /// "sDA 300,50% 62.1 +-0.8%: meets 55% (certain)": which of the two levels of IES LM-83 are met,
 /// 55% or 75% of the points, and whether three standard errors leave a doubt.
