@@ -194,9 +194,9 @@ MUTANTS = (
            "keep_caustics && specular && !unscattered", "keep_caustics && !unscattered",
            (("cache", "gathering: the light of a caustic*"),)),
     Mutant("photons of all light for those of caustics", "host/renderer/render/photon_passes.cpp",
-           "  Maps maps{build(std::move(traced.photons), parameters, progress), {}, std::move(found)};",
+           "  Maps maps{build(std::move(traced.photons), parameters, plan_.leaves_out_hidden(), progress),",
            "  traced.caustics = traced.photons;\n"
-           "  Maps maps{build(std::move(traced.photons), parameters, progress), {}, std::move(found)};",
+           "  Maps maps{build(std::move(traced.photons), parameters, plan_.leaves_out_hidden(), progress),",
            (("cache", "gathering: the light of a caustic*"),)),
     Mutant("radiance seen through water as bright as in it", "host/renderer/trace/scatter.cpp",
            "if (material.thin) return 1;", "return 1;",

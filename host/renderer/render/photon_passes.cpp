@@ -194,9 +194,11 @@ void PhotonPasses::check_map_memory() const {
 PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhotons* keep,
                                        Progress& progress) {
   if (pass_ == 0 && !prepared) check_map_memory();
-  if (!kernels_)
-    kernels_.emplace(scene_, devices_, plan_.used(),
-                     plan_.leaves_out_hidden());  // while photons are traced
+  if (!kernels_) {  // while photons are traced
+    const bool lists =
+        plan_.leaves_out_hidden() || (plan_.keeps_caustics() && rays_.needs().specular_paths);
+    kernels_.emplace(scene_, devices_, plan_.used(), lists);
+  }
   const Stopwatch trace_watch;
   PhotonTracerResult traced;
   if (prepared) {
@@ -262,14 +264,16 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
   PhotonTracerResult traced = trace(prepared, keep, progress);
   const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
   PassPhotons found = facts(traced.photons);
-  Maps maps{build(std::move(traced.photons), parameters, progress), {}, std::move(found)};
+  Maps maps{build(std::move(traced.photons), parameters, plan_.leaves_out_hidden(), progress),
+            {},
+            std::move(found)};
   const PhotonMapStatistics& built = maps.photons.maps.front().statistics();
   costs_.maps = built.maps;
   costs_.normal_filtered_maps = built.normal_filtered_maps;
   costs_.map_sizes = built.map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.total() > 0) {
-    maps.caustics = build(std::move(traced.caustics), parameters, progress);
+    maps.caustics = build(std::move(traced.caustics), parameters, true, progress);
   }
   const Stopwatch release_watch;
   traced = {};
@@ -278,11 +282,11 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
 }
 
 PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParameters& parameters,
-                                        Progress& progress) {
+                                        bool leaves_out_hidden, Progress& progress) {
   const Stopwatch stopwatch;
   kernels_->wait();
   std::shared_ptr<const estimate::VisiblePhotons> seen;
-  if (plan_.leaves_out_hidden()) {
+  if (leaves_out_hidden) {
     seen = std::make_shared<const estimate::VisiblePhotons>(rays_, photons, plan_.used().kernel);
   }
   std::vector<std::uint8_t> own;
