@@ -87,9 +87,8 @@ struct RenderParameters {
   /// > 0: nodes of light maps gather light by so many rays each, and as many light samples, fewer
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
   int light_map_rays = 0;
-  /// Whether photons behind walls count at points, too (docs/irradiance-gathering.md): quicker, for
-  /// first pictures.
-  bool hidden_photons = false;
+  /// Quicker, for first pictures: see docs/irradiance-gathering.md, photons behind walls.
+  bool counts_hidden_photons = false;
   double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = by the photons
   double light_map_detail = 0;   ///< metres between the finest nodes, at most; 0 = by the photons
   /// Processes that share the rendering (docs/clusters.md), all with the same arguments: paths,

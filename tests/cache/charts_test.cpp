@@ -76,6 +76,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
   const Scene scene = builder.build();
   Charts charts(scene, 0.04, 60);
   constexpr int levels = 4;
+  // Within a corner a node lies farther off than from an edge.
   constexpr double inset = 6 * defaults::node_inset * 0.04 / 8;
   for (std::uint32_t i = 0; i < charts.size(); ++i) {
     const cache::Chart& chart = charts[i];
@@ -98,7 +99,7 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
     const Charts::Support support = charts.support({i, 101, 40}, levels);
     const glm::dvec3 position = chart.origin + 101.0 / 8 * chart.spacing.x * chart.across +
                                 40.0 / 8 * chart.spacing.y * chart.along;
-    CHECK(glm::length(point_of(scene, support) - position) < inset);
+    CHECK(glm::length(point_of(scene, support) - position) < 1.5 * inset / 6);
     CHECK(charts.chart_of()[oriented(support.where.triangle, support.side)] == i);
   }
 }

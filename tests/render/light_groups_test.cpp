@@ -37,7 +37,7 @@ RenderResult rendered(const Scene& scene, bool glossy) {
   RenderParameters parameters = small_picture(20'000, 24, 18, samples);
   parameters.neighbours = neighbours;
   // Light maps leave out photons behind walls, where they are most of a layer's.
-  parameters.light_maps = LightMapMode::off;
+  if (glossy) parameters.light_maps = LightMapMode::off;
   parameters.radius = glossy ? 0.4 : 0;  // one that is chosen is the same in both, too
   const Camera camera = Camera::look_at({3.6, 0.4, 1.2}, {1, 2, 1.9}, {0, 0, 1}, 1.3);
   return render(scene, camera, test::device(), parameters);

@@ -69,7 +69,7 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
   first.radius = 0;
   first.least_neighbours = 0;
   first.light_maps = LightMapMode::on;
-  first.hidden_photons = true;
+  first.counts_hidden_photons = true;
   if (nodes_gather(asked)) {
     first.neighbours = defaults::view_first_neighbours;
     first.light_map_rays = (asked.light_map_rays + 3) / 4;

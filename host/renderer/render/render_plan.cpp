@@ -108,7 +108,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   const bool at_points =
       hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic && !gathers_at_nodes();
   used_.light_maps = read && !at_points ? LightMapMode::on : LightMapMode::off;
-  leaves_out_hidden_ = read && !asked.hidden_photons;
+  leaves_out_hidden_ = read && !asked.counts_hidden_photons;
   // Beyond the scene there is nothing to find.
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
 }
