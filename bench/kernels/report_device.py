@@ -38,7 +38,7 @@ def load(file):
 def runtime_of(device):
     """Name and version: of PoCL those that its platform states, of others the driver's."""
     pocl = re.search(r"PoCL ([\d.]+)", device["platform_version"])
-    return f"PoCL {pocl[1]}" if pocl else f"{device['platform']} {device['driver_version']}"
+    return f"PoCL {pocl[1]}" if pocl else f"{device['platform']} {device['driver_version'].split()[-1]}"
 
 
 def chip_of(device):
