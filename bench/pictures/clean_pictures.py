@@ -24,7 +24,7 @@ from tools import picture_error
 
 SIZE = "256x192"
 ROWS = tuple((scene, options) for scene in ("classroom", "kitchen") for options in (
-    "--quality draft --photons 500k -k 100 --samples 16", "--quality good",
+    "--set light_map_rays=0 --photons 500k -k 100 --samples 16", "--quality good",
     "--quality good --photons 1M", "--quality final"))
 
 

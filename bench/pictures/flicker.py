@@ -31,7 +31,7 @@ from tools.gltf_meshes import View, read_gltf
 
 SIZE = (256, 192)
 DEGREES = 0.1  # a frame: half a pixel
-PHOTILE = ("--quality draft", "--quality draft --set light_maps=off", "--quality good")
+PHOTILE = ("--set light_map_rays=0 --photons 1M -k 500", "--set light_maps=off --photons 1M -k 500", "--quality good")
 PATHS = 16  # of a pixel of the path tracer
 FRAMES_PER_SECOND = 10
 

@@ -30,9 +30,9 @@ from tools import picture_error
 from tools.gltf_meshes import read_gltf
 
 SIZE = "256x192"
-ROWS = (("classroom", "--quality draft --photons 1M -k 250"),
+ROWS = (("classroom", "--set light_map_rays=0 --photons 1M -k 250"),
         ("classroom", "--photons 500k -k 100 --set light_map_rays=32"),
-        ("kitchen", "--quality draft --photons 1M -k 250"),
+        ("kitchen", "--set light_map_rays=0 --photons 1M -k 250"),
         ("kitchen", "--photons 500k -k 100 --set light_map_rays=32"))
 FRAMES = 24
 REPEATS = 5

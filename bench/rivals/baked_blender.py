@@ -71,7 +71,7 @@ def row(given, name, folder):
     baked, own, shown = folder / f"{name}.gltf", folder / f"{name}.exr", folder / "blender.exr"
     subprocess.run([given.photile, "bake", scene, "-o", baked, *LIGHT, "--quiet"], check=True)
     subprocess.run([given.photile, "render", scene, "-o", own, "--size", f"{WIDTH}x{HEIGHT}",
-                    "--quality", "draft", "--samples", "16", "--set", "light_maps=on", *LIGHT,
+                    "--set", "light_map_rays=0", "--samples", "16", "--set", "light_maps=on", *LIGHT,
                     "--quiet"], check=True)
     _, view = read_gltf(scene)
     place = folder / "view.json"

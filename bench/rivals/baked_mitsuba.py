@@ -121,7 +121,7 @@ def row(given, name, folder):
     baked, own = folder / f"{name}.gltf", folder / f"{name}.exr"
     subprocess.run([given.photile, "bake", scene, "-o", baked, *LIGHT, "--quiet"], check=True)
     subprocess.run([given.photile, "render", scene, "-o", own, "--size", f"{WIDTH}x{HEIGHT}",
-                    "--quality", "draft", "--samples", str(SAMPLES), "--set", "light_maps=on", *LIGHT,
+                    "--set", "light_map_rays=0", "--samples", str(SAMPLES), "--set", "light_maps=on", *LIGHT,
                     "--quiet"], check=True)
     pictures = {"Mitsuba": shown(baked, scene), "photile": picture_error.read_picture(own)}
     reference = picture_error.read_picture(reference)

@@ -42,6 +42,8 @@ inline constexpr double radius_over_median_kth_distance = 2.0;
 // Light maps
 inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
 inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
+/// Metres between the finest nodes: the coarsest lie closer, so that there are none but those.
+inline constexpr double no_detail = 10;
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
 inline constexpr double published_texel = 0.02;     ///< metres, of the light maps of a page
 inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
@@ -151,6 +153,7 @@ inline constexpr int rank_patience =
 
 // Validation: readings whose noise leaves room for the tolerance of 1%
 inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds
+inline constexpr int trade_neighbours = 200;  ///< others around them are tried, too
 inline constexpr int validation_neighbours = 1'000;
 inline constexpr int validation_paths = 500'000;  ///< of each seed, over the sensors of a case
 

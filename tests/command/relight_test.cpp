@@ -16,7 +16,7 @@ using Catch::Contains;
 std::string render(const FileFolder& folder, const std::string& name,
                    const std::vector<std::string>& options = {}) {
   succeed(typed("render", write_box(folder), "-o", folder / name,
-                "--photons 50k --size 24x16 --quality draft", options));
+                "--photons 50k -k 50 --samples 4 --size 24x16 --set light_map_rays=0", options));
   return folder / name;
 }
 

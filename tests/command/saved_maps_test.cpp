@@ -26,7 +26,7 @@ TEST_CASE("saved photons give the picture again, in other powers and sizes as we
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
   const auto [option, value] = GENERATE(table<std::string, std::string>(
-      {{"--set", "light_maps=auto"}, {"--set", "light_maps=off"}, {"--set", "light_map_rays=8"}}));
+      {{"--set", "light_map_rays=0"}, {"--set", "light_maps=off"}, {"--set", "light_map_rays=8"}}));
   const auto render = [&](const std::string& name, std::vector<std::string> more) {
     more.insert(more.end(), {option, value});
     return succeed(arguments_of(folder, name, more));
@@ -45,7 +45,7 @@ TEST_CASE("saved photons give the picture again, in other powers and sizes as we
 TEST_CASE("rays that gather refuse saved photons without caustics, and say what to do") {
   const FileFolder folder;
   const std::string maps = folder / "box.maps";
-  succeed(arguments_of(folder, "a.exr", {"--save-maps", maps}));
+  succeed(arguments_of(folder, "a.exr", {"--save-maps", maps, "--set", "light_map_rays=0"}));
   const Outcome outcome = run_photile(
       arguments_of(folder, "b.exr", {"--load-maps", maps, "--set", "light_map_rays=4"}));
   CHECK_THAT(only_error(outcome, 2), Contains("light_map_rays") && Contains("save them again"));

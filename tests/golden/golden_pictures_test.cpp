@@ -23,7 +23,7 @@ namespace {
 constexpr int width = 32, height = 24, tile_side = 8;  ///< pixels
 
 enum class Method {
-  photons,  ///< the estimate at each hit, as the quality draft
+  photons,  ///< photon estimates at nodes
   nodes,    ///< light maps whose nodes gather, as the quality good
   paths
 };
@@ -59,7 +59,8 @@ std::vector<Golden> golden_pictures() {
 
 RenderParameters parameters_of(Method method, std::uint64_t seed) {
   RenderParameters parameters;
-  set_quality(parameters, method == Method::nodes ? Quality::good : Quality::draft);
+  if (method == Method::nodes) set_quality(parameters, Quality::good);
+  if (method == Method::photons) parameters.neighbours = 500;
   parameters.seed = seed;
   const int samples = method == Method::nodes ? 2 : method == Method::photons ? 8 : 32;
   parameters.film = {width, height, samples};

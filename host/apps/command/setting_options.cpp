@@ -161,9 +161,12 @@ NamedSettings rendering_settings(RenderParameters& parameters,
   for (const Setting& setting : settings()) {
     if (has_option(setting)) continue;
     if (std::find(without.begin(), without.end(), setting.name) != without.end()) continue;
-    std::string initial = setting.is_of_quality()     ? "by quality"
-                          : setting.otherwise.empty() ? text_of(setting.value(parameters))
-                                                      : std::string(setting.otherwise);
+    std::string initial(setting.otherwise);
+    if (setting.is_of_quality()) {
+      initial = initial.empty() ? "by quality" : "by quality, else " + initial;
+    } else if (initial.empty()) {
+      initial = text_of(setting.value(parameters));
+    }
     list.push_back({.name = setting.name,
                     .group = setting.group,
                     .range = setting.range,
@@ -379,11 +382,13 @@ std::string options_text(const RenderParameters& parameters,
   }
   const RenderParameters usual;
   for (const Setting& setting : settings()) {
-    if (has_option(setting) || is_out(setting.name) ||
-        setting.value(parameters) == setting.value(usual)) {
-      continue;
-    }
-    text += fmt::format(" --set {}={}", setting.name, text_of(setting.value(parameters)));
+    if (has_option(setting) || is_out(setting.name)) continue;
+    const SettingValue value = setting.value(parameters);
+    // What a quality sets has to be said to override another quality.
+    const bool said =
+        setting.is_of_quality() ? contains(setting.range, value) : value != setting.value(usual);
+    if (!said) continue;
+    text += fmt::format(" --set {}={}", setting.name, text_of(value));
   }
   return text;
 }

@@ -203,7 +203,7 @@ void run_trade(TradeOptions& options) {
 
 void add_trade_command(CLI::App& photile) {
   auto options = std::make_shared<TradeOptions>();
-  set_quality(options->render.quality_options(), Quality::draft);
+  options->render.parameters.neighbours = defaults::trade_neighbours;
   CLI::App* command = photile.add_subcommand(
       "trade", "Measure time and error of many settings on a view, around those given");
   const OptionGroup group(*command);

@@ -16,7 +16,7 @@ namespace photile {
 std::string_view name_of(Quality quality) { return name_in({"draft", "good", "final"}, quality); }
 
 std::string_view description_of(Quality quality) {
-  return name_in({"quick, and blurred: light is averaged over many photons", "clean to the eye",
+  return name_in({"quick, and soft: nodes of light maps lie far apart", "clean to the eye",
                   "more of everything, for stills"},
                  quality);
 }
@@ -54,13 +54,6 @@ void set_by_name(RenderParameters& parameters, std::string_view name,
   found->set(parameters, fitting);
 }
 
-namespace {
-
-/// Metres; no coarsest nodes lie farther apart, so that there are none but those.
-constexpr double no_detail = 1e30;
-
-}  // namespace
-
 RenderParameters first_picture_parameters(const RenderParameters& asked) {
   RenderParameters first = asked;
   first.photons.emitted_photons =
@@ -77,7 +70,7 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
     first.light_map_detail = defaults::view_first_spacing / 4;
   } else {
     first.direct_rays = first.light_map_rays = 0;
-    first.light_map_detail = no_detail;
+    first.light_map_detail = defaults::no_detail;
   }
   if (asked.maps == MapMode::naive) first.maps = MapMode::automatic;
   return first;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "photile/defaults.hpp"
 #include "photile/limits.hpp"
 
 namespace photile {
@@ -83,8 +84,9 @@ Setting row(std::string_view name, std::string_view reader, ValueRange range, st
 }
 
 /// A row that qualities set.
-Setting by_quality(Setting setting, std::uint64_t draft, std::uint64_t good, std::uint64_t best) {
-  setting.by_quality = {draft, good, best};
+template <class Number>
+Setting by_quality(Setting setting, Number draft, Number good, Number best) {
+  setting.by_quality = {setting_value(draft), setting_value(good), setting_value(best)};
   return setting;
 }
 
@@ -136,7 +138,7 @@ std::vector<Setting> picture_rows() {
       by_quality(row<&P::film, &Film::samples_per_pixel>(
                      "samples_per_pixel", hits, WholeNumbers{1, limits::max_samples_per_pixel},
                      "primary rays per pixel, over all passes; at least one in each", not_kept),
-                 defaults::samples_per_pixel, 16, 64),
+                 8, 16, 64),
       row<&P::seed>("seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
       row<&P::max_specular_depth>("max_specular_depth", hits,
@@ -152,7 +154,7 @@ std::vector<Setting> photon_rows() {
                      "photons_emitted", paths,
                      WholeNumbers{limits::min_photons, limits::max_emitted_photons},
                      "paths over all lights", kept_as_it_is),
-                 defaults::emitted_photons, 500'000, 2'000'000),
+                 50'000, 500'000, 2'000'000),
       row<&P::photons, &PhotonPaths::quota>(
           "quota", paths, words_of(all_photon_quotas),
           "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
@@ -175,7 +177,7 @@ std::vector<Setting> estimate_rows() {
       by_quality(of_groups(row<&P::neighbours>("neighbours", estimate,
                                                WholeNumbers{1, limits::max_neighbours},
                                                "photons of an estimate", kept_for_radius)),
-                 500, 100, 100),
+                 25, 100, 100),
       row<&P::least_neighbours>(
           "least_neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
           "each hit has its own number of neighbours, from this one up, as its bias allows",
@@ -207,14 +209,18 @@ std::vector<Setting> estimate_rows() {
                           "matt surfaces are read between nodes; auto: not with naive maps or "
                           "several passes; off: an estimate at each hit",
                           not_kept),
-      by_quality(row<&P::light_map_rays>(
-                     "light_map_rays", "light maps", WholeNumbers{1, limits::max_gathering_rays},
-                     "rays, and light samples, by which nodes of light maps gather light", not_kept,
-                     "the photon estimate values nodes"),
-                 0, 64, 256),
-      row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
-                                "largest distance between the finest nodes of light maps", not_kept,
-                                "an eighth of the coarsest, by the photons", "m"),
+      by_quality(
+          row<&P::light_map_rays>(
+              "light_map_rays", "light maps", WholeNumbers{0, limits::max_gathering_rays},
+              "rays, and light samples, by which nodes of light maps gather light; 0: photon "
+              "estimates value nodes",
+              not_kept),
+          16, 64, 256),
+      by_quality(
+          row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
+                                    "largest distance between the finest nodes of light maps",
+                                    not_kept, "an eighth of the coarsest, by the photons", "m"),
+          defaults::no_detail, 0.0, 0.0),
   };
 }
 

@@ -24,8 +24,7 @@ struct Setting {
   /// What holds where it is not given: then it is 0. "" = it always has a value in its range.
   std::string_view otherwise = {};
   ValueRange range = {};
-  /// The value for each of all_qualities, where they set it; that of draft is the default of the
-  /// library.
+  /// The value for each of all_qualities, where they set it.
   std::vector<SettingValue> by_quality = {};
   /// What photons and their groups depend on, in words; "" = not on this. Null: they never do.
   std::string (*kept)(const Setting& setting, const RenderParameters& parameters) = nullptr;

@@ -37,7 +37,7 @@ class PhotileSettings(bpy.types.PropertyGroup):
     quality: EnumProperty(
         name="Quality",
         items=(
-            ("draft", "Draft", "Quick, and blurred: light is averaged over many photons"),
+            ("draft", "Draft", "Quick, and soft: nodes of light maps lie far apart"),
             ("good", "Good", "Clean to the eye"),
             ("final", "Final", "More of everything, for stills"),
         ),
