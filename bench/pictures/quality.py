@@ -4,10 +4,11 @@
     bench/pictures/quality.py [SCENES] [--only VIEW] [--tool TOOL] [--redraw] [--quick] [--results FOLDER]
 
 Renders the two diffuse interiors of SCENES in two sizes with photile, by its qualities, by photons alone
-and by denoised paths, with Mitsuba 3's path tracer with and without Open Image Denoise, and with LuxCore
-and its PhotonGI; compares with the path-traced references of SCENES by relMSE, mottle and FLIP. Needs the
-built command, and numpy, matplotlib and OpenImageIO. The rivals are those that the interpreter finds: the
-packages mitsuba, pyoidn, pyluxcore and flip-evaluator of PyPI, for example in an environment made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
+and by denoised paths, with the path tracers of Mitsuba 3 and Blender (Cycles), with and without Open Image
+Denoise, and with LuxCore and its PhotonGI; compares with the path-traced references of SCENES by relMSE,
+mottle and FLIP. Needs the built command, and numpy, matplotlib and OpenImageIO. The rivals are those that
+the interpreter finds: the packages mitsuba, pyoidn, bpy, pyluxcore and flip-evaluator of PyPI, for example
+in an environment made with `/usr/bin/python3 -m venv --system-site-packages`. Mitsuba wants LLVM, which
 DRJIT_LIBLLVM_PATH names. What is not there becomes a row that says so.
 """
 
@@ -44,7 +45,7 @@ LEAST_NEIGHBOURS = "12"
 PATHS = (1, 4, 16, 64, 128)  # of a pixel
 FEW_PATHS = (4, 16, 64)  # in large pictures, and of the tools with less to show
 MOST_PATHS_OF_FRAMES = 16  # beyond, a further frame takes what the first takes
-PACKAGES = ("mitsuba", "pyoidn", "pyluxcore", "flip-evaluator")
+PACKAGES = ("mitsuba", "pyoidn", "bpy", "pyluxcore", "flip-evaluator")
 
 
 def arguments():
@@ -143,7 +144,8 @@ def rival(script, scene, size, folder, options):
         [sys.executable, ROOT / "bench/rivals" / script, scene, "--size", size, "-o", picture,
          "--begin", str(time.monotonic()), *options], stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
-        raise NoRival(f"ended with {done.returncode}; DRJIT_LIBLLVM_PATH should name LLVM 19")
+        remedy = "; DRJIT_LIBLLVM_PATH should name LLVM 19" if script == "quality_mitsuba.py" else ""
+        raise NoRival(f"ended with {done.returncode}{remedy}")
     return np.load(picture).astype(np.float64), json.loads(done.stdout[done.stdout.rindex('{"first"'):])
 
 
@@ -176,6 +178,8 @@ TOOLS = {"photile": ("photile", ()),
          "Mitsuba": ("quality_mitsuba.py", ("mitsuba",)),
          "Mitsuba, low discrepancy": ("quality_mitsuba.py", ("mitsuba",)),
          "Mitsuba, denoised": ("quality_mitsuba.py", ("mitsuba", "pyoidn")),
+         "Cycles": ("quality_cycles.py", ("bpy",)),
+         "Cycles, denoised": ("quality_cycles.py", ("bpy",)),
          "LuxCore, PhotonGI": ("quality_luxcore.py", ("pyluxcore",)),
          "LuxCore, PhotonGI, denoised": ("quality_luxcore.py", ("pyluxcore",))}
 
@@ -209,6 +213,8 @@ def points(tool, qualities, large, quick):
         "Mitsuba, low discrepancy": lambda: by_paths(
             few_paths, lambda n: ["--samples", str(n), "--sampler", "multijitter"]),
         "Mitsuba, denoised": lambda: by_paths(paths, lambda n: [*path_settings(n), "--denoise"]),
+        "Cycles": lambda: by_paths(few_paths, path_settings),
+        "Cycles, denoised": lambda: by_paths(few_paths, lambda n: [*path_settings(n), "--denoise"]),
         # Its photons alone take a minute, and nothing of it gains by more pixels.
         "LuxCore, PhotonGI": lambda: by_paths([] if large else few_paths,
                                               lambda n: ["--samples", str(n)]),

@@ -15,6 +15,7 @@ STYLES = {"photile": ("#009E73", "D"), "photile, photons alone": ("#D55E00", "o"
           "photile, paths denoised": ("#009E73", "x"),
           "Mitsuba": ("#56B4E9", "^"), "Mitsuba, low discrepancy": ("#56B4E9", "<"),
           "Mitsuba, denoised": ("#0072B2", "v"),
+          "Cycles": ("#000000", "1"), "Cycles, denoised": ("#000000", "2"),
           "LuxCore, PhotonGI": ("#CC79A7", "+"), "LuxCore, PhotonGI, denoised": ("#CC79A7", "*")}
 MEASURES = {"rel_mse": "relMSE", "flip": "FLIP"}
 

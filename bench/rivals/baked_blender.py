@@ -26,35 +26,23 @@ def render_in_blender(baked, view, picture):
     """Within Blender."""
     import bpy
     import mathutils
-    sys.path.insert(0, str(ROOT / "docs/examples"))
+    sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "docs/examples")]
     import show_baked
+    from rivals import quality_cycles
     show_baked.show(baked)
     for name in view["lamps"]:  # holes in the picture
         tree = bpy.data.materials[name].node_tree
         output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
         tree.links.new(tree.nodes.new("ShaderNodeHoldout").outputs["Holdout"],
                        output.inputs["Surface"])
-    scene = bpy.context.scene
-    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    scene.collection.objects.link(camera)
-    camera.data.sensor_fit = "VERTICAL"
-    camera.data.angle_y = view["fov"]
-    camera.data.clip_start = 1e-3
     upright = mathutils.Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
-    camera.matrix_world = upright @ mathutils.Matrix(view["to_world"])
-    scene.camera = camera
-    render = scene.render
-    render.engine = "CYCLES"
-    render.resolution_x, render.resolution_y, render.resolution_percentage = WIDTH, HEIGHT, 100
-    render.film_transparent = True
-    render.filepath = str(picture)
-    render.image_settings.file_format = "OPEN_EXR"
-    render.image_settings.color_mode = "RGBA"
-    render.image_settings.color_depth = "32"
+    scene = quality_cycles.seen_scene(upright @ mathutils.Matrix(view["to_world"]), view["fov"],
+                                      (WIDTH, HEIGHT))
+    scene.render.film_transparent = True
+    scene.render.filepath = str(picture)
+    scene.render.image_settings.color_mode = "RGBA"
     cycles = scene.cycles
     cycles.samples, cycles.max_bounces, cycles.transparent_max_bounces = SAMPLES, 0, 32
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.pixel_filter_type = "BOX"
     bpy.ops.render.render(write_still=True)
 
 

@@ -1,16 +1,14 @@
 #!/usr/bin/python3
 """Renders an interior of diffuse surfaces with LuxCore and PhotonGI; quality.py runs it once per picture.
 
-    bench/rivals/quality_luxcore.py SCENE --size WxH --samples N [--denoise] --begin SECONDS -o FILE.npy
+    bench/rivals/quality_luxcore.py SCENE --size WxH --samples N [--denoise] [--next] --begin SECONDS
+                             -o FILE.npy
 
 Path tracing on the processor, whose paths end in LuxCore's cache of indirect light (PhotonGI); with
---denoise its own plugin of Open Image Denoise. Writes the picture, shape (height, width, 3), and prints
-JSON: wall-clock seconds and processor seconds of all threads, from the start of the process. Needs the
+--denoise its own plugin of Open Image Denoise. The output is that of tools/one_picture.py. Needs the
 package pyluxcore.
 """
 
-import argparse
-import json
 import math
 import os
 import pathlib
@@ -23,22 +21,11 @@ import numpy as np
 import pyluxcore
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tools import one_picture
 from tools.gltf_meshes import read_gltf
 
 PHOTONS = 1_000_000  # LuxCore's default of 20 million traces for minutes
 DEPTH = 64  # of paths and photons: with its default of 4 the cache lacks a fifth of the light
-
-
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scene", type=pathlib.Path)
-    parser.add_argument("--size", required=True)
-    parser.add_argument("--samples", type=int, required=True)
-    parser.add_argument("--denoise", action="store_true")
-    parser.add_argument("--begin", type=float, required=True,
-                        help="when the process was started, of time.monotonic()")
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
-    return parser.parse_args()
 
 
 def properties(values):
@@ -85,8 +72,9 @@ def seen_scene(meshes, view, width, height):
     return scene
 
 
-def settings(width, height, samples, denoise):
+def settings(width, height, samples, denoise, seed):
     values = {"renderengine.type": "PATHCPU", "sampler.type": "SOBOL",
+              "renderengine.seed": 1 + seed,
               "native.threads.count": os.cpu_count(), "batch.haltspp": samples,
               "film.width": width, "film.height": height, "film.filter.type": "NONE",
               "path.pathdepth.total": DEPTH, "path.pathdepth.diffuse": DEPTH,
@@ -103,8 +91,8 @@ def settings(width, height, samples, denoise):
     return properties(values)
 
 
-def render(scene, width, height, samples, denoise):
-    configuration = pyluxcore.RenderConfig(settings(width, height, samples, denoise), scene)
+def render(scene, width, height, samples, denoise, seed):
+    configuration = pyluxcore.RenderConfig(settings(width, height, samples, denoise, seed), scene)
     session = pyluxcore.RenderSession(configuration)
     session.Start()
     while not session.HasDone():
@@ -118,15 +106,11 @@ def render(scene, width, height, samples, denoise):
 
 
 def main():
-    options = arguments()
+    options = one_picture.parser(__doc__.splitlines()[0]).parse_args()
     pyluxcore.Init(lambda message: None)
-    width, height = (int(side) for side in options.size.split("x"))
-    meshes, view = read_gltf(options.scene)
-    np.save(options.output, render(seen_scene(meshes, view, width, height), width, height,
-                                   options.samples, options.denoise))
-    print(json.dumps({"first": {"seconds": time.monotonic() - options.begin,
-                                "processor": time.process_time()}}))
-    sys.stdout.flush()
+    scene = seen_scene(*read_gltf(options.scene), *options.size)
+    one_picture.write(options, lambda seed: render(scene, *options.size, options.samples, options.denoise,
+                                                   seed))
     os._exit(0)  # its libraries crash while they are unloaded
 
 

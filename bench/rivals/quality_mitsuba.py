@@ -4,43 +4,26 @@
     bench/rivals/quality_mitsuba.py SCENE --size WxH --samples N [--sampler NAME] [--denoise] [--next]
                              --begin SECONDS -o FILE.npy
 
-Path tracing with the llvm_ad_rgb variant, by default with independent samples; with --denoise Open Image Denoise, led by albedo and normals that are denoised first.
-Writes the first picture, shape (height, width, 3), and prints JSON: the costs of the first picture,
-from the start of the process, and with --next of the next. Costs are wall-clock seconds and processor seconds of
-all threads. Needs the packages mitsuba and, with --denoise, pyoidn.
+Path tracing with the llvm_ad_rgb variant, by default with independent samples; with --denoise Open Image
+Denoise, led by albedo and normals that are denoised first. The output is that of tools/one_picture.py.
+Needs the packages mitsuba and, with --denoise, pyoidn.
 """
 
-import argparse
-import json
 import math
 import os
 import pathlib
-import time
+import sys
 
 import drjit
 import mitsuba
-import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tools import one_picture
 from tools.gltf_meshes import read_gltf
 
 SAMPLES_AT_A_TIME = 64  # of a pixel: bounds the memory of Mitsuba's wavefronts
 VARIANT = "llvm_ad_rgb"
-
-
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("scene", type=pathlib.Path)
-    parser.add_argument("--size", required=True)
-    parser.add_argument("--samples", type=int, required=True)
-    parser.add_argument("--sampler", default="independent", help="plugin of Mitsuba")
-    parser.add_argument("--denoise", action="store_true")
-    parser.add_argument("--next", action="store_true", help="time a second picture, too")
-    parser.add_argument("--begin", type=float, required=True,
-                        help="when the process was started, of time.monotonic()")
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
-    return parser.parse_args()
 
 
 def diffuse(mesh):
@@ -124,20 +107,14 @@ def denoised(colour, albedo, normal):
 
 
 def main():
-    options = arguments()
+    parser = one_picture.parser(__doc__.splitlines()[0])
+    parser.add_argument("--sampler", default="independent", help="plugin of Mitsuba")
+    options = parser.parse_args()
     mitsuba.set_variant(VARIANT)
     drjit.set_thread_count(os.cpu_count())
-    width, height = (int(side) for side in options.size.split("x"))
-    scene = mitsuba_scene(options.scene, width, height, options.sampler)
+    scene = mitsuba_scene(options.scene, *options.size, options.sampler)
     method = integrator(options.denoise)
-    np.save(options.output, render(scene, method, options.samples, 0, options.denoise))
-    first = {"seconds": time.monotonic() - options.begin, "processor": time.process_time()}
-    costs = {"first": first}
-    if options.next:
-        render(scene, method, options.samples, 1, options.denoise)
-        costs["frame"] = {"seconds": time.monotonic() - options.begin - first["seconds"],
-                          "processor": time.process_time() - first["processor"]}
-    print(json.dumps(costs))
+    one_picture.write(options, lambda seed: render(scene, method, options.samples, seed, options.denoise))
 
 
 if __name__ == "__main__":

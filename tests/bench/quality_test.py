@@ -5,15 +5,20 @@ matplotlib or OpenImageIO is not installed.
     tests/bench/quality_test.py
 """
 
+import contextlib
+import io
+import json
 import math
 import pathlib
 import sys
+import tempfile
+import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 try:
-    from tools import gltf_meshes
+    from tools import gltf_meshes, one_picture
     import numpy as np
     from pictures import quality, quality_report
 except (ImportError, SystemExit) as missing:
@@ -65,6 +70,39 @@ class Settings(unittest.TestCase):
         self.assertEqual(quality.neighbours(10_000), 12)
         self.assertEqual(quality.neighbours(640_000), 12 * 16)
         self.assertEqual(quality.neighbours(100), 12)  # k cannot shrink for ever
+
+
+    def test_every_tool_has_a_line_in_the_plots(self):
+        self.assertEqual(list(quality_report.STYLES), list(quality.TOOLS))
+
+
+class OnePicture(unittest.TestCase):
+    def written(self, *more):
+        """Pictures that were rendered, the one in the file and the costs."""
+        seeds, said = [], io.StringIO()
+
+        def render(seed):
+            seeds.append(seed)
+            return np.full((2, 3, 3), float(seed))
+
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(said):
+            options = one_picture.parser("").parse_args(
+                ["room.gltf", "--size", "3x2", "--samples", "1", "--begin", str(time.monotonic() - 7),
+                 "-o", f"{folder}/picture.npy", *more])
+            self.assertEqual(options.size, (3, 2))
+            one_picture.write(options, render)
+            return seeds, np.load(options.output), json.loads(said.getvalue())
+
+    def test_the_first_picture_is_written_and_costs_what_passed_since_the_start(self):
+        seeds, picture, costs = self.written()
+        self.assertEqual((seeds, picture.shape, picture.max()), ([0], (2, 3, 3), 0))
+        self.assertEqual(list(costs), ["first"])
+        self.assertTrue(7 <= costs["first"]["seconds"] < 60)
+
+    def test_a_next_picture_has_another_seed_and_its_own_costs_and_is_not_written(self):
+        seeds, picture, costs = self.written("--next")
+        self.assertEqual((seeds, picture.max()), ([0, 1], 0))
+        self.assertTrue(0 <= costs["frame"]["seconds"] < 7)
 
 
 class Results(unittest.TestCase):
