@@ -97,7 +97,7 @@ def measure(photile, scene, paths, with_default, installed, repeats):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             default = [photile, "render", scene, "--size", SIZE, "-o", folder / "picture.exr"]
-            picture = [*default, "--quality", "draft", "--samples", SAMPLES,
+            picture = [*default, "--set", "light_map_rays=0", "-k", "50", "--samples", SAMPLES,
                        "--photons", str(paths)]
             cache, fresh, maps = folder / "cache", folder / "fresh", folder / "kept.maps"
             cache.mkdir()
