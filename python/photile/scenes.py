@@ -451,6 +451,7 @@ def load(
     environment_rotation: float = 0.0,
     sun: Optional[tuple[float, float, float]] = None,
     sky: Optional[tuple[str, float]] = None,
+    ground: float = 0.0,
     lumen_per_watt: float = _photile.lumen_per_watt,
     progress: _photile.Callback = None,
 ) -> Scene:
@@ -486,6 +487,8 @@ def load(
         Degrees clockwise from north (-z) and above the horizon; lux on a surface that faces it.
     sky : (kind, lux), optional
         "uniform", "overcast" or "clear"; lux on a horizontal surface.
+    ground : float
+        Reflectance of even ground below the horizon, which the sun and the sky light.
     lumen_per_watt : float
         What turns lumens and lux into the watts of an OBJ scene.
     progress : callable, optional
@@ -517,6 +520,7 @@ def load(
         "environment_rotation": environment_rotation,
         "sun": _text(sun, ",") if sun is not None else "",
         "sky": _text(sky, "=") if sky is not None else "",
+        "ground": ground,
         "lumen_per_watt": lumen_per_watt,
     }
     return Scene._of(_photile.load(os.fspath(file), options, progress))

@@ -155,6 +155,7 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
     load.sun = Sun::parse(text);
   if (const auto text = options["sky"].cast<std::string>(); !text.empty())
     load.sky = Sky::parse(text);
+  load.ground = field<double>(options, "ground");
   return run(progress, [&](Progress& told) {
     return std::make_shared<Scene>(loading::load_scene(file, load, told));
   });

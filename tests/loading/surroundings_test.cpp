@@ -14,6 +14,7 @@
 
 #include "pictures/textures.hpp"
 #include "scene_files.hpp"
+#include "trace/distant_light.hpp"
 
 namespace photile::test {
 namespace {
@@ -204,6 +205,25 @@ TEST_CASE("a clear sky needs a sun above the horizon") {
   REQUIRE(scene.lights.size() == 2);
   CHECK(scene.lights[1].name == "sky");
   CHECK(scene.lights[1].power > 0);
+}
+
+TEST_CASE("ground below the horizon sends back its share of the light of sky and sun") {
+  SceneLoadOptions options;
+  options.ground = 0.3;
+  CHECK_THROWS_AS(load_under(options), UsageError);
+  options.sky = Sky{SkyKind::overcast, 10'000};
+  options.sun = Sun{0, 30, 20'000};  // as much on the ground
+  const Scene scene = load_under(options);
+  REQUIRE(scene.lights.size() == 3);
+  REQUIRE(scene.lights[2].name == "ground");
+  const auto radiance_towards = [&](const glm::vec3& direction) {
+    const trace::DistantLights beyond(scene);
+    return scene.lights[2].power * double{beyond[2].radiance(direction).g};
+  };
+  CHECK(radiance_towards({0, -1, 0}) == Approx(0.3 * 20'000 / pi));
+  CHECK(radiance_towards({0.8f, -0.01f, 0.6f}) == Approx(0.3 * 20'000 / pi));
+  CHECK(radiance_towards({0, 1, 0}) == 0);
+  CHECK(radiance_towards({0.8f, 0.01f, 0.6f}) == 0);
 }
 
 TEST_CASE("lux become watts in an OBJ scene, by the luminous efficacy") {

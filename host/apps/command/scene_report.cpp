@@ -144,7 +144,7 @@ const char* kind_name(const Light& light) {
     case LightKind::spot:
       return "spot";
     case LightKind::directional:
-      return light.has_size() ? "sun" : "directional";
+      return light.is_sky_patch() ? "even" : light.has_size() ? "sun" : "directional";
     case LightKind::environment:
       return "environment";
   }
@@ -185,6 +185,20 @@ std::vector<std::string> sky_summary(const LightMix& mix) {
                       format_power_in_lumens(power, mix.lights.front().unit, mix.lumen_per_watt))};
 }
 
+namespace {
+
+/// Whether the scene has a sky of ours without ground.
+bool is_black_below_the_horizon(const Scene& scene) {
+  const auto has = [&](std::string_view name) {
+    return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
+      return light.is_distant() && light.name == name;
+    });
+  };
+  return has("sky") && !has("ground");
+}
+
+}  // namespace
+
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
   const Extents extents = extents_of(scene);
   const glm::dvec3 size = extents.size();
@@ -210,6 +224,9 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
                                 source.empty() ? "" : ", from " + source));
   }
   for (const std::string& line : sky_summary(mix)) lines.push_back(line);
+  if (is_black_below_the_horizon(scene)) {
+    lines.push_back("sky: black below the horizon; --set ground=0.2 puts ground there");
+  }
   for (const MixedLight& group : mix.lights) {
     if (group.members.empty()) continue;
     lines.push_back(

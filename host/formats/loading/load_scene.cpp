@@ -71,6 +71,7 @@ void check_options(const SceneLoadOptions& options) {
   check_value("environment_scale", options.environment.scale, PositiveNumbers{});
   check_value("environment_rotation", options.environment.rotation_degrees, loading::turns);
   check_value("north", options.situation.north_degrees, loading::turns);
+  check_value("ground", options.ground, loading::reflectances);
 }
 
 /// An error about a scene that lacks something. What the import warned about is often the reason: a

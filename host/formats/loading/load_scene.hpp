@@ -17,6 +17,7 @@
 namespace photile::loading {
 
 inline constexpr Numbers turns{-360, 360};  ///< degrees of north, and of surroundings
+inline constexpr Numbers reflectances{0, 1};
 
 /// A scene with the source of each of its lights.
 struct SourcedScene {

@@ -264,6 +264,17 @@ void add_sky(const SkyLight& sky, const SceneLoadOptions& options, Scene& scene)
   check_flux<UsageError>(scene, fmt::format("sky of {:g} lux", sky.illuminance), fewer_lux);
 }
 
+void add_ground(const SkySituationLights& lights, const SceneLoadOptions& options, Scene& scene) {
+  if (lights.sky && lights.sky->kind == SkyKind::patches) return;  // it has a ground
+  double lux = lights.sky ? lights.sky->illuminance : 0.0;
+  if (lights.sun) lux += lights.sun->illuminance * std::max(0.0, direction_to(*lights.sun).y);
+  if (!(lux > 0)) {
+    throw UsageError("ground: nothing lights it; give --sky or --sun, or leave out ground");
+  }
+  weather::add_ground_light(in_scene_unit(options.ground * lux / pi, scene, options), scene);
+  check_flux<UsageError>(scene, fmt::format("ground under {:g} lux", lux), fewer_lux);
+}
+
 }  // namespace
 
 void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
@@ -271,6 +282,7 @@ void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   const SkySituationLights found = sun_and_sky(options);
   if (found.sun) add_sun(*found.sun, options, scene);
   if (found.sky) add_sky(*found.sky, options, scene);
+  if (options.ground > 0) add_ground(found, options, scene);
 }
 
 namespace {

@@ -144,8 +144,13 @@ std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, S
         {patch.azimuth_from + north, patch.azimuth_to + north, patch.sine_from, patch.sine_to},
         scene);
   }
-  add_patch("ground", {0, 2 * pi, -1, 0}, scene);
+  add_ground_light(1, scene);
   return first;
+}
+
+void add_ground_light(double radiance, Scene& scene) {
+  add_patch("ground", {0, 2 * pi, -1, 0}, scene);
+  scene.lights.back().power *= radiance;
 }
 
 std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,

@@ -85,6 +85,9 @@ std::string patch_name(std::size_t patch);
 ///   north   radians clockwise from -z
 std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, Scene& scene);
 
+/// Adds the light "ground" of even ground below the horizon, of this radiance in the scene's unit.
+void add_ground_light(double radiance, Scene& scene);
+
 /// Luminances of these lights, cd/m2, the ground last: those of a Perez sky, the sun in the four
 /// patches nearest to it, and a ground of defaults::ground_reflectance that both light.
 ///   day   of the year, from 1
