@@ -15,7 +15,7 @@ trap 'rm -rf "$outputs"' EXIT
 # The photon estimate alone: few photons for so many neighbours make the dark edges wide, many
 # neighbours make the rest calm.
 for maps in naive triangle; do
-  "$photile" render scenes/cornell-box/cornell-box.gltf --quality draft --set "maps=$maps" \
+  "$photile" render scenes/cornell-box/cornell-box.gltf --set light_map_rays=0 --set "maps=$maps" \
     --size 960x960 --samples 16 --photons 200k --neighbours 1000 --quiet -o "$pictures/$maps.png"
 done
 

@@ -30,7 +30,7 @@ import numpy as np
 
 from tools import picture_error
 
-PANELS = 340  # columns at the left, and
+PANEL = 300  # columns at the left of the picture, and
 READING = 60  # rows at the top and at the foot that others than the picture take
 LOOKS_PER_SECOND = 20
 SCREEN_PATIENCE, REST_PATIENCE = 10, 300  # seconds
@@ -47,7 +47,7 @@ def arguments():
     parser = scene_arguments.parser(__doc__.splitlines()[0])
     parser.add_argument("--only", metavar="NAME", help="this scene alone")
     parser.add_argument("--seconds", type=float, default=10, help="default: %(default)s")
-    parser.add_argument("--size", default="1280x800", help="default: %(default)s")
+    parser.add_argument("--size", default="1280x800", help="of the screen; default: %(default)s")
     parser.add_argument("--film", type=pathlib.Path, metavar="FOLDER",
                         help="where pictures are kept; default: nowhere")
     parser.add_argument("--references", type=pathlib.Path, metavar="FOLDER",
@@ -78,7 +78,7 @@ class Screen:
     def trace(self):
         """Some of its bytes, which tell whether it is another picture."""
         return self.raw[self.begin:self.begin + self.stride * self.height].reshape(
-            self.height, self.stride)[READING:-READING:7, 4 * PANELS:].tobytes()
+            self.height, self.stride)[READING:-READING:7, 4 * PANEL:].tobytes()
 
     def shown(self):
         """RGB, once nobody is writing it."""
@@ -111,13 +111,19 @@ def title_of(screen):
     return found.stdout.strip()
 
 
-def beside_panels(picture):
-    return picture[READING:-READING, PANELS:]
+def picture_size(asked):
+    """Beside the panel, on a screen of this size."""
+    width, height = map(int, asked.size.split("x"))
+    return f"{width - PANEL}x{height}"
+
+
+def clear(picture):
+    return picture[READING:-READING]
 
 
 def sliders(screen):
     """(x, y) of the knobs of the lamps' sliders, from the top."""
-    panel = screen.shown()[:, :PANELS - 60].astype(int)
+    panel = screen.shown()[:, :PANEL - 20].astype(int)
     blue = (panel[..., 2] > 180) & (panel[..., 0] < 100) & (panel[..., 1] > 80) & (panel[..., 1] < 160)
     found = []
     for y in np.flatnonzero(blue[:, 24:204].sum(axis=1) > 3):
@@ -161,7 +167,7 @@ def film(command, scene, options, asked, seconds):
         screen = Screen(asked.size, folder)
         begin = time.monotonic()
         process = subprocess.Popen(
-            [command, "view", scene, "--size", asked.size, "--view", "standard", "--quiet", "--outputs",
+            [command, "view", scene, "--size", picture_size(asked), "--view", "standard", "--quiet", "--outputs",
              folder, *options], env={**os.environ, "DISPLAY": screen.display})
         pictures = []
         trace = screen.trace()
@@ -204,9 +210,10 @@ def linear(shown):
 
 def mottle_of(shown, reference):
     """As picture_error.mottle, at the exposure that fits best, where the screen tells brightness."""
-    own, true = beside_panels(linear(shown)), beside_panels(reference)
-    dark = np.maximum.reduce(shown, axis=2) < 40
-    told = ~(beside_panels(dark) | (beside_panels(shown).max(axis=2) > 250))
+    shown = shown[:, PANEL:]
+    own, true = clear(linear(shown)), clear(reference)
+    brightest = clear(shown).max(axis=2)
+    told = (brightest >= 40) & (brightest <= 250)
     if told.mean() < 0.05:
         return None
     luminance = picture_error.LUMINANCE
@@ -217,9 +224,9 @@ def mottle_of(shown, reference):
 def rendered(asked, name, scene, options):
     """The picture of `photile render`, made once where pictures are kept."""
     with tempfile.TemporaryDirectory() as folder:
-        file = (asked.references or pathlib.Path(folder)) / f"{name.replace(' ', '-')}-{asked.size}.exr"
+        file = (asked.references or pathlib.Path(folder)) / f"{name.replace(' ', '-')}-{picture_size(asked)}.exr"
         if not file.exists():
-            subprocess.run([asked.photile, "render", scene, "--size", asked.size, "--quality", "good",
+            subprocess.run([asked.photile, "render", scene, "--size", picture_size(asked), "--quality", "good",
                             "--samples", "16", "--quiet", "-o", file, *options], check=True)
         return picture_error.read_picture(file)
 

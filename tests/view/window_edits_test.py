@@ -15,7 +15,7 @@ import time
 
 import numpy as np
 
-from window_test import SOURCE, Picture, Window, display_answers, fail, until
+from window_test import PANEL, SOURCE, Picture, Window, display_answers, fail, until
 
 GALLERY = SOURCE / "scenes/gallery"
 SETTINGS = ["--quality", "draft", "--photons", "20k", "--samples", "1", "--quiet"]
@@ -23,7 +23,7 @@ LARGE = ["--size", "420x240"]
 SMALL = ["--size", "160x120"]  # of 145 patches, whose pictures are large
 SITE = ["--site", "52.5,13.4,1"]
 HOURS = [f"2026-06-21T{hour:02}:00" for hour in (4, 5, 6, 7)]  # the sun rises before four
-WALL = (370, 60)  # in the window, right of the panels
+WALL = (PANEL + 370, 60)  # in the window
 
 
 class SmallWindow(Window):

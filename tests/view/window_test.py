@@ -23,11 +23,12 @@ NAME = "cornell-box"
 MOOD = {"photile_moods": 1, "moods": {"dim": {"lamp": {"power": 7, "unit": "lm", "kelvin": 3000}}}}
 SETTINGS = ["--quality", "draft", "--photons", "100k", "--size", "480x360", "--samples", "4", "--quiet"]
 PATIENCE = 120
-# Buttons under "Display", with one lamp, one mood and a line of news.
-PICTURE, ILLUMINANCE = (28, 326), (107, 326)
-# Rows and columns that neither the panel, the reading nor the legend covers.
-BESIDE_PANELS = slice(230, 340), slice(315, 385)
-LAMP_ROWS = 181, 163  # of the only lamp, first under "Lights", with and without a line of news above
+# Buttons under "Display", with one lamp and one mood.
+PICTURE, ILLUMINANCE = (18, 344), (97, 344)
+PANEL = 300  # columns at the left of the picture
+# Rows and columns of the picture that neither the reading nor the legend covers.
+FREE = slice(230, 340), slice(15, 385)
+LAMP_ROW = 198  # of the only lamp, under "Lights"
 
 
 def fail(text):
@@ -58,6 +59,13 @@ class Picture:
     @property
     def rgb(self):
         return self.pixels[:, :, :3]
+
+    def beside_panel(self):
+        """What a screenshot has of the picture."""
+        return self.rgb[:, PANEL:]
+
+    def has_size(self, width, height):
+        return (self.spec.width, self.spec.height) == (width, height)
 
     def position(self):
         """Of the camera, in the world."""
@@ -185,14 +193,14 @@ def shows_illuminance(photile, scene, window):
     """In false colour, the window shows what `render --illuminance` draws left of its legend."""
     drawing = window.folder / "lux.png"
     subprocess.run([photile, "render", scene, "--illuminance", drawing, *SETTINGS], check=True)
-    expected = Picture(drawing).rgb[BESIDE_PANELS]
+    expected = Picture(drawing).rgb[FREE]
     if len(np.unique(expected.reshape(-1, 3), axis=0)) < 100:
         fail("too few colours to compare")
 
     def shown():
         window.click(*ILLUMINANCE)
         shot = window.keep("F12", "screenshot-*.png")
-        return np.abs(shot.rgb[BESIDE_PANELS] - expected).max() < 0.5 / 255
+        return np.abs(shot.beside_panel()[FREE] - expected).max() < 0.5 / 255
     until(shown, "the picture of illuminance")
     window.click(*PICTURE)
 
@@ -232,18 +240,18 @@ def main():
         if not np.array_equal(kept.pixels, expected.pixels):
             fail("the kept picture is not the rendered one")
 
-        window.press("F2")  # no panels
-        time.sleep(1)
         shot = window.keep("F12", "screenshot-*.png")
-        if not same_exposure(shot.rgb, kept.rgb):
+        if not same_exposure(shot.beside_panel(), kept.rgb):
             fail("the window does not show the picture")
-        window.hand("mousemove", 400, 200, "click", 1)
-        time.sleep(1)
+        window.press("F2")  # no panel
+        window.picture_when(lambda each: each.has_size(480 + PANEL, 360), "a picture without a panel")
         window.press("F2")
+        window.picture_when(lambda each: each.has_size(480, 360), "the picture beside the panel")
+        window.hand("mousemove", PANEL + 400, 200, "click", 1)
         time.sleep(1)
-        with_panels = window.keep("F12", "screenshot-*.png")
+        with_reading = window.keep("F12", "screenshot-*.png")
         right_top = (slice(0, 60), slice(160, 470))
-        if np.allclose(with_panels.rgb[right_top], shot.rgb[right_top]):
+        if np.allclose(with_reading.beside_panel()[right_top], shot.beside_panel()[right_top]):
             fail("a click shows no reading")
 
         shows_illuminance(photile, scene, window)
@@ -260,17 +268,14 @@ def main():
         # The temperature beside the slider of the lamp, dragged from 6500 K. (Where it is missed,
         # nothing is dragged.)
         def coloured():
-            for y in LAMP_ROWS:
-                window.drag((260, y), (200, y))
-                if window.keep("ctrl+s", "view-*.exr").lamp()["tint"] != [1, 1, 1]:
-                    return True
-            return False
+            window.drag((250, LAMP_ROW), (190, LAMP_ROW))
+            return window.keep("ctrl+s", "view-*.exr").lamp()["tint"] != [1, 1, 1]
         until(coloured, "the temperature")
 
         # The mood that was there, under "Moods": its button "to scene".
         written = folder / f"{NAME}.dim.gltf"
         def clicked_to_scene():
-            window.click(87, 258)
+            window.click(77, 275)
             return written.exists()
         until(clicked_to_scene, "the copy of the scene")
         facts = subprocess.run([photile, "info", written, "--json"], text=True, check=True,
@@ -281,21 +286,15 @@ def main():
 
         # The slider of the lamp, all the way to the left.
         def darkened():
-            for y in LAMP_ROWS:
-                window.drag((150, y), (12, y))
-                picture = window.keep("ctrl+s", "view-*.exr")
-                if picture.lamp()["power"] == 0:
-                    return picture
-            return None
+            window.drag((140, LAMP_ROW), (2, LAMP_ROW))
+            picture = window.keep("ctrl+s", "view-*.exr")
+            return picture if picture.lamp()["power"] == 0 else None
         dark = until(darkened, "the slider")
         if dark.rgb.max() != 0:
             fail("a lamp of 0 lm gives light")
 
-        window.hand("windowsize", window.id, 400, 300)
-        time.sleep(1)
-        resized = window.picture_when(lambda each: (each.spec.width, each.spec.height) ==
-                                      (400, 300), "a picture of the new size")
-        del resized
+        window.hand("windowsize", window.id, 400 + PANEL, 300)
+        window.picture_when(lambda each: each.has_size(400, 300), "a picture of the new size")
 
         window.close()
     print("walked, clicked, dragged, resized, closed")

@@ -94,6 +94,7 @@ void run_view(ViewOptions& options) {
   parameters.frames_per_second = options.frames_per_second;
   parameters.outputs = options.outputs;
   parameters.view = options.view;
+  parameters.fills_screen = render.size.empty();
   parameters.white_balance = render.pictures.white_balance;
   parameters.moods = render.mood.file;
   parameters.prepared = load_maps(scene, render, progress);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "photile/errors.hpp"
+#include "view/picture_area.hpp"
 
 namespace photile::view {
 
@@ -75,24 +76,17 @@ namespace {
 constexpr double step_degrees = 15;
 constexpr double on_surface = 0.02;  ///< metres: an opening may lie so far behind what is met first
 
-/// Through the pointer, of a picture that fills the window.
-glm::dvec3 direction_at_pointer(const Camera& camera) {
-  const ImGuiIO& io = ImGui::GetIO();
-  return camera.direction(static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y),
-                          static_cast<int>(io.DisplaySize.x), static_cast<int>(io.DisplaySize.y));
-}
-
 void draw_opening(const loading::PlacedLuminaires& lamps, const glm::dvec3& middle,
                   const Camera& camera, ImU32 colour, float width) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const PictureArea area = PictureArea::now();
   std::array<ImVec2, 4> corners;
   constexpr std::array<glm::dvec2, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const glm::dvec2 along = 0.5 * signs[i] * lamps.opening;
-    const auto place = project(camera, middle + along.x * lamps.axes[0] + along.y * lamps.axes[1],
-                               static_cast<int>(size.x), static_cast<int>(size.y));
-    if (!place) return;
-    corners[i] = ImVec2(static_cast<float>(place->x), static_cast<float>(place->y));
+    const auto corner =
+        area.shown(camera, middle + along.x * lamps.axes[0] + along.y * lamps.axes[1]);
+    if (!corner) return;
+    corners[i] = *corner;
   }
   ImGui::GetBackgroundDrawList()->AddPolyline(corners.data(), static_cast<int>(corners.size()),
                                               colour, ImDrawFlags_Closed, width);
@@ -123,7 +117,7 @@ bool LuminaireTool::drag(const Camera& camera) {
     held_.reset();
     return false;
   }
-  const glm::dvec3 direction = direction_at_pointer(camera);
+  const glm::dvec3 direction = PictureArea::now().direction(camera, io.MousePos);
   if (!held_) {
     if (io.WantCaptureMouse || placing_ || !ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
       return false;

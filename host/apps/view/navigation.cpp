@@ -93,15 +93,10 @@ bool Navigation::update(Viewpoint& viewpoint, bool left_taken) {
   return moved;
 }
 
-bool Navigation::clicked(double& x, double& y) const {
+bool Navigation::clicked() const {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return false;
-  if (io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] > click_tremble * click_tremble) {
-    return false;
-  }
-  x = static_cast<double>(io.MousePos.x);
-  y = static_cast<double>(io.MousePos.y);
-  return true;
+  return io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] <= click_tremble * click_tremble;
 }
 
 }  // namespace photile::view

@@ -39,8 +39,8 @@ class Navigation {
   ///   left_taken   the left button drags something else
   bool update(Viewpoint& viewpoint, bool left_taken = false);
 
-  /// Whether a click, no drag, ended in this frame; where.
-  bool clicked(double& x, double& y) const;
+  /// Whether a click, no drag, ended in this frame.
+  bool clicked() const;
 
   double& speed() { return speed_; }
 

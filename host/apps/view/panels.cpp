@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>  // BeginViewportSideBar
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,6 @@ namespace photile::view {
 namespace {
 
 // Sizes in pixels.
-constexpr float panel_width = 300;
 constexpr float label_width = 75;  ///< right of inputs
 
 template <class Value, std::size_t count>
@@ -50,11 +50,16 @@ std::string time_text(float milliseconds) {
                              : fmt::format("{:.1f} s", milliseconds / 1000);
 }
 
+/// In place of a bar, so that what is below stays where it is.
+void leave_line() { ImGui::Dummy(ImVec2(0, ImGui::GetFrameHeight())); }
+
 void draw_frame_times(const PanelReadings& readings) {
   const Frame* frame = readings.frame;
   if (frame) {
     ImGui::Text("%d x %d, %d samples, %.3gM paths", frame->layers.width, frame->layers.height,
                 frame->samples_per_pixel, static_cast<double>(frame->emitted_photons) / 1e6);
+  } else {
+    ImGui::TextUnformatted("");
   }
   const std::vector<float> times(readings.frame_milliseconds.begin(),
                                  readings.frame_milliseconds.end());
@@ -67,11 +72,21 @@ void draw_frame_times(const PanelReadings& readings) {
                                : static_cast<double>(frame->samples_per_pixel) /
                                      static_cast<double>(readings.most_samples);
     ImGui::ProgressBar(static_cast<float>(share), ImVec2(-1, 0), fills ? "light" : "samples");
+  } else {
+    leave_line();
   }
   if (!readings.work.stage.empty()) {
     ImGui::ProgressBar(static_cast<float>(readings.work.share), ImVec2(-1, 0),
                        readings.work.stage.c_str());
+  } else {
+    leave_line();
   }
+}
+
+/// On one line, and whole where the pointer is over it.
+void draw_message(const std::string& message) {
+  ImGui::TextUnformatted(message.c_str());
+  if (!message.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", message.c_str());
 }
 
 /// What reaches the clicked place, and the list of all.
@@ -107,14 +122,11 @@ std::string text_of(const Measured& measured) {
 
 PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
   PanelEvents events;
-  ImGui::SetNextWindowPos(ImVec2(border, border), ImGuiCond_FirstUseEver);
-  // The panel is as high as what it shows, and scrolled where the window is not.
-  const float most = std::max(panel_width, ImGui::GetIO().DisplaySize.y - 2 * border);
-  ImGui::SetNextWindowSizeConstraints(ImVec2(panel_width, 0), ImVec2(panel_width, most));
-  if (ImGui::Begin("photile", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+  if (ImGui::BeginViewportSideBar("photile", ImGui::GetMainViewport(), ImGuiDir_Left, panel_width,
+                                  ImGuiWindowFlags_None)) {
     ImGui::PushItemWidth(-label_width);
     draw_frame_times(readings);
-    if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
+    draw_message(state.message);
     events.lights_changed |= draw_daylight(state);
     draw_luminaires(state, readings, events);
     events.lights_changed |= draw_lights(state);

@@ -17,6 +17,9 @@
 
 namespace photile::view {
 
+/// Of the panel that is docked beside the picture, in the units of the screen.
+inline constexpr int panel_width = 300;
+
 /// What a click on the picture asked for.
 struct Probe {
   double x = 0, y = 0;  ///< in the picture, as shares of its width and height

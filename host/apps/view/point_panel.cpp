@@ -8,7 +8,7 @@
 #include "photile/errors.hpp"
 #include "report/tables.hpp"
 #include "view/panels.hpp"
-#include "view/photon_map.hpp"
+#include "view/picture_area.hpp"
 
 namespace photile::view {
 namespace {
@@ -52,15 +52,13 @@ void draw_settings(PointSettings& settings) {
 void draw_point_markers(const PanelState& state, const Frame* frame) {
   if (!frame) return;
   ImDrawList* list = ImGui::GetBackgroundDrawList();
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const PictureArea area = PictureArea::now();
   for (const ClickedPoint& point : state.points) {
-    const auto place = project(frame->camera, position_in_scene(state.scene, point.position),
-                               static_cast<int>(size.x), static_cast<int>(size.y));
-    if (!place) continue;
-    const ImVec2 middle(static_cast<float>(place->x), static_cast<float>(place->y));
-    list->AddCircle(middle, marker_radius, IM_COL32(0, 0, 0, 255), 0, 3);
-    list->AddCircle(middle, marker_radius, IM_COL32(255, 255, 255, 255), 0, 1.5f);
-    list->AddText(ImVec2(middle.x + marker_radius + line_gap, middle.y - marker_radius),
+    const auto middle = area.shown(frame->camera, position_in_scene(state.scene, point.position));
+    if (!middle) continue;
+    list->AddCircle(*middle, marker_radius, IM_COL32(0, 0, 0, 255), 0, 3);
+    list->AddCircle(*middle, marker_radius, IM_COL32(255, 255, 255, 255), 0, 1.5f);
+    list->AddText(ImVec2(middle->x + marker_radius + line_gap, middle->y - marker_radius),
                   IM_COL32(255, 255, 255, 255), std::to_string(point.number).c_str());
   }
 }

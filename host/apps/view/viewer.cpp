@@ -20,6 +20,7 @@
 #include "view/panels.hpp"
 #include "view/photon_map.hpp"
 #include "view/photon_worker.hpp"
+#include "view/picture_area.hpp"
 #include "view/point_worker.hpp"
 #include "view/settings_history.hpp"
 #include "view/snapshots.hpp"
@@ -38,6 +39,13 @@ constexpr std::size_t frames_in_graph = 120;
 /// A part of the scene's size that is walked in a second, and that lies ahead when orbiting.
 constexpr double walked_share = 0.15, orbit_share = 0.3;
 
+/// So that the picture beside the panel has the size that is asked for.
+std::optional<WindowSize> opening_size(const ViewerParameters& parameters) {
+  if (parameters.fills_screen) return std::nullopt;
+  const Film& film = parameters.render.film;
+  return WindowSize{film.width + panel_width, film.height};
+}
+
 class Viewer {
  public:
   Viewer(const Scene& scene, const Camera& camera, const LightMix& mix,
@@ -51,7 +59,7 @@ class Viewer {
         navigation_(walked_share * bounding_sphere(scene).radius,
                     orbit_share * bounding_sphere(scene).radius),
         window_(fmt::format("{} - photile", scene.source.filename().string()),
-                parameters_.render.film.width, parameters_.render.film.height),
+                opening_size(parameters_)),
         points_(scene_),
         year_(parameters_.measure_year),
         frames_(parameters_.render.film.samples_per_pixel, parameters_.frames_per_second),
@@ -218,7 +226,7 @@ class Viewer {
     const bool moved = navigation_.update(viewpoint_, lamps_held);
     if (moved) last_motion_ = now;
     const bool moving = last_motion_ && now - *last_motion_ < settling_seconds;
-    const int width = window_.width(), height = window_.height();
+    const int width = window_.picture_width(), height = window_.picture_height();
     const bool reflections = display_.mode == DisplayMode::glare;
     const bool sky_moved = std::exchange(sky_moved_, false);
     if (moved || sky_moved || moving != was_moving_ || reflections != had_reflections_ ||
@@ -230,11 +238,10 @@ class Viewer {
       asked_width_ = width;
       asked_height_ = height;
     }
-    double x = 0, y = 0;
-    clicked_ = navigation_.clicked(x, y);
+    clicked_ = navigation_.clicked();
     if (clicked_) {
-      const ImVec2 size = ImGui::GetIO().DisplaySize;
-      probe_ = Probe{x / static_cast<double>(size.x), y / static_cast<double>(size.y)};
+      const glm::dvec2 shares = PictureArea::now().shares(ImGui::GetIO().MousePos);
+      probe_ = Probe{shares.x, shares.y};
     }
   }
 
@@ -242,8 +249,8 @@ class Viewer {
     // Layers are needed for all but the picture itself.
     const bool quick = display_.mode == DisplayMode::picture && !display_.photon_map;
     return {viewpoint_.camera(),
-            window_.width(),
-            window_.height(),
+            window_.picture_width(),
+            window_.picture_height(),
             moving,
             display_.mode == DisplayMode::glare,
             relit,
@@ -262,9 +269,8 @@ class Viewer {
   void take_click() {
     if (!clicked_ || display_.photon_map || !frame_ || !probe_) return;
     const auto place = inspector_->surface_at(*frame_, probe_->x, probe_->y);
-    const int width = window_.width(), height = window_.height();
     const glm::dvec3 direction =
-        frame_->camera.direction(probe_->x * width, probe_->y * height, width, height);
+        PictureArea::now().direction(frame_->camera, ImGui::GetIO().MousePos);
     if (luminaires_ && luminaires_->click(frame_->camera, direction, place, message_)) {
       probe_.reset();
     } else if (place) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "photile/errors.hpp"
+#include "view/picture_area.hpp"
 
 namespace photile::view {
 namespace {
@@ -25,6 +26,17 @@ ImTextureID id_of(GLuint texture) {
   return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));
 }
 
+WindowSize most_of_the_screen() {
+  constexpr int part = 8, of = 10;
+  constexpr WindowSize usual{1280, 800};
+  GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+  if (!monitor) return usual;
+  WindowSize free;
+  glfwGetMonitorWorkarea(monitor, nullptr, nullptr, &free.width, &free.height);
+  if (free.width <= 0 || free.height <= 0) return usual;
+  return {free.width * part / of, free.height * part / of};
+}
+
 void set_style() {
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 5;
@@ -36,14 +48,15 @@ void set_style() {
 
 /// GLFW, its window and what is drawn with, released in reverse order.
 struct Window::Impl {
-  Impl(const std::string& title, int width, int height) {
+  Impl(const std::string& title, const std::optional<WindowSize>& asked) {
     if (!glfwInit()) {
       throw DeviceError(fmt::format(
           "no window can be opened ({}); set DISPLAY, or use photile render or walk", reason()));
     }
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
-    handle = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    const WindowSize size = asked.value_or(most_of_the_screen());
+    handle = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
     if (!handle) {
       const std::string why = reason();
       glfwTerminate();
@@ -76,8 +89,8 @@ struct Window::Impl {
   bool has_picture = false;
 };
 
-Window::Window(const std::string& title, int width, int height)
-    : impl_(std::make_unique<Impl>(title, width, height)) {}
+Window::Window(const std::string& title, const std::optional<WindowSize>& size)
+    : impl_(std::make_unique<Impl>(title, size)) {}
 
 Window::~Window() = default;
 
@@ -94,8 +107,9 @@ void Window::begin_frame(double longest_wait) {
   ImGui::NewFrame();
   // Before all that is drawn over it.
   if (impl_->has_picture) {
-    ImGui::GetBackgroundDrawList()->AddImage(id_of(impl_->texture), ImVec2(0, 0),
-                                             ImGui::GetIO().DisplaySize);
+    const auto [corner, size] = PictureArea::now();
+    ImGui::GetBackgroundDrawList()->AddImage(id_of(impl_->texture), corner,
+                                             ImVec2(corner.x + size.x, corner.y + size.y));
   }
 }
 
@@ -123,6 +137,14 @@ int Window::height() const {
   int height = 0;
   glfwGetFramebufferSize(impl_->handle, nullptr, &height);
   return height;
+}
+
+int Window::picture_width() const {
+  return static_cast<int>(PictureArea::now().size.x * ImGui::GetIO().DisplayFramebufferScale.x);
+}
+
+int Window::picture_height() const {
+  return static_cast<int>(PictureArea::now().size.y * ImGui::GetIO().DisplayFramebufferScale.y);
 }
 
 void Window::set_picture(int width, int height, std::span<const std::uint8_t> rgb) {

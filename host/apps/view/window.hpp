@@ -3,17 +3,25 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace photile::view {
 
-/// One window with one picture that fills it. Used from the main thread alone.
+/// In the units of the screen.
+struct WindowSize {
+  int width = 0, height = 0;
+};
+
+/// One window with one picture, which fills what no panel is docked to. Used from the main thread
+/// alone.
 class Window {
  public:
+  ///   size   none = most of the screen
   /// Errors: DeviceError when there is no display or no OpenGL 3.
-  Window(const std::string& title, int width, int height);
+  Window(const std::string& title, const std::optional<WindowSize>& size);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -30,11 +38,14 @@ class Window {
 
   void set_title(const std::string& title);
 
-  /// The size of the picture area, in pixels.
+  /// The size of the window, in pixels.
   int width() const;
   int height() const;
+  /// The size of the picture beside the panel, in pixels, within a frame.
+  int picture_width() const;
+  int picture_height() const;
 
-  /// What fills the window from the next frame on: sRGB texels, row 0 at the top; stretched.
+  /// What fills that from the next frame on: sRGB texels, row 0 at the top; stretched.
   void set_picture(int width, int height, std::span<const std::uint8_t> rgb);
 
   /// All that the window is about to show, between draw_frame and show_frame: sRGB texels of
