@@ -49,24 +49,24 @@ window() {
 }
 
 # A click reads the light on the table, another shows illuminance.
-window "16 of 16 samples, 0.5M" 2 "407 512" "108 506" -- \
+window "16 of 16 samples, 0.5M" 2 "707 512" "98 523" -- \
   scenes/living-room/living-room.gltf --size 960x720 --quality good
 mv "$outputs/screenshot-0001.png" "$pictures/view.png"
 mv "$outputs/screenshot-0002.png" "$pictures/view-illuminance.png"
 
 # The photon map of a triangle of the right wall: few photons, so that they can be told apart.
-window "1 of 1 samples, 0.03M" 1 "27 310" "720 495" -- \
+window "1 of 1 samples, 0.03M" 1 "17 344" "1020 495" -- \
   scenes/cornell-box/cornell-box-specular.gltf --size 960x720 --samples 1 --photons 30k
 mv "$outputs/screenshot-0001.png" "$pictures/photon-map.png"
 
 # The sun of a morning in a room without lamps; the click is on the panel.
-window "4 of 4 samples, 0.5M" 1 "250 255" -- scenes/gallery/sun-and-sky.gltf --size 960x720 --samples 4 \
+window "4 of 4 samples, 0.5M" 1 "150 120" -- scenes/gallery/sun-and-sky.gltf --size 960x720 --samples 4 \
   --quality good --site 52.5,13.4,1 --time 2026-06-21T09:00
 mv "$outputs/screenshot-0001.png" "$pictures/view-daylight.png"
 
 # The same room with a lamp that two clicks place, on "place" and under the ceiling.
 cp scenes/gallery/downlight.ies "$outputs"
-window "4 of 4 samples, 0.5M" 1 "38 165" "480 25" "250 165" -- scenes/gallery/sun-and-sky.gltf \
+window "4 of 4 samples, 0.5M" 1 "28 198" "780 25" "150 120" -- scenes/gallery/sun-and-sky.gltf \
   --size 960x720 --samples 4 --quality good --luminaires "$outputs/lamps.json"
 mv "$outputs/screenshot-0001.png" "$pictures/view-luminaires.png"
 
