@@ -46,8 +46,9 @@ bool draw_maps(RenderParameters& parameters) {
 }
 
 std::string time_text(float milliseconds) {
-  return milliseconds < 1000 ? fmt::format("{:.1f} ms", milliseconds)
-                             : fmt::format("{:.1f} s", milliseconds / 1000);
+  return milliseconds < 1000
+             ? fmt::format("{:.1f} ms, {:.1f} frames a second", milliseconds, 1000 / milliseconds)
+             : fmt::format("{:.1f} s", milliseconds / 1000);
 }
 
 /// In place of a bar, so that what is below stays where it is.
