@@ -32,6 +32,7 @@ from tools import picture_error
 
 PANEL = 300  # columns at the left of the picture, and
 READING = 60  # rows at the top and at the foot that others than the picture take
+KNOBS = slice(14, 194)  # columns of the sliders of lamps
 LOOKS_PER_SECOND = 20
 SCREEN_PATIENCE, REST_PATIENCE = 10, 300  # seconds
 CASES = (  # name, scene, options
@@ -126,9 +127,9 @@ def sliders(screen):
     panel = screen.shown()[:, :PANEL - 20].astype(int)
     blue = (panel[..., 2] > 180) & (panel[..., 0] < 100) & (panel[..., 1] > 80) & (panel[..., 1] < 160)
     found = []
-    for y in np.flatnonzero(blue[:, 24:204].sum(axis=1) > 3):
+    for y in np.flatnonzero(blue[:, KNOBS].sum(axis=1) > 3):
         if not found or y > found[-1][1] + 12:
-            found.append((24 + int(np.flatnonzero(blue[y, 24:204]).mean()), int(y) + 4))
+            found.append((KNOBS.start + int(np.flatnonzero(blue[y, KNOBS]).mean()), int(y) + 4))
     return found
 
 
@@ -149,7 +150,7 @@ def seconds_to_follow(screen):
         time.sleep(0.5)
         before = brightness(screen)
         begin = time.monotonic()
-        screen.mouse("mousemove", 22 if jump % 2 == 0 else x, y)
+        screen.mouse("mousemove", KNOBS.start if jump % 2 == 0 else x, y)
         begin = (begin + time.monotonic()) / 2  # xdotool takes some milliseconds itself
         while abs(brightness(screen) - before) < 1:
             if time.monotonic() > begin + SCREEN_PATIENCE:

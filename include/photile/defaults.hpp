@@ -151,9 +151,11 @@ inline constexpr std::uint64_t exchange_round_bytes = std::uint64_t{1} << 24;
 inline constexpr int rank_patience =
     120;  ///< seconds without a sign of a rank, after which all end
 
+// Trade
+inline constexpr int trade_neighbours = 200;  ///< others around them are tried, too
+
 // Validation: readings whose noise leaves room for the tolerance of 1%
 inline constexpr std::uint64_t validation_photons = 4'000'000;  ///< of each of 16 seeds
-inline constexpr int trade_neighbours = 200;  ///< others around them are tried, too
 inline constexpr int validation_neighbours = 1'000;
 inline constexpr int validation_paths = 500'000;  ///< of each seed, over the sensors of a case
 

@@ -210,7 +210,9 @@ TEST_CASE("a clear sky needs a sun above the horizon") {
 TEST_CASE("ground below the horizon sends back its share of the light of sky and sun") {
   SceneLoadOptions options;
   options.ground = 0.3;
-  CHECK_THROWS_AS(load_under(options), UsageError);
+  CHECK_THROWS_WITH(load_under(options), Catch::Contains("ground: nothing lights it"));
+  options.sky = Sky::parse("patches=145");
+  CHECK_THROWS_WITH(load_under(options), Catch::Contains("ground: a sky of patches has ground"));
   options.sky = Sky{SkyKind::overcast, 10'000};
   options.sun = Sun{0, 30, 20'000};  // as much on the ground
   const Scene scene = load_under(options);

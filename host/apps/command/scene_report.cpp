@@ -144,7 +144,8 @@ const char* kind_name(const Light& light) {
     case LightKind::spot:
       return "spot";
     case LightKind::directional:
-      return light.is_sky_patch() ? "even" : light.has_size() ? "sun" : "directional";
+      if (!light.is_sky_patch()) return light.has_size() ? "sun" : "directional";
+      [[fallthrough]];
     case LightKind::environment:
       return "environment";
   }

@@ -135,6 +135,8 @@ void add_view_command(CLI::App& photile) {
   add_view_option(window, options->view);
   add_picture_settings(*command, options->render,
                        {white_balance_setting(options->render.pictures)});
+  command->get_option("--size")->description(
+      "pixels of the picture; default: the window takes most of the screen");
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });
 }

@@ -84,12 +84,6 @@ void draw_frame_times(const PanelReadings& readings) {
   }
 }
 
-/// On one line, and whole where the pointer is over it.
-void draw_message(const std::string& message) {
-  ImGui::TextUnformatted(message.c_str());
-  if (!message.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", message.c_str());
-}
-
 /// What reaches the clicked place, and the list of all.
 void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
   draw_point_markers(state, frame);
@@ -127,7 +121,7 @@ PanelEvents draw_panels(PanelState& state, const PanelReadings& readings) {
                                   ImGuiWindowFlags_None)) {
     ImGui::PushItemWidth(-label_width);
     draw_frame_times(readings);
-    draw_message(state.message);
+    ImGui::TextWrapped("%s", state.message.c_str());  // a line where there is none
     events.lights_changed |= draw_daylight(state);
     draw_luminaires(state, readings, events);
     events.lights_changed |= draw_lights(state);

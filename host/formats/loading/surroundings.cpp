@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "pictures/textures.hpp"
@@ -265,7 +266,11 @@ void add_sky(const SkyLight& sky, const SceneLoadOptions& options, Scene& scene)
 }
 
 void add_ground(const SkySituationLights& lights, const SceneLoadOptions& options, Scene& scene) {
-  if (lights.sky && lights.sky->kind == SkyKind::patches) return;  // it has a ground
+  if (lights.sky && lights.sky->kind == SkyKind::patches) {
+    throw UsageError(fmt::format(
+        "ground: a sky of patches has ground of {:g} below the horizon; leave out ground",
+        defaults::ground_reflectance));
+  }
   double lux = lights.sky ? lights.sky->illuminance : 0.0;
   if (lights.sun) lux += lights.sun->illuminance * std::max(0.0, direction_to(*lights.sun).y);
   if (!(lux > 0)) {

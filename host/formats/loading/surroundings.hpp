@@ -47,7 +47,7 @@ glm::dvec3 direction_to(const Sun& sun);
 /// Adds the lights "environment", "sun", "sky" and "ground" that the options ask for; triangles must
 /// be there. Errors: InputError for a picture that is missing, malformed, not in floating point, black
 /// or has texels that are NaN, infinite or negative; UsageError for a clear sky without a sun above
-/// the horizon, and for a ground that nothing lights.
+/// the horizon, and for a ground that nothing lights or that patches have.
 void add_surroundings(Scene& scene, const SceneLoadOptions& options);
 
 // The sky of another hour for a picture whose sky is patches.

@@ -90,8 +90,10 @@ bool is_out_of_memory(int status) {
 }
 
 void throw_status(cl_int status, std::string_view call, std::string_view detail) {
-  throw DeviceError(fmt::format("{} failed: {}{}{}", call, status_name(status),
-                                detail.empty() ? "" : "; ", detail),
+  // A buffer may be too large for a device that has memory left.
+  const bool no_memory = is_out_of_memory(status) && status != CL_INVALID_BUFFER_SIZE;
+  throw DeviceError(fmt::format("{} failed: {}{}{}{}", call, no_memory ? "out of memory, " : "",
+                                status_name(status), detail.empty() ? "" : "; ", detail),
                     status);
 }
 
