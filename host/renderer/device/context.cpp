@@ -88,9 +88,9 @@ void Context::Impl::check(cl_int status, std::string_view call, const std::strin
   if (status == CL_SUCCESS) return;
   if (!is_out_of_memory(status)) throw_status(status, call, what);
   throw DeviceMemoryError(
-      fmt::format("{} failed: {}; {}; '{}' allows {} bytes a buffer and {} {} bytes of memory, {} "
+      fmt::format("{}; {}; '{}' allows {} bytes a buffer and {} {} bytes of memory, {} "
                   "bytes are in use; use {}",
-                  call, status_name(status), what, info.name, info.max_allocation_bytes,
+                  failure_text(call, status), what, info.name, info.max_allocation_bytes,
                   limited ? "may use" : "has", memory_limit, memory->live.load(),
                   limited ? "a larger memory limit, fewer photons or a smaller radius"
                           : "fewer photons or a smaller radius"),

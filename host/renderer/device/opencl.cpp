@@ -84,17 +84,22 @@ const char* name_of(int status) {
 
 std::string status_name(int status) { return fmt::format("{} ({})", name_of(status), status); }
 
+std::string failure_text(std::string_view call, int status) {
+  // A buffer may be too large for a device that has memory left.
+  const bool no_memory = is_out_of_memory(status) && status != CL_INVALID_BUFFER_SIZE;
+  return fmt::format("{} failed: {}{}", call, no_memory ? "out of memory, " : "",
+                     status_name(status));
+}
+
 bool is_out_of_memory(int status) {
   return status == CL_MEM_OBJECT_ALLOCATION_FAILURE || status == CL_OUT_OF_RESOURCES ||
          status == CL_OUT_OF_HOST_MEMORY || status == CL_INVALID_BUFFER_SIZE;
 }
 
 void throw_status(cl_int status, std::string_view call, std::string_view detail) {
-  // A buffer may be too large for a device that has memory left.
-  const bool no_memory = is_out_of_memory(status) && status != CL_INVALID_BUFFER_SIZE;
-  throw DeviceError(fmt::format("{} failed: {}{}{}{}", call, no_memory ? "out of memory, " : "",
-                                status_name(status), detail.empty() ? "" : "; ", detail),
-                    status);
+  throw DeviceError(
+      fmt::format("{}{}{}", failure_text(call, status), detail.empty() ? "" : "; ", detail),
+      status);
 }
 
 std::string device_text(cl_device_id device, cl_device_info name) {

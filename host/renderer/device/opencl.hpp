@@ -18,6 +18,9 @@ namespace photile::device {
 /// define.
 std::string status_name(int status);
 
+/// "clFinish failed: out of memory, CL_OUT_OF_RESOURCES (-5)".
+std::string failure_text(std::string_view call, int status);
+
 /// True for the codes by which a runtime says that memory ran out or a buffer is too large.
 bool is_out_of_memory(int status);
 
