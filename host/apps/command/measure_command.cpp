@@ -15,6 +15,7 @@
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/report_contents.hpp"
+#include "command/scene_report.hpp"
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"

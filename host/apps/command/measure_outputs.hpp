@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command/output_files.hpp"
+#include "command/report_contents.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/working_plane.hpp"

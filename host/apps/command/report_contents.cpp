@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "command/output_files.hpp"
 #include "command/scene_report.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/ascii_text.hpp"
