@@ -6,8 +6,10 @@
 #include <atomic>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/value_range.hpp"
 #include "photile/defaults.hpp"
@@ -16,10 +18,12 @@
 #include "photile/limits.hpp"
 #include "photile/photons.hpp"
 #include "photile/statistics.hpp"
+#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
+#include "trace/weight_windows.hpp"
 
 namespace photile::trace {
 
@@ -48,59 +52,151 @@ glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& bef
   return u < survival ? after / survival : glm::vec3(0.0f);
 }
 
+/// Walks that one becomes at a surface, at most, and all of a path: more would know little more.
+constexpr int most_copies = 16;
+constexpr std::uint32_t most_branches = 4096;
+
+/// Light on its way.
+struct Walk {
+  RandomStream random;
+  glm::vec3 origin, direction, flux;
+  int bounce = 1;  ///< of the surface that it comes to next
+  std::uint32_t cutouts = 0;
+  bool unscattered = true;  ///< but for panes and cutouts, which sampling lights sees through
+  bool specular = true;     ///< scattered by mirrors and glass alone, if at all
+};
+
+/// `walk` after the surface where it arrived; nothing where it ended there.
+std::optional<Walk> scattered(const PathSetup& setup, const SurfacePoint& point, bool opaque,
+                              Walk walk, PathRecord& record) {
+  const Scene& scene = *setup.rays->scene;
+  const RandomBlock numbers = walk.random.block(Purpose::photon_scattering, walk.bounce);
+  const std::optional<Scattered> scattered =
+      opaque ? scatter_opaque(scene, point, walk.direction, numbers)
+             : scatter_specular(scene, point, walk.direction, numbers.uniform(choice_word));
+  glm::vec3 left(0.0f);
+  if (scattered) {
+    left = play_roulette(setup, walk.bounce, walk.flux, walk.flux * scattered->weight,
+                         numbers.uniform(roulette_word));
+  }
+  if (!(largest(left) > 0.0f)) {
+    record.absorbed += luminance_of(walk.flux);
+    return std::nullopt;
+  }
+  record.absorbed += luminance_of(walk.flux) - luminance_of(left);
+  walk.unscattered = walk.unscattered && !opaque && scattered->direction == walk.direction &&
+                     material_of(scene, point).thin;
+  walk.specular = walk.specular && !opaque;
+  walk.flux = left;
+  walk.direction = scattered->direction;
+  walk.origin = point.origin_towards(walk.direction);
+  ++walk.bounce;
+  return walk;
+}
+
+enum WindowWord { store_word = 0, copies_word = 1, survival_word = 2 };
+
+/// The weight of a photon that has landed, and that which it is to have there.
+struct Weighed {
+  float weight, window;
+};
+
+std::optional<Weighed> weighed(const PathSetup& setup, const SurfacePoint& point,
+                               const glm::vec3& flux) {
+  const std::optional<float> window = setup.windows->at(point.position, point.normal);
+  if (!window) return std::nullopt;
+  return Weighed{static_cast<float>(double{largest(flux)} / setup.unit_flux), *window};
+}
+
+/// Flux that is stored: one that is lighter than the window by chance, with the window's weight.
+glm::vec3 thinned(const glm::vec3& flux, const Weighed& landed, float u) {
+  if (landed.weight >= landed.window) return flux;
+  return u * landed.window < landed.weight ? flux * (landed.window / landed.weight)
+                                           : glm::vec3(0.0f);
+}
+
+/// Walks that go on from a walk twice as heavy as they are to be, or heavier: as many as have that
+/// weight together.
+int copies_of(float weight, float aim, float u) {
+  if (weight <= 2 * aim) return 1;
+  return static_cast<int>(std::min(weight / aim, static_cast<float>(most_copies - 1)) + u);
+}
+
 }  // namespace
 
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
   const Scene& scene = *setup.rays->scene;
   const RandomStream random(setup.parameters->seed, path, setup.light);
   const EmittedRay emitted = setup.emitter->emit(random);
-  glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
+  const glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   if (!(largest(flux) > 0.0f)) return;
-  glm::vec3 origin = emitted.origin, direction = emitted.direction;
-  std::uint32_t cutouts = 0;
-  bool unscattered = true;  // but for panes and cutouts, which sampling lights sees through
-  bool specular = true;     // scattered by mirrors and glass alone, if at all
+  std::vector<Walk> others;  // of this path, where windows split it
+  std::uint32_t branches = 0;
 
-  for (int bounce = 1;;) {
-    const auto hit = setup.rays->intersect(origin, direction);
+  for (std::optional<Walk> walk = Walk{random, emitted.origin, emitted.direction, flux};;) {
+    if (!walk) {
+      if (others.empty()) return;
+      walk = others.back();
+      others.pop_back();
+    }
+    const auto hit = setup.rays->intersect(walk->origin, walk->direction);
     if (!hit) {
-      record.escaped += luminance_of(flux);
-      return;
-    }
-    const SurfacePoint point = surface_hit(scene, *hit, direction);
-    const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
-    // In cutouts as well: the density is that of light on the whole triangle, by whose area the
-    // estimate divides, and does not fall where a cutout is near.
-    if (opaque && (setup.parameters->store_direct || !unscattered)) {
-      store(setup, point, direction, flux, record.photons);
-    }
-    if (opaque && setup.parameters->keep_caustics && specular && !unscattered) {
-      store(setup, point, direction, flux, record.caustics);
-    }
-    if (passes_cutout(scene, point, random, Purpose::photon_cutouts, cutouts)) {
-      origin = point.origin_towards(direction);
+      record.escaped += luminance_of(walk->flux);
+      walk.reset();
       continue;
     }
-    if (bounce >= setup.parameters->max_path_length) break;
-
-    const RandomBlock numbers = random.block(Purpose::photon_scattering, bounce);
-    const std::optional<Scattered> scattered =
-        opaque ? scatter_opaque(scene, point, direction, numbers)
-               : scatter_specular(scene, point, direction, numbers.uniform(choice_word));
-    if (!scattered) break;
-    const glm::vec3 left = play_roulette(setup, bounce, flux, flux * scattered->weight,
-                                         numbers.uniform(roulette_word));
-    if (!(largest(left) > 0.0f)) break;
-    record.absorbed += luminance_of(flux) - luminance_of(left);
-    unscattered = unscattered && !opaque && scattered->direction == direction &&
-                  material_of(scene, point).thin;
-    specular = specular && !opaque;
-    flux = left;
-    direction = scattered->direction;
-    origin = point.origin_towards(direction);
-    ++bounce;
+    const SurfacePoint point = surface_hit(scene, *hit, walk->direction);
+    const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
+    std::optional<Weighed> landed;
+    if (setup.windows && opaque) landed = weighed(setup, point, walk->flux);
+    const RandomBlock chances =
+        landed ? walk->random.block(Purpose::photon_window, walk->bounce) : RandomBlock({});
+    const glm::vec3 stored =
+        landed ? thinned(walk->flux, *landed, chances.uniform(store_word)) : walk->flux;
+    // In cutouts as well: the density is that of light on the whole triangle, by whose area the
+    // estimate divides, and does not fall where a cutout is near.
+    if (opaque && largest(stored) > 0.0f) {
+      if (setup.parameters->store_direct || !walk->unscattered)
+        store(setup, point, walk->direction, stored, record.photons);
+      if (setup.parameters->keep_caustics && walk->specular && !walk->unscattered)
+        store(setup, point, walk->direction, stored, record.caustics);
+    }
+    if (passes_cutout(scene, point, walk->random, Purpose::photon_cutouts, walk->cutouts)) {
+      walk->origin = point.origin_towards(walk->direction);
+      continue;
+    }
+    if (walk->bounce >= setup.parameters->max_path_length) {
+      record.absorbed += luminance_of(walk->flux);
+      walk.reset();
+      continue;
+    }
+    if (landed) {
+      // Where photons are heavier than paths where these start, paths stay as light.
+      const float aim = std::min(landed->window, setup.path_weight);
+      const int copies = branches < most_branches
+                             ? copies_of(landed->weight, aim, chances.uniform(copies_word))
+                             : 1;
+      if (2 * landed->weight < aim) {
+        const glm::vec3 left =
+            thinned(walk->flux, {landed->weight, aim}, chances.uniform(survival_word));
+        record.absorbed += luminance_of(walk->flux) - luminance_of(left);
+        walk->flux = left;
+        if (!(largest(left) > 0.0f)) {
+          walk.reset();
+          continue;
+        }
+      } else if (copies > 1) {
+        walk->flux /= static_cast<float>(copies);
+        for (int copy = 1; copy < copies; ++copy) {
+          Walk branch = *walk;
+          branch.random = random.branch(++branches);
+          if (const auto next = scattered(setup, point, opaque, branch, record))
+            others.push_back(*next);
+        }
+      }
+    }
+    walk = scattered(setup, point, opaque, *walk, record);
   }
-  record.absorbed += luminance_of(flux);
 }
 
 }  // namespace photile::trace
@@ -161,14 +257,30 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   return emitters;
 }
 
+/// Paths of a pilot; pilots that use the windows of those before, each of which finds a room
+/// behind one more door; and how many times their paths have to be asked for, so that the first
+/// pilot costs next to nothing.
+constexpr std::uint64_t pilot_paths = 10'000;
+constexpr std::uint32_t pilots_with_windows = 4;
+constexpr std::uint64_t pilots_from = 10;
+/// Paths for each that is asked for, where windows thin what they store: how many come through a
+/// door is what all light behind it depends on.
+constexpr std::uint64_t paths_with_windows = 4;
+
+/// Windows for weights, where there are some.
+struct Windows {
+  const trace::WeightWindows* map = nullptr;
+  std::uint64_t paths_per_photon = 1;  ///< that are traced for each that is asked for
+};
+
 /// Traces all chunks. Slot i holds what chunk i left, whichever thread traced it.
 std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const PhotonTracerParameters& parameters,
+                                     const std::vector<trace::LightEmitter>& emitters,
                                      const std::vector<Chunk>& chunks,
                                      const std::vector<std::uint64_t>& paths_per_light,
                                      const std::vector<double>& fractions, bool keep_incoming,
-                                     Progress& progress) {
-  const std::vector<trace::LightEmitter> emitters = emitters_of(scene.scene());
+                                     const Windows& windows, Progress& progress) {
   std::vector<PathRecord> records(chunks.size());
   std::atomic<std::uint64_t> stored{0};
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
@@ -180,7 +292,11 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  &emitters[chunk.light],
                                  chunk.light,
                                  paths_per_light[chunk.light],
-                                 keep_incoming};
+                                 keep_incoming,
+                                 windows.map,
+                                 static_cast<double>(windows.paths_per_photon) /
+                                     static_cast<double>(paths_per_light[chunk.light]),
+                                 1.0f / static_cast<float>(windows.paths_per_photon)};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
@@ -198,6 +314,51 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
     progress.advance(chunk.last_path - chunk.first_path);
   });
   return records;
+}
+
+/// Windows from pilots of few paths; none where light falls evenly enough, or where the pilots
+/// would be more than a small part of the work.
+std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
+                                               const PhotonTracerParameters& parameters,
+                                               const std::vector<trace::LightEmitter>& emitters,
+                                               Progress& progress) {
+  if (parameters.emitted_photons < pilots_from * pilot_paths) return {};
+  const Scene& scene = ray_scene.scene();
+  const std::vector<std::uint64_t> paths_per_light =
+      photons_per_light(scene, pilot_paths, parameters.quota);
+  const std::vector<Chunk> chunks = chunks_of(paths_per_light, {});
+  const std::vector<double> fractions(scene.lights.size(), 1.0);
+  PhotonTracerParameters pilot = parameters;
+  pilot.paths_before = {};
+  pilot.store_direct = true;
+  pilot.keep_caustics = false;
+  QuietProgress quiet(progress);
+  std::optional<trace::WeightWindows> map;
+  for (std::uint32_t round = 0; round <= pilots_with_windows; ++round) {
+    // Of their own, so that what windows do does not depend on the paths that they are for.
+    const trace::RandomBlock seed =
+        trace::RandomStream(parameters.seed, 0, 0).block(trace::Purpose::photon_window, round);
+    pilot.seed = std::uint64_t{seed.word(1)} << 32 | seed.word(0);
+    const std::vector<PathRecord> records =
+        trace_chunks(ray_scene, pilot, emitters, chunks, paths_per_light, fractions, false,
+                     {map ? &*map : nullptr, 1}, quiet);
+    std::vector<trace::PilotPhoton> photons;
+    for (std::size_t c = 0; c < chunks.size(); ++c) {
+      const PhotonRun& run = records[c].photons;
+      const auto paths = static_cast<float>(paths_per_light[chunks[c].light]);
+      for (std::size_t i = 0; i < run.size(); ++i)
+        photons.push_back({run.position[i], glm::vec3(face_normal(scene, run.oriented_face[i])),
+                           trace::largest(run.flux[i]) * paths});
+    }
+    if (map) {
+      map->add(photons);
+    } else {
+      const BoundingSphere bounds = bounding_sphere(scene);
+      if (!trace::hides_light(photons, impl_of(ray_scene), bounds)) return {};
+      map.emplace(photons, bounds);
+    }
+  }
+  return map;
 }
 
 /// The photons of a run of all records.
@@ -224,16 +385,25 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   const std::size_t light_count = scene.lights.size();
 
   PhotonTracerResult result;
-  const std::vector<std::uint64_t> paths_per_light =
+  const std::vector<trace::LightEmitter> emitters = emitters_of(scene);
+  std::vector<std::uint64_t> paths_per_light =
       photons_per_light(scene, parameters.emitted_photons, parameters.quota);
+  const std::optional<trace::WeightWindows> map =
+      windows_of(ray_scene, parameters, emitters, progress);
+  Windows windows;
+  if (map) {
+    windows = {&*map, paths_with_windows};
+    for (std::uint64_t& paths : paths_per_light) paths *= paths_with_windows;
+  }
   const std::vector<Chunk> chunks = chunks_of(paths_per_light, parameters.shard);
 
   std::uint64_t paths = 0;
   for (const Chunk& chunk : chunks) paths += chunk.last_path - chunk.first_path;
   progress.begin("trace photons", paths, "paths");
   const LightGroups groups = light_groups_of(scene);
-  std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks, paths_per_light,
-                                                 groups.fraction, needs.glossy, progress);
+  std::vector<PathRecord> records =
+      trace_chunks(ray_scene, parameters, emitters, chunks, paths_per_light, groups.fraction,
+                   needs.glossy, windows, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);

@@ -11,6 +11,7 @@
 #include "photile/photons.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/ray_scene.hpp"
+#include "trace/weight_windows.hpp"
 
 namespace photile::trace {
 
@@ -40,11 +41,14 @@ struct PathSetup {
   std::uint32_t light;
   std::uint64_t paths;  ///< that share the light's flux 1
   bool keep_incoming;
+  const WeightWindows* windows = nullptr;  ///< null: photons keep the weight that they have
+  double unit_flux = 1;                    ///< of a photon of weight 1; with windows
+  float path_weight = 1;                   ///< of a path where it starts; with windows
 };
 
 /// Traces path number `path` and appends what it leaves to `record`. Emitted luminance equals
 /// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
-/// absorption.
+/// absorption. With windows a path may have branches, whose numbers are their own.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
 
 /// Photons of lights of one layer.

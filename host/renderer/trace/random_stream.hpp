@@ -43,7 +43,9 @@ enum class Purpose : std::uint32_t {
   direct_light,
   gather_direction,
   hemisphere_direction,
-  repeat
+  repeat,
+  photon_window,
+  photon_branch
 };
 
 /// Four independent random words.
@@ -91,6 +93,14 @@ class RandomStream {
   RandomBlock block(Purpose purpose, std::uint32_t index) const {
     return RandomBlock(philox4x32_10(
         {path_low_, path_high_and_stream_, index, static_cast<std::uint32_t>(purpose)}, key_));
+  }
+
+  /// The numbers of a branch of this path, which has none of its own number yet.
+  RandomStream branch(std::uint32_t number) const {
+    const RandomBlock words = block(Purpose::photon_branch, number);
+    RandomStream stream = *this;
+    stream.key_ = {words.word(0), words.word(1)};
+    return stream;
   }
 
  private:
