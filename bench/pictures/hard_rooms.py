@@ -163,7 +163,7 @@ def small_window(path):
 SKY = ("--site", "52.5,13.4,1", "--time", "2026-06-21T18:30", "--sky", "perez=500,120", "--set", "north=180")
 ROOMS = {"doors": (doors_ajar, ()), "cove": (cove, ()), "hatch": (hatch, ()),
          "window": (small_window, (*SKY, "--set", "portals=off"))}
-PATHS = {"doors": 65536, "cove": 8192, "hatch": 16384, "window": 16384}  # of a pixel of the reference
+PATHS = {"doors": 32768, "cove": 16384, "hatch": 8192, "window": 16384}  # of a pixel of the reference
 
 
 def sixteenths(picture):
