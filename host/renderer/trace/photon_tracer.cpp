@@ -149,10 +149,10 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
     std::optional<Weighed> landed;
     if (setup.windows && opaque) landed = weighed(setup, point, walk->flux);
-    const RandomBlock chances =
+    const RandomBlock numbers =
         landed ? walk->random.block(Purpose::photon_window, walk->bounce) : RandomBlock({});
     const glm::vec3 stored =
-        landed ? thinned(walk->flux, *landed, chances.uniform(store_word)) : walk->flux;
+        landed ? thinned(walk->flux, *landed, numbers.uniform(store_word)) : walk->flux;
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
     if (opaque && largest(stored) > 0.0f) {
@@ -174,11 +174,11 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
       // Where photons are heavier than paths where these start, paths stay as light.
       const float aim = std::min(landed->window, setup.path_weight);
       const int copies = branches < most_branches
-                             ? copies_of(landed->weight, aim, chances.uniform(copies_word))
+                             ? copies_of(landed->weight, aim, numbers.uniform(copies_word))
                              : 1;
       if (2 * landed->weight < aim) {
         const glm::vec3 left =
-            thinned(walk->flux, {landed->weight, aim}, chances.uniform(survival_word));
+            thinned(walk->flux, {landed->weight, aim}, numbers.uniform(survival_word));
         record.absorbed += luminance_of(walk->flux) - luminance_of(left);
         walk->flux = left;
         if (!(largest(left) > 0.0f)) {
