@@ -23,7 +23,7 @@ std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); 
 std::span<const GoalOption> goal_options() {
   static constexpr std::array<GoalOption, 2> options{{
       {"target_error", "target-error", "PERCENT",
-       "make pictures, each with twice the work of the one before, until one states this root mean "
+       "make pictures, each with more work than the one before, until one states this root mean "
        "square relative error",
        &RefinementGoal::error},
       {"for", "for", "TIME",

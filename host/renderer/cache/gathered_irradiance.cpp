@@ -1,6 +1,7 @@
 #include "cache/gathered_irradiance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -52,7 +53,7 @@ double GatheredIrradiance::error(std::size_t estimate) const {
 GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
                                                     std::span<const double> layer_powers) const {
   const auto count = static_cast<std::size_t>(batches);
-  std::vector<double> sums(count, 0.0);
+  std::array<double, max_batches> sums{};
   double luminance_sum = 0, shared = 0;
   estimate::for_each_estimate(mean, point, layer_powers.size(),
                               [&](std::size_t layer, std::size_t i) {
@@ -66,7 +67,8 @@ GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
                                   shared += power * std::sqrt(double{shared_variance[i]});
                               });
   return {luminance_sum,
-          std::sqrt(squared_error_of_mean(std::span<const double>(sums)) + shared * shared)};
+          std::sqrt(squared_error_of_mean(std::span<const double>(sums).first(count)) +
+                    shared * shared)};
 }
 
 void GatheredIrradiance::append(const GatheredIrradiance& other, std::size_t point,

@@ -19,6 +19,8 @@ namespace photile::cache {
 /// Each value is the mean of batches that are independent of each other. They are kept, so that the
 /// error of any mix of lights is known, and that of what is averaged over points.
 struct GatheredIrradiance {
+  static constexpr int max_batches = 64;
+
   /// Irradiance alone, each layer at power 1, in the form of Estimates.
   Estimates mean;
   int batches = 0;

@@ -180,11 +180,16 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
                                                   const NodeBatch& batch,
                                                   std::span<const std::uint32_t> fine,
                                                   const NoiseTolerance& tolerated) const {
+  std::vector<std::size_t> rows;
+  if (!fine.empty()) {
+    for (const std::uint64_t number : batch.number) rows.push_back(raw_of_.at(number));
+  }
+  const KnownPoints points(raw, std::move(rows), layer_powers_);
   return means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
     const std::uint32_t node = fine[i];
-    mean.add_own(raw, raw_of_.at(batch.number[node]));
+    mean.add_own(points, node);
     for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
-      mean.add_other(raw, raw_of_.at(batch.number[batch.neighbour[j]]), tolerated);
+      mean.add_other(points, batch.neighbour[j], tolerated);
     }
   });
 }
@@ -199,12 +204,13 @@ GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
   const GatheredIrradiance expected =
       means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
         for (const std::uint64_t parent : batch.parents[fine[i]]) {
-          mean.add_own(known, row_of_.at(parent));
+          mean.add(known, row_of_.at(parent));
         }
       });
+  const KnownPoints found_points(found, layer_powers_), expected_points(expected, layer_powers_);
   return means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
-    mean.add_own(found, i);
-    mean.add_other(expected, i, tolerated, defaults::weight_of_parents);
+    mean.add_own(found_points, i);
+    mean.add_other(expected_points, i, tolerated, defaults::weight_of_parents);
   });
 }
 

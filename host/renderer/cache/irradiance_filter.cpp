@@ -1,8 +1,12 @@
 #include "cache/irradiance_filter.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <numeric>
 #include <utility>
 
 #include "estimate/light_at_points.hpp"
@@ -13,6 +17,15 @@ namespace photile::cache {
 namespace {
 
 using Total = GatheredIrradiance::Total;
+
+/// Large enough to make a task's cost vanish, small enough to share work.
+constexpr std::size_t points_per_task = 256;
+
+std::vector<std::size_t> all_rows(std::size_t count) {
+  std::vector<std::size_t> rows(count);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return rows;
+}
 
 /// The square of the difference in tolerated errors.
 double squared_difference(const Total& a, const Total& b, const NoiseTolerance& tolerated) {
@@ -33,18 +46,44 @@ double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance
 
 }  // namespace
 
-void KnownLight::read(const GatheredIrradiance& irradiance, std::size_t point) {
+KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::size_t> rows,
+                         std::span<const double> layer_powers)
+    : irradiance_(irradiance), lights_(layer_powers.size()), rows_(std::move(rows)) {
+  std::size_t estimates = 0;
+  for (const std::size_t row : rows_) {
+    first_.push_back(estimates);
+    estimate::for_each_estimate(irradiance.mean, row, lights_,
+                                [&](std::size_t, std::size_t) { ++estimates; });
+  }
+  all_.resize(rows_.size());
+  layers_.resize(estimates);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), points_per_task),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t point = range.begin(); point < range.end(); ++point) {
+                        all_[point] = irradiance.total(rows_[point], layer_powers);
+                        std::size_t next = first_[point];
+                        estimate::for_each_estimate(
+                            irradiance.mean, rows_[point], lights_,
+                            [&](std::size_t, std::size_t i) {
+                              const glm::dvec3 mean(irradiance.mean.irradiance[i]);
+                              layers_[next++] = {luminance(mean), irradiance.error(i)};
+                            });
+                      }
+                    });
+}
+
+KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::span<const double> layer_powers)
+    : KnownPoints(irradiance, all_rows(irradiance.points(layer_powers.size())), layer_powers) {}
+
+void KnownLight::read(const KnownPoints& points, std::size_t point) {
   for (const std::uint16_t layer : lit_) layers_[layer] = {};
   lit_.clear();
-  irradiance_ = &irradiance;
+  points_ = &points;
   point_ = point;
-  estimate::for_each_estimate(
-      irradiance.mean, point, layers_.size(), [&](std::size_t layer, std::size_t i) {
-        layers_[layer] = {luminance(glm::dvec3(irradiance.mean.irradiance[i])),
-                          irradiance.error(i)};
-        lit_.push_back(static_cast<std::uint16_t>(layer));
-      });
-  all_ = at_powers(layer_powers_);
+  points.for_each_layer(point, [&](std::size_t layer, const Total& light) {
+    layers_[layer] = light;
+    lit_.push_back(static_cast<std::uint16_t>(layer));
+  });
 }
 
 void Similarity::compare(const KnownLight& a, const KnownLight& b,
@@ -77,11 +116,12 @@ GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointL
                                      std::span<const double> layer_powers,
                                      const IrradianceFilterParameters& parameters) {
   for (int round = 0; round < parameters.rounds; ++round) {
+    const KnownPoints points(irradiance, layer_powers);
     irradiance =
         means_of(irradiance, links.first.size() - 1, layer_powers, [&](std::size_t i, auto& light) {
-          light.add_own(irradiance, i);
+          light.add_own(points, i);
           for (const std::uint32_t other : links.of(i)) {
-            light.add_other(irradiance, other, parameters.tolerated);
+            light.add_other(points, other, parameters.tolerated);
           }
         });
   }

@@ -32,29 +32,56 @@ struct NoiseTolerance {
   double known = defaults::known_error;
 };
 
-/// The light of one point with its standard errors: of each layer, and of all at their powers.
+/// Points with their light and its standard errors, of each layer and of all at their powers: each
+/// point is compared with many others, and its errors are found once.
+class KnownPoints {
+ public:
+  /// Keeps a reference.
+  ///   rows   the points of `irradiance`, which are counted in this order
+  KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::size_t> rows,
+              std::span<const double> layer_powers);
+  /// All points of `irradiance`.
+  KnownPoints(const GatheredIrradiance& irradiance, std::span<const double> layer_powers);
+
+  const GatheredIrradiance& irradiance() const { return irradiance_; }
+  std::size_t row(std::size_t point) const { return rows_[point]; }
+  const GatheredIrradiance::Total& all(std::size_t point) const { return all_[point]; }
+  /// Calls visit(layer, its light at power 1) for the layers that a point has.
+  template <class Visit>
+  void for_each_layer(std::size_t point, const Visit& visit) const {
+    std::size_t next = first_[point];
+    estimate::for_each_estimate(
+        irradiance_.mean, rows_[point], lights_,
+        [&](std::size_t layer, std::size_t) { visit(layer, layers_[next++]); });
+  }
+
+ private:
+  const GatheredIrradiance& irradiance_;
+  std::size_t lights_;
+  std::vector<std::size_t> rows_, first_;
+  std::vector<GatheredIrradiance::Total> all_, layers_;
+};
+
+/// One point of those.
 class KnownLight {
  public:
-  explicit KnownLight(std::span<const double> layer_powers)
-      : layer_powers_(layer_powers), layers_(layer_powers.size()) {}
+  explicit KnownLight(std::size_t lights) : layers_(lights) {}
 
   /// Keeps a reference until the next call.
-  void read(const GatheredIrradiance& irradiance, std::size_t point);
+  void read(const KnownPoints& points, std::size_t point);
 
-  const GatheredIrradiance::Total& all() const { return all_; }
+  const GatheredIrradiance::Total& all() const { return points_->all(point_); }
   const GatheredIrradiance::Total& of_layer(std::size_t layer) const { return layers_[layer]; }
   /// The light of all layers together at these powers.
   GatheredIrradiance::Total at_powers(std::span<const double> layer_powers) const {
-    return irradiance_->total(point_, layer_powers);
+    return points_->irradiance().total(points_->row(point_), layer_powers);
   }
   std::span<const std::uint16_t> lit() const { return lit_; }  ///< layers that the point has
 
  private:
-  std::span<const double> layer_powers_;
-  const GatheredIrradiance* irradiance_ = nullptr;
+  const KnownPoints* points_ = nullptr;
   std::size_t point_ = 0;
   std::vector<GatheredIrradiance::Total> layers_;  ///< at power 1
-  GatheredIrradiance::Total all_;
   std::vector<std::uint16_t> lit_;
 };
 
@@ -183,20 +210,25 @@ class MeanOfPoints {
   MeanOfPoints(std::span<const double> layer_powers, const GatheredIrradiance& like,
                GatheredIrradiance& to)
       : sums_(layer_powers.size(), like, to),
-        own_(layer_powers),
-        other_(layer_powers),
+        own_(layer_powers.size()),
+        other_(layer_powers.size()),
         similarity_(layer_powers) {}
 
-  void add_own(const GatheredIrradiance& from, std::size_t point) {
-    own_.read(from, point);
-    sums_.add(from, point, 1.0, [](std::size_t) { return 1.0; });
+  /// One that has the same light.
+  void add(const GatheredIrradiance& from, std::size_t row) {
+    sums_.add(from, row, 1.0, [](std::size_t) { return 1.0; });
   }
-  /// One that may have the same light; as heavy as so many.
-  void add_other(const GatheredIrradiance& from, std::size_t point, const NoiseTolerance& tolerated,
+  /// The point itself.
+  void add_own(const KnownPoints& from, std::size_t point) {
+    own_.read(from, point);
+    add(from.irradiance(), from.row(point));
+  }
+  /// One that may have the same light as the point itself; as heavy as so many.
+  void add_other(const KnownPoints& from, std::size_t point, const NoiseTolerance& tolerated,
                  double weight = 1) {
     other_.read(from, point);
     similarity_.compare(own_, other_, tolerated);
-    sums_.add(from, point, weight * similarity_.of_others(),
+    sums_.add(from.irradiance(), from.row(point), weight * similarity_.of_others(),
               [&](std::size_t layer) { return weight * similarity_.of_layer(layer); });
   }
   void end_point() { sums_.end_point(); }

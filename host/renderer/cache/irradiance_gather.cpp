@@ -279,7 +279,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
       secondary_(rays, photons, of_nodes, secondary) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("light samples from a point", parameters.light_samples, 0, limits::max_direct_rays);
-  check_range("batches of rays", parameters.batches, 2, 64);
+  check_range("batches of rays", parameters.batches, 2, GatheredIrradiance::max_batches);
 }
 
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,

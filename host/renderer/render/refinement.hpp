@@ -1,4 +1,4 @@
-// Pictures made again, each with twice the work of the one before, until one states a small enough
+// Pictures made again, each with more work than the one before, until one states a small enough
 // error or the time is over.
 #pragma once
 
@@ -27,13 +27,14 @@ struct RefinementSteps {
   std::function<double()> elapsed;
 };
 
-/// Makes pictures until the goal is met, each with twice the work of the one before, and returns
-/// the one that states the least error. An error that no allowed work reaches, or that no longer
-/// falls with it, ends this with a note. Without a time the first has the settings given; with one
-/// it has a quarter of their work, so that there is one soon. The first is finished however long it
-/// takes; a later one is begun while there is as much time left as its predecessor took, and given
-/// up when the time is over. So with a time the picture depends on how quick the machine is, but
-/// each is what render() makes of its own settings.
+/// Makes pictures until the goal is met, each with more work than the one before, and returns the
+/// one that states the least error. For an error, the first has the settings given, and the next as
+/// many times their work as leaves it, by a power of two. An error that no allowed work reaches, or
+/// that no longer falls with it, ends this with a note. For a time, the first has a quarter of the
+/// work, so that there is one soon, and is finished however long it takes; each later one is to take
+/// most of what is left, as the last two tell, and is given up when the time is over. So with a time
+/// the picture depends on how quick the machine is, but each is what render() makes of its own
+/// settings.
 /// Errors: those of `make`; Interrupted, when `progress` says so.
 RenderResult refine(const RefinementGoal& goal, const RenderParameters& parameters,
                     const RefinementSteps& steps, Progress& progress);
