@@ -13,7 +13,6 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::daylight;
 using std::numbers::pi;
 
 // Skies of irradiances, against Radiance's gendaymtx and gendaylit.

@@ -14,6 +14,7 @@
 #include "device/cache_folder.hpp"
 #include "device/kernel_store.hpp"
 #include "file_bytes.hpp"
+#include "photile/errors.hpp"
 #include "probe_output.hpp"
 #include "temporary_folder.hpp"
 

@@ -1,6 +1,7 @@
 // Where the projections of a camera look, and from where a scene without a camera is seen.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtx/component_wise.hpp>
 
