@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "photile/load_scene.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/scene_builder.hpp"
 

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "photile/estimator.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/photons.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"

@@ -13,6 +13,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
 #include "support/bench_record.hpp"

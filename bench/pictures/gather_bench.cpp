@@ -14,6 +14,7 @@
 #include "cache/irradiance_gather.hpp"
 #include "estimate/light_at_points.hpp"
 #include "estimate/neighbour_choice.hpp"
+#include "photile/load_scene.hpp"
 #include "render/path_estimate.hpp"
 #include "support/bench_record.hpp"
 #include "support/gathering_photons.hpp"

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "estimate/map_order.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene_builder.hpp"
 #include "support/morton_order.hpp"

@@ -13,6 +13,7 @@
 #include "photile/light_maps.hpp"
 #include "photile/light_options.hpp"
 #include "photile/limits.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photon_cloud.hpp"
 #include "photile/photon_maps.hpp"

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "photile/errors.hpp"
+#include "photile/load_scene.hpp"
 #include "source_folder.hpp"
 #include "structures/structure.hpp"
 #include "support/bench_record.hpp"

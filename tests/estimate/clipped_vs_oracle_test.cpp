@@ -4,6 +4,7 @@
 
 #include "estimates_comparison.hpp"
 #include "oracle/clipped_area.hpp"
+#include "photile/load_scene.hpp"
 #include "photon_sets.hpp"
 #include "source_folder.hpp"
 #include "structures/structure.hpp"

@@ -3,6 +3,7 @@
 
 #include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "photometry/photometric_file.hpp"

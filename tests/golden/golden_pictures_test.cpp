@@ -12,6 +12,7 @@
 #include <iterator>
 
 #include "estimate/neighbour_choice.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "photile/errors.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "temporary_folder.hpp"
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "photile/load_scene.hpp"
 #include "scene_files.hpp"
 #include "trace/surface.hpp"
 

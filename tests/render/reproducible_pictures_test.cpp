@@ -9,6 +9,7 @@
 #include "instanced_scenes.hpp"
 #include "neighbour_comparison.hpp"
 #include "photile/errors.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
 #include "temporary_folder.hpp"

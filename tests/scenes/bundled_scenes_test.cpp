@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "source_folder.hpp"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "source_folder.hpp"
 

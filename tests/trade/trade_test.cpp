@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "source_folder.hpp"
 #include "test_device.hpp"

@@ -17,6 +17,7 @@
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 

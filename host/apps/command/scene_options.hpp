@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace CLI {

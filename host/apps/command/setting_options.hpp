@@ -12,6 +12,7 @@
 
 #include "photile/device.hpp"
 #include "photile/image.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "render/setting.hpp"
 

@@ -15,6 +15,7 @@
 
 #include "loading/load_scene.hpp"
 #include "photile/camera.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/progress.hpp"
 #include "view/luminaire_editor.hpp"
 #include "view/photon_map.hpp"

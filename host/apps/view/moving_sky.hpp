@@ -8,6 +8,7 @@
 
 #include "photile/defaults.hpp"
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "weather/perez_sky.hpp"
 #include "weather/sky_patches.hpp"

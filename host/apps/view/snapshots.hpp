@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "view/frame.hpp"
 #include "view/moods.hpp"

@@ -10,6 +10,7 @@
 
 #include "loading/luminaires.hpp"
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "view/photon_worker.hpp"
 #include "view/year_worker.hpp"

@@ -9,6 +9,7 @@
 #include "files/scene_files.hpp"
 #include "gltf/document.hpp"
 #include "photile/limits.hpp"
+#include "photile/load_scene.hpp"
 #include "pictures/textures.hpp"
 #include "scene/surface_models.hpp"
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "files/scene_files.hpp"
+#include "photile/light_options.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {

@@ -10,6 +10,7 @@
 #include "common/value_range.hpp"
 #include "files/scene_files.hpp"
 #include "loading/luminaires.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"

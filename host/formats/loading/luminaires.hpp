@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "files/scene_files.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {

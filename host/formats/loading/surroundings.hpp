@@ -9,6 +9,7 @@
 
 #include "photile/layered_picture.hpp"
 #include "photile/light_options.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "weather/perez_sky.hpp"
 #include "weather/sky_patches.hpp"
@@ -44,10 +45,10 @@ EnvironmentMap sky_map(SkyKind kind, double illuminance, const glm::dvec3& to_su
 /// Unit direction towards a sun: north is -z, east +x, up +y.
 glm::dvec3 direction_to(const Sun& sun);
 
-/// Adds the lights "environment", "sun", "sky" and "ground" that the options ask for; triangles must
-/// be there. Errors: InputError for a picture that is missing, malformed, not in floating point, black
-/// or has texels that are NaN, infinite or negative; UsageError for a clear sky without a sun above
-/// the horizon, and for a ground that nothing lights or that patches have.
+/// Adds the lights "environment", "sun", "sky" and "ground" that the options ask for; triangles
+/// must be there. Errors: InputError for a picture that is missing, malformed, not in floating
+/// point, black or has texels that are NaN, infinite or negative; UsageError for a clear sky
+/// without a sun above the horizon, and for a ground that nothing lights or that patches have.
 void add_surroundings(Scene& scene, const SceneLoadOptions& options);
 
 // The sky of another hour for a picture whose sky is patches.

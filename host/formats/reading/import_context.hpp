@@ -9,6 +9,7 @@
 
 #include "files/scene_files.hpp"
 #include "photile/errors.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/progress.hpp"
 #include "photile/scene.hpp"
 #include "reading/area_lights.hpp"

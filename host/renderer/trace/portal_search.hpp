@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::trace {
