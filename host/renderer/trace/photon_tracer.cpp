@@ -53,13 +53,13 @@ glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& bef
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
   const Scene& scene = *setup.rays->scene;
   const RandomStream random(setup.parameters->seed, path, setup.light);
-  const EmittedRay emitted = setup.emitter->emit(random);
+  const EmittedRay emitted = setup.caustics ? setup.emitter->emit_towards(*setup.caustics, random)
+                                            : setup.emitter->emit(random);
   glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   if (!(largest(flux) > 0.0f)) return;
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
   std::uint32_t cutouts = 0;
   bool unscattered = true;  // but for panes and cutouts, which sampling lights sees through
-  bool specular = true;     // scattered by mirrors and glass alone, if at all
 
   for (int bounce = 1;;) {
     const auto hit = setup.rays->intersect(origin, direction);
@@ -71,16 +71,14 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
-    if (opaque && (setup.parameters->store_direct || !unscattered)) {
+    if (opaque && (!unscattered || (setup.parameters->store_direct && !setup.caustics))) {
       store(setup, point, direction, flux, record.photons);
-    }
-    if (opaque && setup.parameters->keep_caustics && specular && !unscattered) {
-      store(setup, point, direction, flux, record.caustics);
     }
     if (passes_cutout(scene, point, random, Purpose::photon_cutouts, cutouts)) {
       origin = point.origin_towards(direction);
       continue;
     }
+    if (opaque && setup.caustics) break;
     if (bounce >= setup.parameters->max_path_length) break;
 
     const RandomBlock numbers = random.block(Purpose::photon_scattering, bounce);
@@ -94,7 +92,6 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     record.absorbed += luminance_of(flux) - luminance_of(left);
     unscattered = unscattered && !opaque && scattered->direction == direction &&
                   material_of(scene, point).thin;
-    specular = specular && !opaque;
     flux = left;
     direction = scattered->direction;
     origin = point.origin_towards(direction);
@@ -110,13 +107,15 @@ namespace photile {
 namespace {
 
 using trace::PathRecord;
-using trace::PhotonRun;
 
 /// Paths of one light that one task traces.
 struct Chunk {
   std::uint32_t light;
   std::uint64_t first_path, last_path;
 };
+
+/// Of the seed of paths that are aimed at mirrors and glass: the number of no pass.
+constexpr std::uint32_t aimed_repeat = 0xFFFF'FFFFu;
 
 /// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
 constexpr std::uint64_t paths_per_chunk = 4096;
@@ -167,8 +166,8 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const std::vector<Chunk>& chunks,
                                      const std::vector<std::uint64_t>& paths_per_light,
                                      const std::vector<double>& fractions, bool keep_incoming,
-                                     Progress& progress) {
-  const std::vector<trace::LightEmitter> emitters = emitters_of(scene.scene());
+                                     const std::vector<trace::LightEmitter>& emitters,
+                                     const trace::SpecularTargets* caustics, Progress& progress) {
   std::vector<PathRecord> records(chunks.size());
   std::atomic<std::uint64_t> stored{0};
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
@@ -180,15 +179,15 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  &emitters[chunk.light],
                                  chunk.light,
                                  paths_per_light[chunk.light],
-                                 keep_incoming};
+                                 keep_incoming,
+                                 caustics};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
       trace::trace_photon_path(setup, before + path, records[c]);
     // Only what is stored: a path is the same whether its light is in a group or not.
     if (const auto fraction = static_cast<float>(fractions[chunk.light]); fraction != 1.0f)
-      for (PhotonRun* run : {&records[c].photons, &records[c].caustics})
-        for (glm::vec3& flux : run->flux) flux *= fraction;
+      for (glm::vec3& flux : records[c].photons.flux) flux *= fraction;
 
     const std::uint64_t so_far = stored += records[c].photons.size();
     if (so_far > limits::max_stored_photons)
@@ -200,15 +199,14 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
   return records;
 }
 
-/// The photons of a run of all records.
+/// The photons of all records.
 ///   groups   null where photons do not tell lights apart
-Photons photons_of(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
-                   const std::vector<Chunk>& chunks, const LightGroups* groups,
-                   std::size_t oriented_face_count) {
+Photons photons_of(std::vector<PathRecord>& records, const std::vector<Chunk>& chunks,
+                   const LightGroups* groups, std::size_t oriented_face_count) {
   std::vector<trace::LayerRun> runs;
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const std::uint32_t layer = groups == nullptr ? 0 : groups->group_of[chunks[c].light];
-    runs.push_back({&(records[c].*run), static_cast<std::uint16_t>(layer)});
+    runs.push_back({&records[c].photons, static_cast<std::uint16_t>(layer)});
   }
   return trace::sorted_photons(runs, groups != nullptr, oriented_face_count);
 }
@@ -232,8 +230,10 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   for (const Chunk& chunk : chunks) paths += chunk.last_path - chunk.first_path;
   progress.begin("trace photons", paths, "paths");
   const LightGroups groups = light_groups_of(scene);
-  std::vector<PathRecord> records = trace_chunks(ray_scene, parameters, chunks, paths_per_light,
-                                                 groups.fraction, needs.glossy, progress);
+  const std::vector<trace::LightEmitter> emitters = emitters_of(scene);
+  std::vector<PathRecord> records =
+      trace_chunks(ray_scene, parameters, chunks, paths_per_light, groups.fraction, needs.glossy,
+                   emitters, nullptr, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);
@@ -246,13 +246,23 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   }
   const LightGroups* several = needs.several_lights() ? &groups : nullptr;
   const std::size_t oriented_faces = 2 * scene.triangle_count();
-  result.photons = photons_of(records, &PathRecord::photons, chunks, several, oriented_faces);
+  result.photons = photons_of(records, chunks, several, oriented_faces);
   result.photons.emitted_per_light = paths_per_light;
+  progress.end();
   if (parameters.keep_caustics) {
-    result.caustics = photons_of(records, &PathRecord::caustics, chunks, several, oriented_faces);
+    records.assign(chunks.size(), {});
+    if (needs.specular_paths) {
+      PhotonTracerParameters aimed = parameters;
+      aimed.seed = trace::seed_of_repeat(parameters.seed, aimed_repeat);
+      const trace::SpecularTargets targets(scene);
+      progress.begin("trace caustics", paths, "paths");
+      records = trace_chunks(ray_scene, aimed, chunks, paths_per_light, groups.fraction,
+                             needs.glossy, emitters, &targets, progress);
+      progress.end();
+    }
+    result.caustics = photons_of(records, chunks, several, oriented_faces);
     result.caustics.emitted_per_light = paths_per_light;
   }
-  progress.end();
   result.seconds = stopwatch.seconds();
   return result;
 }
