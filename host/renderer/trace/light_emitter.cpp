@@ -18,7 +18,6 @@ enum Block : std::uint32_t {
   point_block = 0,
   direction_block = 1,
   portal_block = 2,
-  target_block = 3,
   luminaire_block = 1u << 20
 };
 
@@ -135,18 +134,19 @@ double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
   return 1 / ((1 - portal_fraction_) + portal_fraction_ * through);
 }
 
-EmittedRay LightEmitter::emit_towards(const SpecularTargets& targets,
-                                      const RandomStream& random) const {
-  if (area_) return emit_from_area_towards(targets, random);
-  if (light_->is_distant()) return emit_from_beyond_towards(targets, random);
-  const auto [direction, density] = targets.direction_from(
-      glm::dvec3(light_->position), nullptr, random.block(Purpose::emission, target_block));
+EmittedRay LightEmitter::emit_towards(const SpecularTargets& targets, const RandomStream& random,
+                                      const glm::dvec2& aim) const {
+  if (area_) return emit_from_area_towards(targets, random, aim);
+  if (light_->is_distant()) return emit_from_beyond_towards(targets, random, aim);
+  const auto [direction, density] =
+      targets.direction_from(glm::dvec3(light_->position), nullptr, aim);
   const double own = candela_per_lumen(*scene_, *light_, glm::dvec3(direction));
   return {light_->position, direction, over_density(light_->color, own, density)};
 }
 
 EmittedRay LightEmitter::emit_from_area_towards(const SpecularTargets& targets,
-                                                const RandomStream& random) const {
+                                                const RandomStream& random,
+                                                const glm::dvec2& aim) const {
   const TriangleHit where =
       area_->sample(random.block(Purpose::emission, intensity_ ? luminaire_block : point_block));
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
@@ -154,8 +154,7 @@ EmittedRay LightEmitter::emit_from_area_towards(const SpecularTargets& targets,
   const std::uint32_t side = light_->two_sided && numbers.bit(2) ? 1 - front : front;
   SurfacePoint point = surface_point(*scene_, where, side);
   const auto [direction, density] =
-      targets.direction_from(glm::dvec3(point.position), intensity_ ? nullptr : &point.normal,
-                             random.block(Purpose::emission, target_block));
+      targets.direction_from(glm::dvec3(point.position), intensity_ ? nullptr : &point.normal, aim);
   const double cosine = static_cast<double>(glm::dot(direction, point.normal));
   if (intensity_ && cosine < 0) point = surface_point(*scene_, where, 1 - side);
   const double own = intensity_ ? candela_per_lumen(*scene_, *light_, glm::dvec3(direction))
@@ -164,12 +163,12 @@ EmittedRay LightEmitter::emit_from_area_towards(const SpecularTargets& targets,
 }
 
 EmittedRay LightEmitter::emit_from_beyond_towards(const SpecularTargets& targets,
-                                                  const RandomStream& random) const {
+                                                  const RandomStream& random,
+                                                  const glm::dvec2& aim) const {
   DistantSampler::Sample from{-light_->direction, light_->color, 0.0f};
   if (distant_) from = distant_->sample(random.block(Purpose::emission, direction_block));
   const glm::dvec3 travel(-from.direction);
-  const auto [point, density] =
-      targets.line_along(travel, random.block(Purpose::emission, target_block));
+  const auto [point, density] = targets.line_along(travel, aim);
   const double back = glm::dot(point - bounds_.center, travel) + bounds_.radius;
   const double own = 1 / (glm::pi<double>() * bounds_.radius * bounds_.radius);
   return {glm::vec3(point - back * travel), glm::vec3(travel),

@@ -43,17 +43,18 @@ class LightEmitter {
 
   /// Towards mirrors and glass alone, of which there are some: the same light arrives there as by
   /// `emit`, on more photons, each with its flux over the density of its ray among those of `emit`.
-  EmittedRay emit_towards(const SpecularTargets& targets, const RandomStream& random) const;
+  EmittedRay emit_towards(const SpecularTargets& targets, const RandomStream& random,
+                          const glm::dvec2& aim) const;
 
  private:
   EmittedRay emit_from_area(const RandomStream& random) const;
   EmittedRay emit_from_luminaire(const RandomStream& random) const;
   EmittedRay emit_from_beyond(const RandomStream& random) const;
   EmittedRay emit_through_portals(const RandomStream& random) const;
-  EmittedRay emit_from_area_towards(const SpecularTargets& targets,
-                                    const RandomStream& random) const;
-  EmittedRay emit_from_beyond_towards(const SpecularTargets& targets,
-                                      const RandomStream& random) const;
+  EmittedRay emit_from_area_towards(const SpecularTargets& targets, const RandomStream& random,
+                                    const glm::dvec2& aim) const;
+  EmittedRay emit_from_beyond_towards(const SpecularTargets& targets, const RandomStream& random,
+                                      const glm::dvec2& aim) const;
   double flux_of_line(const glm::dvec3& travel, int entered) const;
   glm::vec3 color_of(const SurfacePoint& point) const;
   float spot_cosine(double u) const;

@@ -53,8 +53,11 @@ glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& bef
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
   const Scene& scene = *setup.rays->scene;
   const RandomStream random(setup.parameters->seed, path, setup.light);
-  const EmittedRay emitted = setup.caustics ? setup.emitter->emit_towards(*setup.caustics, random)
-                                            : setup.emitter->emit(random);
+  const EmittedRay emitted =
+      setup.caustics ? setup.emitter->emit_towards(
+                           *setup.caustics, random,
+                           sobol_point(static_cast<std::uint32_t>(path), setup.scramble))
+                     : setup.emitter->emit(random);
   glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   if (!(largest(flux) > 0.0f)) return;
   glm::vec3 origin = emitted.origin, direction = emitted.direction;
@@ -116,6 +119,8 @@ struct Chunk {
 
 /// Of the seed of paths that are aimed at mirrors and glass: the number of no pass.
 constexpr std::uint32_t aimed_repeat = 0xFFFF'FFFFu;
+/// Of the numbers of emission: that of no point, direction or portal.
+constexpr std::uint32_t aim_block = 0xFFFF'FFFFu;
 
 /// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
 constexpr std::uint64_t paths_per_chunk = 4096;
@@ -160,6 +165,13 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   return emitters;
 }
 
+/// Of paths that are aimed at mirrors and glass: numbers of their own, and more in each pass.
+PhotonTracerParameters aimed_at_targets(PhotonTracerParameters parameters) {
+  parameters.seed = trace::seed_of_repeat(parameters.seed, aimed_repeat);
+  for (std::uint64_t& before : parameters.paths_before) before *= defaults::aimed_paths;
+  return parameters;
+}
+
 /// Traces all chunks. Slot i holds what chunk i left, whichever thread traced it.
 std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const PhotonTracerParameters& parameters,
@@ -180,7 +192,9 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  chunk.light,
                                  paths_per_light[chunk.light],
                                  keep_incoming,
-                                 caustics};
+                                 caustics,
+                                 trace::RandomStream(parameters.seed, 0, chunk.light)
+                                     .block(trace::Purpose::emission, aim_block)};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
@@ -250,17 +264,19 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   result.photons.emitted_per_light = paths_per_light;
   progress.end();
   if (parameters.keep_caustics) {
-    records.assign(chunks.size(), {});
+    result.caustics.first_of.assign(oriented_faces + 1, 0);
     if (needs.specular_paths) {
-      PhotonTracerParameters aimed = parameters;
-      aimed.seed = trace::seed_of_repeat(parameters.seed, aimed_repeat);
       const trace::SpecularTargets targets(scene);
-      progress.begin("trace caustics", paths, "paths");
-      records = trace_chunks(ray_scene, aimed, chunks, paths_per_light, groups.fraction,
+      const PhotonTracerParameters aimed = aimed_at_targets(parameters);
+      std::vector<std::uint64_t> aimed_per_light = paths_per_light;
+      for (std::uint64_t& count : aimed_per_light) count *= defaults::aimed_paths;
+      const std::vector<Chunk> aimed_chunks = chunks_of(aimed_per_light, aimed.shard);
+      progress.begin("trace caustics", paths * defaults::aimed_paths, "paths");
+      records = trace_chunks(ray_scene, aimed, aimed_chunks, aimed_per_light, groups.fraction,
                              needs.glossy, emitters, &targets, progress);
+      result.caustics = photons_of(records, aimed_chunks, several, oriented_faces);
       progress.end();
     }
-    result.caustics = photons_of(records, chunks, several, oriented_faces);
     result.caustics.emitted_per_light = paths_per_light;
   }
   result.seconds = stopwatch.seconds();

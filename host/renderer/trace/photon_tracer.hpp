@@ -41,6 +41,7 @@ struct PathSetup {
   bool keep_incoming;
   /// Where paths of caustics alone are aimed; null: all light.
   const SpecularTargets* caustics;
+  RandomBlock scramble;  ///< of the points by which paths are aimed
 };
 
 /// Traces path number `path` and appends what it leaves to `record`: photons of all light, or those

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "trace/sampling.hpp"
@@ -71,28 +72,34 @@ Part part_of(std::span<Box> boxes) {
   return part;
 }
 
-/// A cone as seen from a point; all directions within the sphere.
+/// The sphere as seen from a point.
 struct Cone {
-  glm::dvec3 axis{0, 0, 1};
-  double below_one = 2;  ///< 1 - cosine of its half angle
-  double weight = 0;     ///< of a direction in it
-
-  double solid_angle() const { return glm::two_pi<double>() * below_one; }
-  bool holds(const glm::dvec3& direction) const {
-    const glm::dvec3 apart = direction - axis;
-    return 0.5 * glm::dot(apart, apart) <= below_one;  // 1 - cosine
-  }
+  glm::dvec3 axis;
+  double below_one;  ///< 1 - cosine of its half angle
 };
 
-Cone cone_towards(const glm::dvec3& centre, double radius, const glm::dvec3& from) {
+/// None from within the sphere.
+std::optional<Cone> cone_towards(const glm::dvec3& centre, double radius, const glm::dvec3& from) {
   const glm::dvec3 towards = centre - from;
   const double squared = glm::dot(towards, towards);
-  Cone cone;
-  if (squared <= radius * radius) return cone;
-  cone.axis = towards / std::sqrt(squared);
+  if (squared <= radius * radius) return std::nullopt;
   const double squared_sine = radius * radius / squared;
-  cone.below_one = squared_sine / (1 + std::sqrt(1 - squared_sine));
-  return cone;
+  return Cone{towards / std::sqrt(squared), squared_sine / (1 + std::sqrt(1 - squared_sine))};
+}
+
+/// One of some, in proportion to its weight, by a number in [0, 1) that is as even afterwards.
+///   all   the sum of the weights
+std::size_t choose(std::span<const double> weights, double all, double& u) {
+  double target = u * all;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!(weights[i] > 0)) continue;
+    chosen = i;
+    if (target < weights[i]) break;
+    target -= weights[i];
+  }
+  u = std::clamp(target / weights[chosen], 0.0, 1 - 0x1p-24);
+  return chosen;
 }
 
 /// The largest cosine to a normal within the cone; 0 where all of it is below the horizon.
@@ -103,6 +110,51 @@ double largest_cosine(const Cone& cone, const glm::dvec3& normal) {
   const double sines = (1 - cosine * cosine) * (1 - of_cone * of_cone);
   return std::max(0.0, cosine * of_cone + std::sqrt(std::max(0.0, sines)));
 }
+
+/// Directions from a point to a sphere: evenly into its cone; from within it in all directions, or
+/// by the cosine law where there is a normal.
+class DirectionsTo {
+ public:
+  DirectionsTo() = default;
+  DirectionsTo(const glm::dvec3& centre, double radius, const glm::dvec3& from,
+               const glm::vec3* normal)
+      : cone_(cone_towards(centre, radius, from)), normal_(normal) {
+    if (cone_) {
+      weight_ = normal ? largest_cosine(*cone_, glm::dvec3(*normal)) : 1;
+      all_ = weight_ * glm::two_pi<double>() * cone_->below_one;
+    } else {
+      all_ = (normal ? 1 : 4) * glm::pi<double>();
+    }
+  }
+  double all() const { return all_; }  ///< integral of `weight` over the sphere
+
+  glm::vec3 sample(const glm::dvec2& u) const {
+    const auto x = static_cast<float>(u.x), y = static_cast<float>(u.y);
+    if (!cone_) {
+      return normal_ ? Frame(*normal_).to_world(sample_cosine_hemisphere(x, y))
+                     : sample_sphere(x, y);
+    }
+    const double below_one = u.x * cone_->below_one;
+    const double sine = std::sqrt(below_one * (2 - below_one));
+    const double phi = glm::two_pi<double>() * u.y;
+    const glm::vec3 local(sine * std::cos(phi), sine * std::sin(phi), 1 - below_one);
+    return glm::normalize(Frame(glm::vec3(cone_->axis)).to_world(local));
+  }
+  /// Where `sample` says so it may lie at the border, to a rounding beyond it.
+  double weight(const glm::vec3& direction, bool sampled) const {
+    if (cone_) {
+      const glm::dvec3 apart = glm::dvec3(direction) - cone_->axis;
+      return sampled || 0.5 * glm::dot(apart, apart) <= cone_->below_one ? weight_ : 0;
+    }
+    if (!normal_) return 1;
+    return std::max(0.0, static_cast<double>(glm::dot(direction, *normal_)));
+  }
+
+ private:
+  std::optional<Cone> cone_;
+  const glm::vec3* normal_ = nullptr;
+  double weight_ = 0, all_ = 0;
+};
 
 }  // namespace
 
@@ -131,49 +183,33 @@ SpecularTargets::SpecularTargets(const Scene& scene) {
 
 SpecularTargets::Direction SpecularTargets::direction_from(const glm::dvec3& from,
                                                            const glm::vec3* normal,
-                                                           const RandomBlock& random) const {
-  std::array<Cone, most_spheres> cones;
+                                                           glm::dvec2 u) const {
+  std::array<DirectionsTo, most_spheres> to;
+  std::array<double, most_spheres> weights{};
   double all = 0;
   for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    cones[i] = cone_towards(spheres_[i].centre, spheres_[i].radius, from);
-    cones[i].weight = normal ? largest_cosine(cones[i], glm::dvec3(*normal)) : 1;
-    all += cones[i].weight * cones[i].solid_angle();
+    to[i] = DirectionsTo(spheres_[i].centre, spheres_[i].radius, from, normal);
+    all += weights[i] = to[i].all();
   }
   if (!(all > 0)) return {glm::vec3(0, 0, 1), 0};
-  double left = random.uniform_double(0) * all;
-  std::size_t chosen = 0;
+  const std::size_t chosen = choose(std::span(weights).first(spheres_.size()), all, u.x);
+  const glm::vec3 direction = to[chosen].sample(u);
+  double found = 0;
   for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    if (!(cones[i].weight > 0)) continue;
-    chosen = i;
-    left -= cones[i].weight * cones[i].solid_angle();
-    if (left < 0) break;
+    found += to[i].weight(direction, i == chosen);
   }
-  const Cone& cone = cones[chosen];
-  const double below_one = double{random.uniform(2)} * cone.below_one;
-  const double sine = std::sqrt(below_one * (2 - below_one));
-  const double phi = glm::two_pi<double>() * double{random.uniform(3)};
-  const glm::vec3 direction = glm::normalize(
-      Frame(glm::vec3(cone.axis))
-          .to_world(glm::vec3(sine * std::cos(phi), sine * std::sin(phi), 1 - below_one)));
-  double weights = cone.weight;  // at a border the direction may lie outside by rounding
-  for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    if (i != chosen && cones[i].holds(glm::dvec3(direction))) weights += cones[i].weight;
-  }
-  return {direction, weights / all};
+  return {direction, found / all};
 }
 
-SpecularTargets::Line SpecularTargets::line_along(const glm::dvec3& travel,
-                                                  const RandomBlock& random) const {
+SpecularTargets::Line SpecularTargets::line_along(const glm::dvec3& travel, glm::dvec2 u) const {
+  std::array<double, most_spheres> weights{};
   double all = 0;
-  for (const Sphere& sphere : spheres_) all += sphere.radius * sphere.radius;
-  double left = random.uniform_double(0) * all;
-  std::size_t chosen = 0;
-  while (chosen + 1 < spheres_.size() &&
-         (left -= spheres_[chosen].radius * spheres_[chosen].radius) >= 0) {
-    ++chosen;
+  for (std::size_t i = 0; i < spheres_.size(); ++i) {
+    all += weights[i] = spheres_[i].radius * spheres_[i].radius;
   }
+  const std::size_t chosen = choose(std::span(weights).first(spheres_.size()), all, u.x);
   const Frame frame{glm::vec3(travel)};
-  const glm::dvec2 disc = glm::dvec2(sample_disc(random.uniform(2), random.uniform(3)));
+  const glm::dvec2 disc = glm::dvec2(sample_disc(static_cast<float>(u.x), static_cast<float>(u.y)));
   const Sphere& sphere = spheres_[chosen];
   const glm::dvec3 point =
       sphere.centre + sphere.radius * (glm::dvec3(frame.s) * disc.x + glm::dvec3(frame.t) * disc.y);

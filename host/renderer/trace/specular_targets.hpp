@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "photile/scene.hpp"
-#include "trace/random_stream.hpp"
 
 namespace photile::trace {
 
@@ -25,10 +24,11 @@ class SpecularTargets {
     double density;       ///< per steradian, of this direction among all that could be sampled
   };
   /// From a point into one of the cones of the spheres, each in proportion to its solid angle times
-  /// the largest cosine in it; evenly in a cone. No density where no cone rises above the horizon.
+  /// the largest cosine in it; evenly in a cone. From within a sphere in all directions, by the
+  /// cosine law where there is a normal. No density where no sphere rises above the horizon.
   ///   normal   of the surface that emits by the cosine law; null: all cosines count 1
-  Direction direction_from(const glm::dvec3& from, const glm::vec3* normal,
-                           const RandomBlock& random) const;
+  ///   u        in [0, 1)^2: points that fill it evenly give directions that do
+  Direction direction_from(const glm::dvec3& from, const glm::vec3* normal, glm::dvec2 u) const;
 
   struct Line {
     glm::dvec3 point;  ///< on the line, beside the middle of a sphere
@@ -36,7 +36,7 @@ class SpecularTargets {
   };
   /// A line along `travel`, unit, evenly over the disc that one of the spheres shows, each in
   /// proportion to its disc.
-  Line line_along(const glm::dvec3& travel, const RandomBlock& random) const;
+  Line line_along(const glm::dvec3& travel, glm::dvec2 u) const;
 
  private:
   struct Sphere {
