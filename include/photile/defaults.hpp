@@ -36,9 +36,9 @@ inline constexpr int least_pass_neighbours = 5;  ///< k shrinks no further: fewe
 // Caustics
 /// Paths that are aimed at mirrors and glass, for each path of all light.
 inline constexpr std::uint64_t aimed_paths = 3;
-/// Noise of estimates of caustics over that of paths by chance: aimed ones fill all lines to
-/// mirrors and glass evenly. Measured: a fifth under the sun, half below a lamp as wide as its
-/// distance.
+/// Of the noise that photons by chance would have, so much counts as a difference of neighbouring
+/// points: aimed paths fill their lines evenly, and neighbours share photons. More would blur, less
+/// leave noise.
 inline constexpr double aimed_noise = 1.0 / 3;
 
 // Density estimation

@@ -292,6 +292,8 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
       const double expected = lux_of_image(sensors[i].position);
       sum += lux(light, i);
       truth += expected;
+      CHECK(light.error(i) > 0.05 * lux(light, i));  // that of 100 photons at least, about
+      CHECK(light.error(i) < 0.2 * lux(light, i));
       squares += std::pow(lux(light, i) - expected, 2);
       stated += std::pow(light.error(i), 2);
     }

@@ -41,7 +41,7 @@ void KnownLight::read(const GatheredIrradiance& irradiance, std::size_t point) {
   estimate::for_each_estimate(
       irradiance.mean, point, layers_.size(), [&](std::size_t layer, std::size_t i) {
         layers_[layer] = {luminance(glm::dvec3(irradiance.mean.irradiance[i])),
-                          irradiance.error(i)};
+                          irradiance.scatter(i)};
         lit_.push_back(static_cast<std::uint16_t>(layer));
       });
   all_ = at_powers(layer_powers_);

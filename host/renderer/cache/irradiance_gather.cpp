@@ -34,10 +34,9 @@ constexpr std::size_t points_per_task = 16;
 /// Whole rays of a batch.
 int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 
-/// Of an estimate by k photons: a cone has 1.5 times the variance of a count (docs/density.md).
-double caustic_relative_variance(int neighbours) {
-  return 1.5 / neighbours * defaults::aimed_noise * defaults::aimed_noise;
-}
+/// Of an estimate by k photons by chance: a cone has 1.5 times the variance of a count
+/// (docs/density.md).
+double caustic_relative_variance(int neighbours) { return 1.5 / neighbours; }
 
 /// What the sums of a run of points are made of.
 struct RunLight {
