@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Errors of caustics beside references that know no photons: the table of docs/gloss.md.
+"""Errors of caustics beside references that know no photons: the table of docs/irradiance-gathering.md, and its pool.
 
-    bench/pictures/caustics.py --references FOLDER [--mitsuba PYTHON] [--quality good final] [--photile COMMAND]
+    bench/pictures/caustics.py [--references FOLDER] [--mitsuba PYTHON] [--quality good final] [--photile COMMAND]
+    bench/pictures/caustics.py --picture docs/pictures/gallery/pool.png
 
 The glass sphere and the metal ring of scenes/gallery are compared with photile's own path tracer, whose lamp rays
 find by chance; the pool, whose sun they would not find, with Mitsuba's light tracer (bench/rivals/caustics_mitsuba.py),
@@ -84,14 +85,32 @@ def row(given, name, quality, folder):
             f"{found['mean']:.3f} | {found['bright']:.3f} | {seconds:.1f} |")
 
 
+def draw_pool(given, folder):
+    """The pool as both of its cameras see it, side by side."""
+    seen = []
+    for camera in ("camera", "under water"):
+        picture = folder / "picture.exr"
+        subprocess.run([given.photile, "render", scene_of("pool"), "--camera", camera, *POOL[2:], "--size", "640x480",
+                        "--quiet", "-o", picture], check=True)
+        pixels = picture_error.read_picture(picture)
+        seen += [picture_error.displayed(pixels, picture_error.exposure(pixels)), np.ones((pixels.shape[0], 4, 3))]
+    picture_error.write_png(given.picture, np.concatenate(seen[:-1], axis=1))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--references", type=pathlib.Path, required=True, metavar="FOLDER")
+    parser.add_argument("--references", type=pathlib.Path, metavar="FOLDER",
+                        default=scene_arguments.ROOT / "build/caustics")
     parser.add_argument("--mitsuba", type=pathlib.Path, metavar="PYTHON")
+    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="draw the pool and do nothing else")
     parser.add_argument("--quality", nargs="+", default=["good", "final"])
     parser.add_argument("--photile", type=pathlib.Path, metavar="COMMAND",
                         default=scene_arguments.ROOT / "build/release/photile")
     given = parser.parse_args()
+    if given.picture:
+        with tempfile.TemporaryDirectory() as name:
+            draw_pool(given, pathlib.Path(name))
+        return
     print("| | | relMSE less noise | the reference's noise | mottle | mean | of the brightest 3% | processor s |")
     print("|---|---|--:|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as name:
