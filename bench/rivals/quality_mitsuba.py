@@ -47,16 +47,19 @@ def mitsuba_mesh(mesh, material):
     return made
 
 
+def camera_of(view, width, height, sampler="independent"):
+    flip = np.diag([-1.0, 1.0, -1.0, 1.0])  # Mitsuba's cameras look along +z, with x to the left
+    return {"type": "perspective", "fov_axis": "y",
+            "fov": math.degrees(view.vertical_field_of_view),
+            "to_world": mitsuba.ScalarTransform4f(view.to_world @ flip),
+            "film": {"type": "hdrfilm", "width": width, "height": height,
+                     "rfilter": {"type": "box"}, "pixel_format": "rgb"},
+            "sampler": {"type": sampler}}
+
+
 def seen_scene(meshes, view, width, height, sampler="independent"):
     """Meshes of Mitsuba's as the camera of a file sees them."""
-    flip = np.diag([-1.0, 1.0, -1.0, 1.0])  # Mitsuba's cameras look along +z, with x to the left
-    camera = {"type": "perspective", "fov_axis": "y",
-              "fov": math.degrees(view.vertical_field_of_view),
-              "to_world": mitsuba.ScalarTransform4f(view.to_world @ flip),
-              "film": {"type": "hdrfilm", "width": width, "height": height,
-                       "rfilter": {"type": "box"}, "pixel_format": "rgb"},
-              "sampler": {"type": sampler}}
-    return mitsuba.load_dict({"type": "scene", "sensor": camera,
+    return mitsuba.load_dict({"type": "scene", "sensor": camera_of(view, width, height, sampler),
                               **{f"mesh_{i}": mesh for i, mesh in enumerate(meshes)}})
 
 

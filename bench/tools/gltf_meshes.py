@@ -1,7 +1,7 @@
 """Reads triangles, diffuse colours and the camera of a glTF 2.0 file, for renderers that cannot.
 
-Knows flat, untextured, opaque meshes of one primitive at the root of the scene, one camera and one
-binary file. Raises ValueError where a file has more, so that no renderer gets another scene than
+Knows flat, untextured meshes of one primitive at the root of the scene, opaque unless the caller asks for all
+materials, cameras and one binary file. Raises ValueError where a file has more, so that no renderer gets another scene than
 photile.
 """
 
@@ -28,6 +28,8 @@ class Mesh:
     metallic: float = 0
     roughness: float = 1
     specular: float = 0  # of dielectrics: 0 is diffuse, 1 reflects 4%
+    index: float = 0  # of refraction, of solid glass
+    normals: np.ndarray | None = None  # (vertices, 3), of solid glass and of metals
 
 
 @dataclasses.dataclass
@@ -56,6 +58,9 @@ def read_mesh(file, binary, node, diffuse):
     metallic, textures = surface.get("metallicFactor", 1), {key for key in surface if "Texture" in key}
     if textures or (diffuse and (metallic != 0 or specular != 0)):
         raise ValueError(f"material {material.get('name')}: not of one {'diffuse ' * diffuse}colour")
+    transmission = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
+    if diffuse and transmission != 0:
+        raise ValueError(f"material {material.get('name')}: not opaque")
     strength = extensions.get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
     return Mesh(name=node.get("name", ""),
                 positions=read_accessor(file, binary, primitive["attributes"]["POSITION"]),
@@ -64,7 +69,9 @@ def read_mesh(file, binary, node, diffuse):
                 reflectance=surface.get("baseColorFactor", [1, 1, 1, 1])[:3],
                 radiance=[strength * value for value in material.get("emissiveFactor", [0, 0, 0])],
                 double_sided=material.get("doubleSided", False), metallic=metallic,
-                roughness=surface.get("roughnessFactor", 1), specular=specular)
+                roughness=surface.get("roughnessFactor", 1), specular=specular,
+                index=extensions.get("KHR_materials_ior", {}).get("ior", 1.5) if transmission else 0,
+                normals=None if diffuse else read_accessor(file, binary, primitive["attributes"]["NORMAL"]))
 
 
 def matrix_of(node):
@@ -80,8 +87,9 @@ def matrix_of(node):
     return matrix
 
 
-def read_gltf(path, diffuse=True):
-    """(list of Mesh, View) of the file, which must be diffuse throughout unless told otherwise."""
+def read_gltf(path, diffuse=True, camera_name=None):
+    """(list of Mesh, View) of the file, which must be diffuse throughout unless told otherwise. The view is that of the
+    first camera, or of the first of this name."""
     file = json.loads(path.read_text(encoding="utf-8"))
     (buffer,) = file["buffers"]
     binary = (path.parent / buffer["uri"]).read_bytes()
@@ -91,6 +99,8 @@ def read_gltf(path, diffuse=True):
         if "mesh" in node and not TRANSFORM & set(node):
             meshes.append(read_mesh(file, binary, node, diffuse))
         elif "camera" in node:
+            if camera_name not in (None, node.get("name")):
+                continue
             camera = file["cameras"][node["camera"]]["perspective"]
             views.append(View(matrix_of(node), camera["yfov"]))
         else:

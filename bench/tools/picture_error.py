@@ -82,8 +82,8 @@ def mottle(picture, reference):
     smooth &= without_lamps(reference)
     if not smooth.any():
         return None
-    error = windows(own, 1).mean(0) / windows(true, 1).mean(0) - 1
-    return float(np.sqrt((error[smooth] ** 2).mean()))
+    error = windows(own, 1).mean(0)[smooth] / windows(true, 1).mean(0)[smooth] - 1
+    return float(np.sqrt((error ** 2).mean()))
 
 
 def exposure(reference):

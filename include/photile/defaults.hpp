@@ -33,6 +33,14 @@ inline constexpr float largest_survival = 0.99f;
 inline constexpr double pass_alpha = 2.0 / 3.0;
 inline constexpr int least_pass_neighbours = 5;  ///< k shrinks no further: fewer are too noisy
 
+// Caustics
+/// Paths that are aimed at mirrors and glass, for each path of all light.
+inline constexpr std::uint64_t aimed_paths = 3;
+/// Of the noise that photons by chance would have, so much counts as a difference of neighbouring
+/// points: aimed paths fill their lines evenly, and neighbours share photons. More would blur, less
+/// leave noise.
+inline constexpr double aimed_noise = 1.0 / 3;
+
 // Density estimation
 inline constexpr int neighbours = 50;                ///< k
 inline constexpr double group_angle_degrees = 60.0;  ///< largest angle between normals of a group
@@ -40,8 +48,8 @@ inline constexpr double group_angle_degrees = 60.0;  ///< largest angle between 
 inline constexpr double radius_over_median_kth_distance = 2.0;
 
 // Light maps
-inline constexpr double light_map_spacing = 0.04;   ///< metres, of the coarsest nodes
-inline constexpr int light_map_levels = 4;          ///< the finest is an eighth
+inline constexpr double light_map_spacing = 0.04;  ///< metres, of the coarsest nodes
+inline constexpr int light_map_levels = 4;         ///< the finest is an eighth
 /// Metres between the finest nodes: the coarsest lie closer, so that there are none but those.
 inline constexpr double no_detail = 10;
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split

@@ -38,8 +38,8 @@ struct EstimateTuning {
   int hits_per_item = 1;
   /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
   int work_group_size = 64;
-  /// `lanes` of 16 or 32 on devices with shuffles: whether they exchange values by these in place of
-  /// local memory and barriers. The same bits.
+  /// `lanes` of 16 or 32 on devices with shuffles: whether they exchange values by these in place
+  /// of local memory and barriers. The same bits.
   bool shuffles = false;
 
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
@@ -72,6 +72,10 @@ inline constexpr std::array all_density_kernels = {DensityKernel::constant, Dens
 inline DensityKernel kernel_used(DensityKernel kernel, int neighbours) {
   return neighbours > 1 ? kernel : DensityKernel::constant;
 }
+
+/// Of caustics, whose photons fill their paths evenly: what a kernel counts that vanishes at its
+/// border has little noise then, and does not depend on where the k-th photon happens to lie.
+inline constexpr DensityKernel caustic_kernel = DensityKernel::cone;
 
 /// What a density estimate divides by.
 enum class AreaMode {

@@ -85,8 +85,8 @@ struct PhotonTracerParameters {
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
   /// Whether photons that come directly from a light, or through panes of thin glass, are stored.
   bool store_direct = true;
-  /// Whether photons that came by mirrors, or by glass that bends or reflects them, and nothing
-  /// else are stored once more, on their own.
+  /// Whether photons that come by mirrors, or by glass that bends or reflects them, and nothing
+  /// else are stored on their own, too, from further paths that are aimed at such.
   bool keep_caustics = false;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
@@ -98,7 +98,7 @@ struct PhotonTracerParameters {
 
 struct PhotonTracerResult {
   Photons photons;
-  Photons caustics;  ///< of them, those that came by mirrors and glass alone; where they are kept
+  Photons caustics;  ///< that came by mirrors and glass alone, by their own paths; where kept
   std::vector<std::uint64_t> stored_per_light;
   /// Flux that left the scene, per unit of each light's power (luminance): for the energy balance.
   std::vector<double> escaped_flux_per_light;

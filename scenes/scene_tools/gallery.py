@@ -1,10 +1,11 @@
-"""Six small scenes, each for one thing that light does; docs/gallery.md shows them."""
+"""Seven small scenes, each for one thing that light does; docs/gallery.md shows them."""
 
+import itertools
 import math
 
 from scene_tools.colour import blackbody_rgb
 from scene_tools.gltf_writer import GltfDocument
-from scene_tools.shapes import Shape, box, cylinder, lathe, rectangle, sphere
+from scene_tools.shapes import Shape, box, cylinder, lathe, normalised, rectangle, sphere
 
 WHITE, GREY, OAK = (0.75, 0.75, 0.75), (0.4, 0.4, 0.4), (0.45, 0.3, 0.18)
 WARM, COOL = blackbody_rgb(3000), blackbody_rgb(6500)
@@ -58,6 +59,68 @@ def metal_ring(path):
                             _torus(0.12, 0.025).moved(0.55, 1e-3, 0.15)))
     _lamp(document, "lamp", 2000, _disc((-0.7, 1.0, -0.1), 0.06), COOL)
     document.camera("camera", (0.2, 0.9, 1.1), (0.1, 0.0, 0.0), 42, ASPECT)
+    document.save(path)
+
+
+def _tiled(corner, u, v, columns, rows, joint=0.008):
+    """Tiles of two kinds by turns, and the joints between them, each a shape. `joint` is metres wide."""
+    along, across = math.hypot(*u), math.hypot(*v)
+    half_u, half_v = joint / 2 / along, joint / 2 / across
+    holes = [(column / columns + half_u, row / rows + half_v, (column + 1) / columns - half_u, (row + 1) / rows - half_v)
+             for row, column in itertools.product(range(rows), range(columns))]
+    tiles = (Shape(), Shape())
+    for number, (u0, v0, u1, v1) in enumerate(holes):
+        tiles[(number // columns + number % columns) % 2].polygon(
+            [tuple(c + a * p + b * q for c, p, q in zip(corner, u, v)) for a, b in ((u0, v0), (u1, v0), (u1, v1), (u0, v1))])
+    return (*tiles, rectangle(corner, u, v, holes))
+
+
+# Plane waves of the pool: length in metres, direction in degrees from x towards z, height in metres, phase in radians.
+WAVES = ((0.9, 20, 0.02, 0.3), (0.65, -35, 0.012, 1.7), (0.5, 75, 0.008, 4.0), (0.42, 130, 0.006, 2.2))
+
+
+def _water(corner, size, columns, rows):
+    """A waved sheet about the height of `corner`, seen from above, with the normals of its waves."""
+    shape = Shape()
+    for row, column in itertools.product(range(rows + 1), range(columns + 1)):
+        x, z = corner[0] + size[0] * column / columns, corner[2] - size[1] * row / rows
+        y, slope_x, slope_z = corner[1], 0.0, 0.0
+        for length, degrees, height, phase in WAVES:
+            k, angle = 2 * math.pi / length, math.radians(degrees)
+            at = k * (x * math.cos(angle) + z * math.sin(angle)) + phase
+            y += height * math.sin(at)
+            slope_x += height * k * math.cos(angle) * math.cos(at)
+            slope_z += height * k * math.sin(angle) * math.cos(at)
+        shape.vertex((round(x, 6), round(y, 6), round(z, 6)),
+                     [round(c, 6) for c in normalised((-slope_x, 1.0, -slope_z))])
+    for row, column in itertools.product(range(rows), range(columns)):
+        a = row * (columns + 1) + column
+        shape.triangles += [(a, a + 1, a + columns + 2), (a, a + columns + 2, a + columns + 1)]
+    return shape
+
+
+def pool(path):
+    """A basin of 2.4 m x 1.8 m x 0.9 m in a yard, lit by --sun alone. The water ends within the walls of the basin."""
+    document = GltfDocument("water over tiles under the sun")
+    ground, wall = document.matte("ground", (0.55, 0.5, 0.42)), document.matte("wall", WHITE)
+    light, dark, joint = (document.matte(name, rgb) for name, rgb in (
+        ("light tile", (0.5, 0.68, 0.72)), ("dark tile", (0.25, 0.48, 0.58)), ("joint", (0.7, 0.7, 0.68))))
+    document.thing("ground", (ground, rectangle((-2.2, 0, 1.8), (4.4, 0, 0), (0, 0, -3.6),
+                                                [(1 / 4.4, 0.25, 3.4 / 4.4, 0.75)])))
+    document.thing("back wall", (wall, rectangle((-2.2, 0, -1.8), (4.4, 0, 0), (0, 1.5, 0))))
+    document.thing("right wall", (wall, rectangle((2.2, 0, -1.8), (0, 0, 3.6), (0, 1.5, 0))))
+    sides = (("floor", (-1.2, -0.9, 0.9), (2.4, 0, 0), (0, 0, -1.8), 12, 9),
+             ("far side", (-1.2, -0.9, -0.9), (2.4, 0, 0), (0, 0.9, 0), 12, 4),
+             ("right side", (1.2, -0.9, -0.9), (0, 0, 1.8), (0, 0.9, 0), 9, 4),
+             ("near side", (1.2, -0.9, 0.9), (-2.4, 0, 0), (0, 0.9, 0), 12, 4),
+             ("left side", (-1.2, -0.9, 0.9), (0, 0, -1.8), (0, 0.9, 0), 9, 4))
+    for name, corner, u, v, columns, rows in sides:
+        for kind, material, shape in zip(("light", "dark", "joints"), (light, dark, joint),
+                                         _tiled(corner, u, v, columns, rows)):
+            document.thing(f"{name}, {kind}", (material, shape))
+    document.thing("water", (document.glass("water", 1.33), _water((-1.202, -0.1, 0.902), (2.404, 1.804), 96, 72)))
+    document.camera("camera", (0.5, 1.5, 1.9), (-0.1, -0.4, -0.2), 48, ASPECT)
+    document.camera("under water", (-0.95, -0.28, 0.75), (0.4, -0.85, -0.4), 50, ASPECT)
     document.save(path)
 
 
@@ -131,7 +194,7 @@ def coloured_lamps(path):
     document.save(path)
 
 
-SCENES = {"glass-sphere": glass_sphere, "metal-ring": metal_ring, "glossy-floor": glossy_floor,
+SCENES = {"glass-sphere": glass_sphere, "metal-ring": metal_ring, "pool": pool, "glossy-floor": glossy_floor,
           "sun-and-sky": sun_and_sky, "downlights": downlights, "coloured-lamps": coloured_lamps}
 
 

@@ -15,6 +15,7 @@
 #include "render/path_estimate.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
+#include "trace/emission_sampling.hpp"
 #include "validation/analytic_cases.hpp"
 
 namespace photile::test {
@@ -282,19 +283,57 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
   const Scene scene = lamp_below_mirror().build();
   const std::vector<Sensor> sensors = sensors_on({-0.3, -0.3, 0}, {0.6, 0, 0}, {0, 0.6, 0}, up, 6);
   std::vector<double> ratio;
+  double squares = 0, stated = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     GatheringScene place(scene, looked_up(60'000, seed));
     const cache::GatheredIrradiance light = place.at(sensors);
     double sum = 0, truth = 0;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
+      const double expected = lux_of_image(sensors[i].position);
       sum += lux(light, i);
-      truth += lux_of_image(sensors[i].position);
+      truth += expected;
       CHECK(light.error(i) > 0.05 * lux(light, i));  // that of 100 photons at least, about
       CHECK(light.error(i) < 0.2 * lux(light, i));
+      squares += std::pow(lux(light, i) - expected, 2);
+      stated += std::pow(light.error(i), 2);
     }
     ratio.push_back(sum / truth);
   }
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.1));
+  const double error_over_stated = std::sqrt(squares / stated);
+  CAPTURE(error_over_stated);
+  CHECK(error_over_stated < 1.25);
+  CHECK(error_over_stated > 0.4);
+}
+
+TEST_CASE("gathering: a caustic ends where the image of its mirror ends") {
+  // A spot shines up at a mirror of 0.2 m, 0.2 m above: its image, 1.4 m above the floor, lights a
+  // square of 1.4 m.
+  SceneBuilder builder;
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-0.1f, -0.1f, 1.2f}, {0, 0.2f, 0}, {0.2f, 0, 0}, 1,
+               builder.add(mirror(glm::vec3(1.0f))));
+  Light spot = point_light("spot", {0, 0, 1});
+  spot.kind = LightKind::spot;
+  spot.direction = {0, 0, 1};
+  spot.inner_cone_angle = 1.0f;
+  spot.outer_cone_angle = 1.1f;
+  builder.add(spot);
+  const double candela = 1 / (2 * pi * trace::SpotFalloff(spot).integral());
+  GatheringScene place(builder.build(), looked_up(60'000));
+  const std::vector<Sensor> within = sensors_on({-0.6, 0.66, 0}, {1.2, 0, 0}, {0, 0.02, 0}, up, 6);
+  const std::vector<Sensor> beyond = sensors_on({-0.6, 0.8, 0}, {1.2, 0, 0}, {0, 0.1, 0}, up, 6);
+  const cache::GatheredIrradiance lit = place.at(within), dark = place.at(beyond);
+  double sum = 0, truth = 0, spilt = 0;
+  for (std::size_t i = 0; i < within.size(); ++i) {
+    const glm::dvec3 p = within[i].position;
+    sum += lux(lit, i);
+    truth += candela * 1.4 / std::pow(p.x * p.x + p.y * p.y + 1.4 * 1.4, 1.5);
+    spilt += lux(dark, i);
+  }
+  CAPTURE(sum, truth, spilt);
+  CHECK(sum / truth == Approx(1).margin(0.04));
+  CHECK(spilt / truth < 0.02);
 }
 
 TEST_CASE("gathering: no caustic shines through a screen that stands on the floor") {

@@ -127,7 +127,7 @@ TEST_CASE("no kernel is left to compile once those of a scene are prepared") {
   RenderParameters parameters;
   parameters.neighbours = 20;
   const bool lists = GENERATE(false, true);
-  KernelPreparation(scene, std::span(&device, 1), parameters, lists).wait();
+  KernelPreparation(scene, std::span(&device, 1), parameters, lists, false).wait();
   const std::uint64_t prepared = device.programs_built() + device.programs_from_cache();
   CHECK(prepared == (lists ? 3 : 2));
   const PhotonMaps maps(device, scene, photons,
@@ -151,7 +151,7 @@ TEST_CASE("kernels are prepared for whatever materials and lights a scene has") 
   Device device;
   RenderParameters parameters;
   parameters.neighbours = 20;
-  CHECK_NOTHROW(KernelPreparation(scene, std::span(&device, 1), parameters, false).wait());
+  CHECK_NOTHROW(KernelPreparation(scene, std::span(&device, 1), parameters, false, false).wait());
   CHECK(device.programs_built() + device.programs_from_cache() == 2);
 }
 

@@ -125,8 +125,8 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
   asked.neighbours = 80;
   const auto plan = [&] { return RenderPlan(asked, rays, HitsAsk::pictures, Progress::none()); };
   CHECK(plan().passes() == 1);
-  CHECK(plan().estimates(0, nullptr).size() == 1);
-  CHECK(plan().estimates(0, nullptr)[0].neighbours == 80);
+  CHECK(plan().estimates(0, DensityKernel::constant, nullptr).size() == 1);
+  CHECK(plan().estimates(0, DensityKernel::constant, nullptr)[0].neighbours == 80);
   CHECK(plan().tracing(0, {}).store_direct);
   CHECK_FALSE(plan().tracing(0, {}).keep_caustics);
   CHECK(plan().clips_areas());
@@ -142,7 +142,8 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
 
   asked.least_neighbours = 5;
   std::vector<int> levels;
-  for (const auto& level : plan().estimates(0, nullptr)) levels.push_back(level.neighbours);
+  for (const auto& level : plan().estimates(0, DensityKernel::constant, nullptr))
+    levels.push_back(level.neighbours);
   CHECK(levels == std::vector{5, 20, 80});
 
   asked.passes = 7;

@@ -43,11 +43,17 @@ std::uint64_t GatheredIrradiance::bytes() const {
          (batch.size() + shared_variance.size()) * sizeof(float);
 }
 
-double GatheredIrradiance::error(std::size_t estimate) const {
+double GatheredIrradiance::error(std::size_t estimate) const { return error(estimate, 1.0); }
+
+double GatheredIrradiance::scatter(std::size_t estimate) const {
+  return error(estimate, defaults::aimed_noise);
+}
+
+double GatheredIrradiance::error(std::size_t estimate, double of_shared) const {
   const auto count = static_cast<std::size_t>(batches);
   const double shared = shared_variance.empty() ? 0.0 : double{shared_variance[estimate]};
   return std::sqrt(squared_error_of_mean(std::span(batch).subspan(estimate * count, count)) +
-                   shared);
+                   of_shared * of_shared * shared);
 }
 
 GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
@@ -66,6 +72,7 @@ GatheredIrradiance::Total GatheredIrradiance::total(std::size_t point,
                                 if (!shared_variance.empty())
                                   shared += power * std::sqrt(double{shared_variance[i]});
                               });
+  shared *= defaults::aimed_noise;
   return {luminance_sum,
           std::sqrt(squared_error_of_mean(std::span<const double>(sums).first(count)) +
                     shared * shared)};

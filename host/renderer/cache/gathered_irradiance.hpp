@@ -37,8 +37,11 @@ struct GatheredIrradiance {
 
   /// Standard error of the luminance of one estimate.
   double error(std::size_t estimate) const;
+  /// Standard error by which it may differ from a point beside it that sees the same light: of the
+  /// error that batches share the part `defaults::aimed_noise`.
+  double scatter(std::size_t estimate) const;
 
-  /// Luminance of all lights together, and its standard error.
+  /// Luminance of all lights together, and the error by which it may differ from a point beside it.
   struct Total {
     double luminance = 0, error = 0;
   };
@@ -49,6 +52,9 @@ struct GatheredIrradiance {
   void append(const GatheredIrradiance& other, std::size_t point, std::size_t lights);
   /// Appends all points of `other`, which has as many batches.
   void append(GatheredIrradiance other);
+
+ private:
+  double error(std::size_t estimate, double of_shared) const;
 };
 
 /// Light of two kinds at the same points, whose batches are as many.

@@ -66,7 +66,7 @@ KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::
                             irradiance.mean, rows_[point], lights_,
                             [&](std::size_t, std::size_t i) {
                               const glm::dvec3 mean(irradiance.mean.irradiance[i]);
-                              layers_[next++] = {luminance(mean), irradiance.error(i)};
+                              layers_[next++] = {luminance(mean), irradiance.scatter(i)};
                             });
                       }
                     });

@@ -34,6 +34,10 @@ constexpr std::size_t points_per_task = 16;
 /// Whole rays of a batch.
 int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 
+/// Of an estimate by k photons by chance: a cone has 1.5 times the variance of a count
+/// (docs/density.md).
+double caustic_relative_variance(int neighbours) { return 1.5 / neighbours; }
+
 /// What the sums of a run of points are made of.
 struct RunLight {
   const RayScene& rays;
@@ -362,7 +366,8 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
              .traced = rays_per_batch > 0 ? &traced : nullptr,
              .secondary = secondary_,
              .caustics = caustics,
-             .caustic_relative_variance = caustics_ ? 1.0 / parameters_.caustic_neighbours : 0.0,
+             .caustic_relative_variance =
+                 caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
              .layer_powers = layer_powers_},
             first, count, all);
     costs_.sum_seconds += sum_watch.seconds();

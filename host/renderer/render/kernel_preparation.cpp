@@ -61,19 +61,23 @@ bool is_fresh(const Device& device) {
   return device.programs_built() + device.programs_from_cache() == 0;
 }
 
-///   lists   lists of neighbours are asked for, too
+///   lists      lists of neighbours are asked for, too
+///   caustics   estimates by their kernel, too
 void prepare(Device& device, const estimate::PlaneSample& sample,
-             const RenderParameters& parameters, bool lists) {
+             const RenderParameters& parameters, bool lists, bool caustics) {
   try {
     const NeighbourGroups groups = find_map_groups(sample.scene, sample.photons, parameters.maps,
                                                    {sample.radius, parameters.angle_degrees});
     const PhotonMaps maps(device, sample.scene, sample.photons, groups,
                           {sample.radius, parameters.photons_per_cell});
-    const EstimateParameters estimate{
+    EstimateParameters estimate{
         .neighbours = parameters.neighbours, .area = parameters.area, .kernel = parameters.kernel};
     Estimator estimator(maps, sample.scene, estimate);
     estimator.estimate(sample.hits);
     if (lists) estimator.nearest(sample.hits);
+    if (!caustics) return;
+    estimate.kernel = caustic_kernel;
+    Estimator(maps, sample.scene, estimate).estimate(sample.hits);
   } catch (const DeviceMemoryError&) {
   }
 }
@@ -81,14 +85,15 @@ void prepare(Device& device, const estimate::PlaneSample& sample,
 }  // namespace
 
 KernelPreparation::KernelPreparation(const Scene& scene, std::span<Device> devices,
-                                     const RenderParameters& parameters, bool lists) {
+                                     const RenderParameters& parameters, bool lists,
+                                     bool caustics) {
   if (std::none_of(devices.begin(), devices.end(), is_fresh)) return;
-  done_ = std::async(std::launch::async, [&scene, devices, &parameters, lists] {
+  done_ = std::async(std::launch::async, [&scene, devices, &parameters, lists, caustics] {
     const SceneNeeds needs = needs_of(scene);
     const estimate::PlaneSample sample =
         sample_of(needs, may_mix_normals(scene, parameters.angle_degrees), parameters.neighbours);
     for (Device& device : devices) {
-      if (is_fresh(device)) prepare(device, sample, parameters, lists);
+      if (is_fresh(device)) prepare(device, sample, parameters, lists, caustics);
     }
   });
 }
@@ -105,7 +110,7 @@ void compile_usual_kernels(Device& device, Progress& progress) {
     for (SceneNeeds needs : surfaces) {
       for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {
         progress.throw_if_cancelled();
-        prepare(device, sample_of(needs, true, parameters.neighbours), parameters, true);
+        prepare(device, sample_of(needs, true, parameters.neighbours), parameters, true, false);
         progress.advance(1);
       }
     }

@@ -18,9 +18,10 @@ class KernelPreparation {
  public:
   /// Begins with those devices that have not run any kernel yet. Until wait() returns, nobody else
   /// may use the devices. References are kept.
-  ///   lists   of neighbours will be asked for, beside estimates
+  ///   lists      of neighbours will be asked for, beside estimates
+  ///   caustics   will have estimates of their own
   KernelPreparation(const Scene& scene, std::span<Device> devices,
-                    const RenderParameters& parameters, bool lists);
+                    const RenderParameters& parameters, bool lists, bool caustics);
 
   /// Returns once the kernels are there; at once from the second call on. Errors: DeviceError, but
   /// no DeviceMemoryError: where the sample finds no room, kernels are compiled when they are used.

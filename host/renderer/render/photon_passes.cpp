@@ -149,8 +149,8 @@ PassPhotons PhotonPasses::facts(const Photons& photons) const {
 }
 
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(Built built) const {
-  estimate::PhotonEstimate::Parts parts{std::move(built.maps), plan_.estimates(pass_, surface_),
-                                        std::move(built.seen)};
+  estimate::PhotonEstimate::Parts parts{
+      std::move(built.maps), plan_.estimates(pass_, built.kernel, surface_), std::move(built.seen)};
   return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, std::move(parts),
                                                     layer_powers_);
 }
@@ -195,9 +195,9 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
                                        Progress& progress) {
   if (pass_ == 0 && !prepared) check_map_memory();
   if (!kernels_) {  // while photons are traced
-    const bool lists =
-        plan_.leaves_out_hidden() || (plan_.keeps_caustics() && rays_.needs().specular_paths);
-    kernels_.emplace(scene_, devices_, plan_.used(), lists);
+    const bool caustics = plan_.keeps_caustics() && rays_.needs().specular_paths;
+    kernels_.emplace(scene_, devices_, plan_.used(), plan_.leaves_out_hidden() || caustics,
+                     caustics);
   }
   const Stopwatch trace_watch;
   PhotonTracerResult traced;
@@ -264,7 +264,8 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
   PhotonTracerResult traced = trace(prepared, keep, progress);
   const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
   PassPhotons found = facts(traced.photons);
-  Maps maps{build(std::move(traced.photons), parameters, plan_.leaves_out_hidden(), progress),
+  Maps maps{build(std::move(traced.photons), parameters, plan_.used().kernel,
+                  plan_.leaves_out_hidden(), progress),
             {},
             std::move(found)};
   const PhotonMapStatistics& built = maps.photons.maps.front().statistics();
@@ -273,7 +274,7 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
   costs_.map_sizes = built.map_sizes;
   // Among the photons of all light, caustics have the same groups, lit surface and radius.
   if (traced.caustics.total() > 0) {
-    maps.caustics = build(std::move(traced.caustics), parameters, true, progress);
+    maps.caustics = build(std::move(traced.caustics), parameters, caustic_kernel, true, progress);
   }
   const Stopwatch release_watch;
   traced = {};
@@ -282,12 +283,13 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
 }
 
 PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParameters& parameters,
-                                        bool leaves_out_hidden, Progress& progress) {
+                                        DensityKernel kernel, bool leaves_out_hidden,
+                                        Progress& progress) {
   const Stopwatch stopwatch;
   kernels_->wait();
   std::shared_ptr<const estimate::VisiblePhotons> seen;
   if (leaves_out_hidden) {
-    seen = std::make_shared<const estimate::VisiblePhotons>(rays_, photons, plan_.used().kernel);
+    seen = std::make_shared<const estimate::VisiblePhotons>(rays_, photons, kernel);
   }
   std::vector<std::uint8_t> own;
   if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
@@ -302,7 +304,7 @@ PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParamete
   const PhotonMapStatistics& built = maps.front().statistics();
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
-  return {std::move(maps), std::move(seen)};
+  return {std::move(maps), kernel, std::move(seen)};
 }
 
 void PhotonPasses::count(const PhotonTracerResult& traced) {

@@ -102,7 +102,8 @@ class PhotonPasses {
 
  private:
   struct Built {
-    std::vector<PhotonMaps> maps;                          ///< the same on each device
+    std::vector<PhotonMaps> maps;  ///< the same on each device
+    DensityKernel kernel;
     std::shared_ptr<const estimate::VisiblePhotons> seen;  ///< null: all photons count
   };
   struct Maps {
@@ -116,8 +117,8 @@ class PhotonPasses {
   /// Photons of the pass, with all that is found before there are maps.
   PhotonTracerResult trace(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   Maps trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
-  Built build(Photons photons, const PhotonMapParameters& parameters, bool leaves_out_hidden,
-              Progress& progress);
+  Built build(Photons photons, const PhotonMapParameters& parameters, DensityKernel kernel,
+              bool leaves_out_hidden, Progress& progress);
   std::shared_ptr<estimate::PhotonEstimate> estimate_of(Built built) const;
   /// The estimate as it is asked for where several processes have the maps.
   PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);

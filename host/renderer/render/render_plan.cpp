@@ -160,7 +160,7 @@ PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
 }
 
 std::vector<EstimateParameters> RenderPlan::estimates(
-    int pass, const std::shared_ptr<const SurfaceIndex>& surface) const {
+    int pass, DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const {
   const int most = estimate_of_pass(pass, {0, used_.neighbours}).neighbours;
   const int least = used_.least_neighbours > 0 ? std::min(used_.least_neighbours, most) : most;
   std::vector<EstimateParameters> levels;
@@ -168,7 +168,7 @@ std::vector<EstimateParameters> RenderPlan::estimates(
     levels.push_back({.neighbours = neighbours,
                       .compiled_neighbours = used_.neighbours,
                       .area = used_.area,
-                      .kernel = used_.kernel,
+                      .kernel = kernel,
                       .surface = surface});
   }
   return levels;

@@ -63,7 +63,7 @@ class RenderPlan {
   /// their own.
   ///   surface   where areas are clipped, else null
   std::vector<EstimateParameters> estimates(
-      int pass, const std::shared_ptr<const SurfaceIndex>& surface) const;
+      int pass, DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const;
 
   /// The parameters of light maps from the photons of this pass.
   ///   powers   per layer

@@ -31,6 +31,11 @@ glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, flo
   return glm::vec3(bounds.center + bounds.radius * point);
 }
 
+/// Flux of a ray that was found with `density` in place of its own.
+glm::vec3 over_density(const glm::vec3& color, double own, double density) {
+  return density > 0 ? color * static_cast<float>(own / density) : glm::vec3(0.0f);
+}
+
 }  // namespace
 
 LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const BoundingSphere& bounds,
@@ -127,6 +132,47 @@ double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
     }
   }
   return 1 / ((1 - portal_fraction_) + portal_fraction_ * through);
+}
+
+EmittedRay LightEmitter::emit_towards(const SpecularTargets& targets, const RandomStream& random,
+                                      const glm::dvec2& aim) const {
+  if (area_) return emit_from_area_towards(targets, random, aim);
+  if (light_->is_distant()) return emit_from_beyond_towards(targets, random, aim);
+  const auto [direction, density] =
+      targets.direction_from(glm::dvec3(light_->position), nullptr, aim);
+  const double own = candela_per_lumen(*scene_, *light_, glm::dvec3(direction));
+  return {light_->position, direction, over_density(light_->color, own, density)};
+}
+
+EmittedRay LightEmitter::emit_from_area_towards(const SpecularTargets& targets,
+                                                const RandomStream& random,
+                                                const glm::dvec2& aim) const {
+  const TriangleHit where =
+      area_->sample(random.block(Purpose::emission, intensity_ ? luminaire_block : point_block));
+  const RandomBlock numbers = random.block(Purpose::emission, direction_block);
+  const std::uint32_t front = scene_->front_side[where.triangle];
+  const std::uint32_t side = light_->two_sided && numbers.bit(2) ? 1 - front : front;
+  SurfacePoint point = surface_point(*scene_, where, side);
+  const auto [direction, density] =
+      targets.direction_from(glm::dvec3(point.position), intensity_ ? nullptr : &point.normal, aim);
+  const double cosine = static_cast<double>(glm::dot(direction, point.normal));
+  if (intensity_ && cosine < 0) point = surface_point(*scene_, where, 1 - side);
+  const double own = intensity_ ? candela_per_lumen(*scene_, *light_, glm::dvec3(direction))
+                                : std::max(0.0, cosine) * glm::one_over_pi<double>();
+  return {point.origin_towards(direction), direction, over_density(color_of(point), own, density)};
+}
+
+EmittedRay LightEmitter::emit_from_beyond_towards(const SpecularTargets& targets,
+                                                  const RandomStream& random,
+                                                  const glm::dvec2& aim) const {
+  DistantSampler::Sample from{-light_->direction, light_->color, 0.0f};
+  if (distant_) from = distant_->sample(random.block(Purpose::emission, direction_block));
+  const glm::dvec3 travel(-from.direction);
+  const auto [point, density] = targets.line_along(travel, aim);
+  const double back = glm::dot(point - bounds_.center, travel) + bounds_.radius;
+  const double own = 1 / (glm::pi<double>() * bounds_.radius * bounds_.radius);
+  return {glm::vec3(point - back * travel), glm::vec3(travel),
+          over_density(from.color, own, density)};
 }
 
 EmittedRay LightEmitter::emit_from_area(const RandomStream& random) const {

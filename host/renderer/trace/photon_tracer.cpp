@@ -63,7 +63,6 @@ struct Walk {
   int bounce = 1;  ///< of the surface that it comes to next
   std::uint32_t cutouts = 0;
   bool unscattered = true;  ///< but for panes and cutouts, which sampling lights sees through
-  bool specular = true;     ///< scattered by mirrors and glass alone, if at all
 };
 
 /// `walk` after the surface where it arrived; nothing where it ended there.
@@ -86,7 +85,6 @@ std::optional<Walk> scattered(const PathSetup& setup, const SurfacePoint& point,
   record.absorbed += luminance_of(walk.flux) - luminance_of(left);
   walk.unscattered = walk.unscattered && !opaque && scattered->direction == walk.direction &&
                      material_of(scene, point).thin;
-  walk.specular = walk.specular && !opaque;
   walk.flux = left;
   walk.direction = scattered->direction;
   walk.origin = point.origin_towards(walk.direction);
@@ -127,7 +125,11 @@ int copies_of(float weight, float aim, float u) {
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
   const Scene& scene = *setup.rays->scene;
   const RandomStream random(setup.parameters->seed, path, setup.light);
-  const EmittedRay emitted = setup.emitter->emit(random);
+  const EmittedRay emitted =
+      setup.caustics ? setup.emitter->emit_towards(
+                           *setup.caustics, random,
+                           sobol_point(static_cast<std::uint32_t>(path), setup.scramble))
+                     : setup.emitter->emit(random);
   const glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   if (!(largest(flux) > 0.0f)) return;
   std::vector<Walk> others;  // of this path, where windows split it
@@ -156,16 +158,14 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
     if (opaque && largest(stored) > 0.0f) {
-      if (setup.parameters->store_direct || !walk->unscattered)
+      if (!walk->unscattered || (setup.parameters->store_direct && !setup.caustics))
         store(setup, point, walk->direction, stored, record.photons);
-      if (setup.parameters->keep_caustics && walk->specular && !walk->unscattered)
-        store(setup, point, walk->direction, stored, record.caustics);
     }
     if (passes_cutout(scene, point, walk->random, Purpose::photon_cutouts, walk->cutouts)) {
       walk->origin = point.origin_towards(walk->direction);
       continue;
     }
-    if (walk->bounce >= setup.parameters->max_path_length) {
+    if ((opaque && setup.caustics) || walk->bounce >= setup.parameters->max_path_length) {
       record.absorbed += luminance_of(walk->flux);
       walk.reset();
       continue;
@@ -206,13 +206,17 @@ namespace photile {
 namespace {
 
 using trace::PathRecord;
-using trace::PhotonRun;
 
 /// Paths of one light that one task traces.
 struct Chunk {
   std::uint32_t light;
   std::uint64_t first_path, last_path;
 };
+
+/// Of the seed of paths that are aimed at mirrors and glass: the number of no pass.
+constexpr std::uint32_t aimed_repeat = 0xFFFF'FFFFu;
+/// Of the numbers of emission: that of no point, direction or portal.
+constexpr std::uint32_t aim_block = 0xFFFF'FFFFu;
 
 /// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
 constexpr std::uint64_t paths_per_chunk = 4096;
@@ -247,6 +251,17 @@ std::vector<Chunk> chunks_of(const std::vector<std::uint64_t>& paths_per_light,
   return chunks;
 }
 
+std::uint64_t paths_in(const std::vector<Chunk>& chunks) {
+  std::uint64_t paths = 0;
+  for (const Chunk& chunk : chunks) paths += chunk.last_path - chunk.first_path;
+  return paths;
+}
+
+std::vector<std::uint64_t> times(std::vector<std::uint64_t> counts, std::uint64_t factor) {
+  for (std::uint64_t& count : counts) count *= factor;
+  return counts;
+}
+
 std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   const BoundingSphere bounds = bounding_sphere(scene);
   const auto portals = std::make_shared<trace::Portals>(scene);
@@ -267,11 +282,19 @@ constexpr std::uint64_t pilots_from = 10;
 /// door is what all light behind it depends on.
 constexpr std::uint64_t paths_with_windows = 4;
 
-/// Windows for weights, where there are some.
-struct Windows {
-  const trace::WeightWindows* map = nullptr;
-  std::uint64_t paths_per_photon = 1;  ///< that are traced for each that is asked for
+/// What leads paths to where photons are wanted; by default nothing.
+struct Guidance {
+  const trace::WeightWindows* windows = nullptr;
+  std::uint64_t paths_per_photon = 1;                ///< that windows trace for each asked for
+  const trace::SpecularTargets* caustics = nullptr;  ///< of paths of caustics alone
 };
+
+/// Of paths that are aimed at mirrors and glass: numbers of their own, and more in each pass.
+PhotonTracerParameters aimed_at_targets(PhotonTracerParameters parameters) {
+  parameters.seed = trace::seed_of_repeat(parameters.seed, aimed_repeat);
+  for (std::uint64_t& before : parameters.paths_before) before *= defaults::aimed_paths;
+  return parameters;
+}
 
 /// Traces all chunks. Slot i holds what chunk i left, whichever thread traced it.
 std::vector<PathRecord> trace_chunks(const RayScene& scene,
@@ -280,7 +303,7 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const std::vector<Chunk>& chunks,
                                      const std::vector<std::uint64_t>& paths_per_light,
                                      const std::vector<double>& fractions, bool keep_incoming,
-                                     const Windows& windows, Progress& progress) {
+                                     const Guidance& guidance, Progress& progress) {
   std::vector<PathRecord> records(chunks.size());
   std::atomic<std::uint64_t> stored{0};
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
@@ -293,18 +316,20 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  chunk.light,
                                  paths_per_light[chunk.light],
                                  keep_incoming,
-                                 windows.map,
-                                 static_cast<double>(windows.paths_per_photon) /
+                                 guidance.caustics,
+                                 trace::RandomStream(parameters.seed, 0, chunk.light)
+                                     .block(trace::Purpose::emission, aim_block),
+                                 guidance.windows,
+                                 static_cast<double>(guidance.paths_per_photon) /
                                      static_cast<double>(paths_per_light[chunk.light]),
-                                 1.0f / static_cast<float>(windows.paths_per_photon)};
+                                 1.0f / static_cast<float>(guidance.paths_per_photon)};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
       trace::trace_photon_path(setup, before + path, records[c]);
     // Only what is stored: a path is the same whether its light is in a group or not.
     if (const auto fraction = static_cast<float>(fractions[chunk.light]); fraction != 1.0f)
-      for (PhotonRun* run : {&records[c].photons, &records[c].caustics})
-        for (glm::vec3& flux : run->flux) flux *= fraction;
+      for (glm::vec3& flux : records[c].photons.flux) flux *= fraction;
 
     const std::uint64_t so_far = stored += records[c].photons.size();
     if (so_far > limits::max_stored_photons)
@@ -341,10 +366,10 @@ std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
     pilot.seed = std::uint64_t{seed.word(1)} << 32 | seed.word(0);
     const std::vector<PathRecord> records =
         trace_chunks(ray_scene, pilot, emitters, chunks, paths_per_light, fractions, false,
-                     {map ? &*map : nullptr, 1}, quiet);
+                     {.windows = map ? &*map : nullptr}, quiet);
     std::vector<trace::PilotPhoton> photons;
     for (std::size_t c = 0; c < chunks.size(); ++c) {
-      const PhotonRun& run = records[c].photons;
+      const trace::PhotonRun& run = records[c].photons;
       const auto paths = static_cast<float>(paths_per_light[chunks[c].light]);
       for (std::size_t i = 0; i < run.size(); ++i)
         photons.push_back({run.position[i], glm::vec3(face_normal(scene, run.oriented_face[i])),
@@ -361,15 +386,14 @@ std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
   return map;
 }
 
-/// The photons of a run of all records.
+/// The photons of all records.
 ///   groups   null where photons do not tell lights apart
-Photons photons_of(std::vector<PathRecord>& records, PhotonRun PathRecord::*run,
-                   const std::vector<Chunk>& chunks, const LightGroups* groups,
-                   std::size_t oriented_face_count) {
+Photons photons_of(std::vector<PathRecord>& records, const std::vector<Chunk>& chunks,
+                   const LightGroups* groups, std::size_t oriented_face_count) {
   std::vector<trace::LayerRun> runs;
   for (std::size_t c = 0; c < chunks.size(); ++c) {
     const std::uint32_t layer = groups == nullptr ? 0 : groups->group_of[chunks[c].light];
-    runs.push_back({&(records[c].*run), static_cast<std::uint16_t>(layer)});
+    runs.push_back({&records[c].photons, static_cast<std::uint16_t>(layer)});
   }
   return trace::sorted_photons(runs, groups != nullptr, oriented_face_count);
 }
@@ -386,24 +410,21 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
 
   PhotonTracerResult result;
   const std::vector<trace::LightEmitter> emitters = emitters_of(scene);
-  std::vector<std::uint64_t> paths_per_light =
+  const std::vector<std::uint64_t> asked_per_light =
       photons_per_light(scene, parameters.emitted_photons, parameters.quota);
-  const std::optional<trace::WeightWindows> map =
+  const std::optional<trace::WeightWindows> windows =
       windows_of(ray_scene, parameters, emitters, progress);
-  Windows windows;
-  if (map) {
-    windows = {&*map, paths_with_windows};
-    for (std::uint64_t& paths : paths_per_light) paths *= paths_with_windows;
-  }
+  Guidance guidance;
+  if (windows) guidance = {&*windows, paths_with_windows};
+  const std::vector<std::uint64_t> paths_per_light =
+      times(asked_per_light, guidance.paths_per_photon);
   const std::vector<Chunk> chunks = chunks_of(paths_per_light, parameters.shard);
 
-  std::uint64_t paths = 0;
-  for (const Chunk& chunk : chunks) paths += chunk.last_path - chunk.first_path;
-  progress.begin("trace photons", paths, "paths");
+  progress.begin("trace photons", paths_in(chunks), "paths");
   const LightGroups groups = light_groups_of(scene);
   std::vector<PathRecord> records =
       trace_chunks(ray_scene, parameters, emitters, chunks, paths_per_light, groups.fraction,
-                   needs.glossy, windows, progress);
+                   needs.glossy, guidance, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);
@@ -416,13 +437,25 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   }
   const LightGroups* several = needs.several_lights() ? &groups : nullptr;
   const std::size_t oriented_faces = 2 * scene.triangle_count();
-  result.photons = photons_of(records, &PathRecord::photons, chunks, several, oriented_faces);
+  result.photons = photons_of(records, chunks, several, oriented_faces);
   result.photons.emitted_per_light = paths_per_light;
+  progress.end();
   if (parameters.keep_caustics) {
-    result.caustics = photons_of(records, &PathRecord::caustics, chunks, several, oriented_faces);
+    result.caustics.first_of.assign(oriented_faces + 1, 0);
+    if (needs.specular_paths) {
+      const trace::SpecularTargets targets(scene);
+      const PhotonTracerParameters aimed = aimed_at_targets(parameters);
+      const std::vector<std::uint64_t> aimed_per_light =
+          times(asked_per_light, defaults::aimed_paths);
+      const std::vector<Chunk> aimed_chunks = chunks_of(aimed_per_light, aimed.shard);
+      progress.begin("trace caustics", paths_in(aimed_chunks), "paths");
+      records = trace_chunks(ray_scene, aimed, emitters, aimed_chunks, aimed_per_light,
+                             groups.fraction, needs.glossy, {.caustics = &targets}, progress);
+      result.caustics = photons_of(records, aimed_chunks, several, oriented_faces);
+      progress.end();
+    }
     result.caustics.emitted_per_light = paths_per_light;
   }
-  progress.end();
   result.seconds = stopwatch.seconds();
   return result;
 }

@@ -28,7 +28,6 @@ struct PhotonRun {
 /// What a run of paths of one light left.
 struct PathRecord {
   PhotonRun photons;
-  PhotonRun caustics;   ///< empty unless PhotonTracerParameters::keep_caustics
   double escaped = 0;   ///< luminance that left the scene
   double absorbed = 0;  ///< luminance that surfaces, or the bound on path length, took
 };
@@ -41,12 +40,16 @@ struct PathSetup {
   std::uint32_t light;
   std::uint64_t paths;  ///< that share the light's flux 1
   bool keep_incoming;
+  /// Where paths of caustics alone are aimed; null: all light.
+  const SpecularTargets* caustics;
+  RandomBlock scramble;                    ///< of the points by which paths are aimed
   const WeightWindows* windows = nullptr;  ///< null: photons keep the weight that they have
   double unit_flux = 1;                    ///< of a photon of weight 1; with windows
   float path_weight = 1;                   ///< of a path where it starts; with windows
 };
 
-/// Traces path number `path` and appends what it leaves to `record`. Emitted luminance equals
+/// Traces path number `path` and appends what it leaves to `record`: photons of all light, or those
+/// that came by mirrors and glass alone. Emitted luminance equals
 /// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
 /// absorption. With windows a path may have branches, whose numbers are their own.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
