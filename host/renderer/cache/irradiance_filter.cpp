@@ -19,7 +19,7 @@ namespace {
 using Total = GatheredIrradiance::Total;
 
 /// Large enough to make a task's cost vanish, small enough to share work.
-constexpr std::size_t points_per_task = 256;
+constexpr std::size_t known_points_per_task = 256;
 
 std::vector<std::size_t> all_rows(std::size_t count) {
   std::vector<std::size_t> rows(count);
@@ -57,7 +57,7 @@ KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::
   }
   all_.resize(rows_.size());
   layers_.resize(estimates);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), points_per_task),
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), known_points_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t point = range.begin(); point < range.end(); ++point) {
                         all_[point] = irradiance.total(rows_[point], layer_powers);
