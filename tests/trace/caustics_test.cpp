@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr float half_side = 0.3f;  ///< of mirrors, metres
+constexpr float mirror_half_side = 0.3f;  ///< of mirrors, metres
 
 /// A black box of 2 m around the origin, with mirrors that reflect all light: two beside each other
 /// that face -x, at a distance of 0.9 m, and one that faces +y at 0.7 m, whose bounding spheres
@@ -27,10 +27,11 @@ SceneBuilder box_of_mirrors() {
   builder.box(glm::vec3(-1.0f), glm::vec3(1.0f), builder.add(diffuse(glm::vec3(0.0f))), true, 2);
   const std::uint32_t glass = builder.add(mirror(glm::vec3(1.0f)));
   for (const float z : {-0.65f, 0.05f}) {
-    builder.grid({0.9f, -half_side, z}, {0, 0, 2 * half_side}, {0, 2 * half_side, 0}, 1, glass);
+    builder.grid({0.9f, -mirror_half_side, z}, {0, 0, 2 * mirror_half_side},
+                 {0, 2 * mirror_half_side, 0}, 1, glass);
   }
-  builder.grid({-half_side, -0.7f, -half_side}, {0, 0, 2 * half_side}, {2 * half_side, 0, 0}, 1,
-               glass);
+  builder.grid({-mirror_half_side, -0.7f, -mirror_half_side}, {0, 0, 2 * mirror_half_side},
+               {2 * mirror_half_side, 0, 0}, 1, glass);
   return builder;
 }
 

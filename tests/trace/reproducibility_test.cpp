@@ -6,26 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cstring>
 
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
+#include "same_bits.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
-
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-bool same_bits(const Photons& a, const Photons& b) {
-  return same_bits(a.position, b.position) && same_bits(a.flux, b.flux) &&
-         same_bits(a.incoming, b.incoming) && same_bits(a.light, b.light) &&
-         same_bits(a.oriented_face, b.oriented_face) && same_bits(a.first_of, b.first_of);
-}
 
 bool same_bits(const PrimaryHits& a, const PrimaryHits& b) {
   return same_bits(a.position, b.position) && same_bits(a.oriented_face, b.oriented_face) &&

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cstring>
 
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
+#include "same_bits.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 
@@ -48,16 +48,6 @@ double stored(const Photons& photons) {
 
 bool has_windows(const PhotonTracerResult& traced, std::uint64_t asked) {
   return traced.photons.emitted_per_light[0] > asked;
-}
-
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-bool same_bits(const Photons& a, const Photons& b) {
-  return same_bits(a.position, b.position) && same_bits(a.flux, b.flux) &&
-         same_bits(a.oriented_face, b.oriented_face) && same_bits(a.first_of, b.first_of);
 }
 
 TEST_CASE("A room behind a slit has many light photons in place of few, and none is heavier") {
