@@ -15,13 +15,6 @@
 namespace photile::test {
 namespace {
 
-bool same_bits(const PrimaryHits& a, const PrimaryHits& b) {
-  return same_bits(a.position, b.position) && same_bits(a.oriented_face, b.oriented_face) &&
-         same_bits(a.pixel, b.pixel) && same_bits(a.throughput, b.throughput) &&
-         same_bits(a.diffuse_albedo, b.diffuse_albedo) && same_bits(a.outgoing, b.outgoing) &&
-         same_bits(a.lobe, b.lobe) && same_bits(a.fraction, b.fraction);
-}
-
 /// A room with glossy walls, a mirror and glass, whose floor is covered twice: of two triangles in
 /// the same place a ray must always choose the same one.
 Scene difficult_room() {
