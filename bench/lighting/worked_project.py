@@ -82,12 +82,13 @@ STEPS = (
          {}, ("desks", "sDA", "ASE", "DA", "UDI", "EN", "window_row", "inner_row", "lamps", "mean")),
     Step("EN 17037 calls that medium, and daylight saves nine tenths of the lamps' energy. But half of the points have more "
          "than 250 hours of sun a year (ASE): these windows need blinds, and glare by daylight is to be rated with "
-         "`--ratings dgp`.\n\n## Moods\n\nThe room on an afternoon in March:",
-         f"photile render office.gltf {LAMPS} --weather year.epw --time 2026-03-10T15:00 --size 960x640 "
-         "-o day.exr -o day.png",
+         "`--ratings dgp`.\n\n## Moods\n\nThe room on an afternoon in March, with ground outside that reflects "
+         "a fifth:",
+         f"photile render office.gltf {LAMPS} --weather year.epw --time 2026-03-10T15:00 --set ground=0.2 "
+         "--size 960x640 -o day.exr -o day.png",
          {"day.png": "An afternoon in March, all lamps on"}),
-    Step("`photile relight day.exr --light sun=off --light sky=off` shows the room after dark. A picture of its own has "
-         "less noise, for all its rays look for lamps. It has a layer for each row of them.",
+    Step("`photile relight day.exr --light sun=off --light sky=off --light ground=off` shows the room after "
+         "dark. A picture of its own has less noise, for all its rays look for lamps. It has a layer for each row of them.",
          f"photile render office.gltf {LAMPS} --size 960x640 -o office.exr"),
     Step("Moods are kept in the window, or written by hand beside the scene; a power of 0 is off:",
          files={"office.moods.json": MOODS}),
