@@ -196,7 +196,7 @@ MUTANTS = (
            (("cache", "gathering: the light of a caustic*"),)),
     Mutant("scattered light among caustics, so counted twice", "host/renderer/trace/photon_tracer.cpp",
            "(opaque && setup.caustics) || walk->bounce", "walk->bounce",
-           (("cache", "gathering: the light of a caustic*"),)),
+           (("trace", "Caustics of a bare bulb*"),)),
     Mutant("photons of all light for those of caustics", "host/renderer/render/photon_passes.cpp",
            "  Maps maps{build(std::move(traced.photons), parameters, plan_.used().kernel,",
            "  traced.caustics = traced.photons;\n"
