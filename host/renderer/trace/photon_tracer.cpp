@@ -272,16 +272,6 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   return emitters;
 }
 
-/// Paths of a pilot; pilots that use the windows of those before, each of which finds a room
-/// behind one more door; and how many times their paths have to be asked for, so that the first
-/// pilot costs next to nothing.
-constexpr std::uint64_t pilot_paths = 10'000;
-constexpr std::uint32_t pilots_with_windows = 4;
-constexpr std::uint64_t pilots_from = 10;
-/// Paths for each that is asked for, where windows thin what they store: how many come through a
-/// door is what all light behind it depends on.
-constexpr std::uint64_t paths_with_windows = 4;
-
 /// What leads paths to where photons are wanted; by default nothing.
 struct Guidance {
   const trace::WeightWindows* windows = nullptr;
@@ -347,10 +337,10 @@ std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
                                                const PhotonTracerParameters& parameters,
                                                const std::vector<trace::LightEmitter>& emitters,
                                                Progress& progress) {
-  if (parameters.emitted_photons < pilots_from * pilot_paths) return {};
+  if (parameters.emitted_photons < defaults::pilots_from * defaults::pilot_paths) return {};
   const Scene& scene = ray_scene.scene();
   const std::vector<std::uint64_t> paths_per_light =
-      photons_per_light(scene, pilot_paths, parameters.quota);
+      photons_per_light(scene, defaults::pilot_paths, parameters.quota);
   const std::vector<Chunk> chunks = chunks_of(paths_per_light, {});
   const std::vector<double> fractions(scene.lights.size(), 1.0);
   PhotonTracerParameters pilot = parameters;
@@ -359,7 +349,7 @@ std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
   pilot.keep_caustics = false;
   QuietProgress quiet(progress);
   std::optional<trace::WeightWindows> map;
-  for (std::uint32_t round = 0; round <= pilots_with_windows; ++round) {
+  for (std::uint32_t round = 0; round <= defaults::pilots_with_windows; ++round) {
     // Of their own, so that what windows do does not depend on the paths that they are for.
     const trace::RandomBlock seed =
         trace::RandomStream(parameters.seed, 0, 0).block(trace::Purpose::photon_window, round);
@@ -415,7 +405,7 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   const std::optional<trace::WeightWindows> windows =
       windows_of(ray_scene, parameters, emitters, progress);
   Guidance guidance;
-  if (windows) guidance = {&*windows, paths_with_windows};
+  if (windows) guidance = {&*windows, defaults::paths_with_windows};
   const std::vector<std::uint64_t> paths_per_light =
       times(asked_per_light, guidance.paths_per_photon);
   const std::vector<Chunk> chunks = chunks_of(paths_per_light, parameters.shard);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "photile/defaults.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
@@ -12,20 +13,9 @@ namespace photile::trace {
 
 namespace {
 
-/// Photons in a cell with light, on average: of the coarse cells, which are to hold photons where
-/// one path in a hundred comes, and of those that have windows.
-constexpr double photons_of_coarse_cell = 512, photons_of_cell = 64;
 constexpr int most_halvings = 24;  ///< of the scene's radius, to the size of a cell
 
-/// A cell is dim with less than this part of the photons of an average one, and rooms are hidden
-/// where more than this part of the cells with light are dim and closed. It is 18% and 34% in the
-/// rooms of bench/pictures/hard_rooms.py that few paths find, and 2 to 3% in the bundled rooms, a
-/// classroom and a kitchen, which have cupboards and undersides.
-constexpr double dim = 1.0 / 32, hidden_part = 0.1;
 constexpr int rays_of_photon = 4;  ///< by which a cell turns out to be in the open
-
-/// Deep light is not split for ever: what is behind a few doors may have no photon.
-constexpr double least_window = 0x1p-14;
 
 glm::ivec3 cell_at(const glm::vec3& position, const glm::dvec3& centre, double per_metre) {
   return glm::ivec3(glm::floor((glm::dvec3(position) - centre) * per_metre));
@@ -57,11 +47,11 @@ bool hides_light(std::span<const PilotPhoton> pilot, const RayScene::Impl& rays,
     for (std::uint32_t i = 0; i < pilot.size(); ++i)
       cells[cell_at(pilot[i].position, bounds.center, per_metre)].push_back(i);
     if (static_cast<double>(pilot.size()) <=
-        photons_of_coarse_cell * static_cast<double>(cells.size()))
+        defaults::pilot_photons_of_coarse_cell * static_cast<double>(cells.size()))
       break;
   }
   const auto count = static_cast<double>(cells.size());
-  const double few = dim * static_cast<double>(pilot.size()) / count;
+  const double few = defaults::dim_part * static_cast<double>(pilot.size()) / count;
   double hidden = 0;
   for (const auto& [cell, photons] : cells) {
     if (static_cast<double>(photons.size()) >= few) continue;
@@ -69,7 +59,7 @@ bool hides_light(std::span<const PilotPhoton> pilot, const RayScene::Impl& rays,
       return sees_surface(pilot[i], i, rays, bounds.radius);
     });
   }
-  return hidden > hidden_part * count;
+  return hidden > defaults::hidden_part * count;
 }
 
 WeightWindows::WeightWindows(std::span<const PilotPhoton> pilot, const BoundingSphere& bounds)
@@ -78,7 +68,8 @@ WeightWindows::WeightWindows(std::span<const PilotPhoton> pilot, const BoundingS
     weight_.clear();
     pilots_ = 0;
     add(pilot);
-    if (static_cast<double>(pilot.size()) <= photons_of_cell * static_cast<double>(weight_.size()))
+    if (static_cast<double>(pilot.size()) <=
+        defaults::pilot_photons_of_cell * static_cast<double>(weight_.size()))
       break;
   }
 }
@@ -95,7 +86,8 @@ void WeightWindows::add(std::span<const PilotPhoton> pilot) {
 std::optional<float> WeightWindows::at(const glm::vec3& position, const glm::vec3& normal) const {
   const auto found = weight_.find(cell_of(position, normal));
   if (found == weight_.end()) return std::nullopt;
-  return static_cast<float>(std::clamp(found->second / pilots_ / even_, least_window, 1.0));
+  return static_cast<float>(
+      std::clamp(found->second / pilots_ / even_, defaults::least_window, 1.0));
 }
 
 WeightWindows::Cell WeightWindows::cell_of(const glm::vec3& position,
