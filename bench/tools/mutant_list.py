@@ -193,7 +193,7 @@ MUTANTS = (
            (("render", "direct rays*"),)),
     Mutant("direct light among caustics, so counted twice", "host/renderer/trace/photon_tracer.cpp",
            "setup.parameters->store_direct && !setup.caustics", "setup.parameters->store_direct",
-           (("cache", "gathering: the light of a caustic*"),)),
+           (("trace", "Caustics of a bare bulb*"),)),
     Mutant("scattered light among caustics, so counted twice", "host/renderer/trace/photon_tracer.cpp",
            "(opaque && setup.caustics) || walk->bounce", "walk->bounce",
            (("trace", "Caustics of a bare bulb*"),)),
