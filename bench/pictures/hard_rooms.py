@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Rooms whose light few photons find, and the noise of their pictures: the table in docs/accuracy.md.
+"""Rooms whose light few photons find or many thin things part, and the noise and bias of their pictures: the
+tables in docs/accuracy.md.
 
     bench/pictures/hard_rooms.py [FOLDER] [--photile COMMAND] [--only ROOM ...] [--seeds N] [--options "..."]
 
-Writes four small scenes to FOLDER and renders each by `--quality good` with some seeds. Prints the relMSE
+Writes small scenes to FOLDER and renders each by `--quality good` with some seeds. Prints the relMSE
 of a picture beside the mean of all seeds' (as of one picture, without bias), what the mean and a sixteenth
-of the picture scatter by from seed to seed, and processor seconds. With `--paths` the mean is held against
-photile's path tracer, whose pictures FOLDER keeps: single pixels of these are too noisy, since paths from
-the camera hardly find such lamps. Needs the built command and the Debian packages python3-numpy and
+of the picture scatter by from seed to seed, and processor seconds. With `--paths` the means of the picture
+and of its sixteenths are held against photile's path tracer, whose pictures FOLDER keeps: single pixels of
+these are too noisy, since paths from the camera hardly find such lamps. Needs the built command and the Debian packages python3-numpy and
 python3-openimageio.
 """
 
@@ -27,7 +28,7 @@ packages.require("numpy", "OpenImageIO")
 import numpy as np
 
 from scene_tools.gltf_writer import GltfDocument
-from scene_tools.shapes import box, rectangle
+from scene_tools.shapes import Shape, box, rectangle
 from tools import path_references, picture_error
 
 SIZE = "96x72"
@@ -162,9 +163,31 @@ def small_window(path):
     house.save(path, (0.8, 0.9, 1.2))
 
 
+def blinds(path):
+    """A window behind a blind of slats 25 mm wide; before it a table on thin legs, with small things on it."""
+    house = House("blinds", 1)
+    house.window = (1.0, 0.9, 2.8, 2.2)
+    house.build()
+    x0, y0, x1, y1 = house.window
+    slats = Shape()
+    for row in range(round((y1 - y0) / 0.022)):
+        slats.add(box((x1 - x0, 0.0006, 0.025)).turned("x", 40).moved((x0 + x1) / 2, y0 + 0.022 * row, 0.03))
+    house.document.thing("blind", (house.white, slats))
+    house.document.thing("table", (house.oak, box((1.4, 0.03, 0.7), (1.9, 0.7, 1.1))))
+    legs, cups = Shape(), Shape()
+    for x in (-0.65, 0.65):
+        for z in (-0.3, 0.3):
+            legs.add(box((0.02, 0.7, 0.02), (1.9 + x, 0, 1.1 + z)))
+    for i in range(6):
+        cups.add(box((0.06, 0.09, 0.06), (1.4 + 0.2 * i, 0.73, 1.0 + 0.12 * (i % 3))))
+    house.document.thing("legs", (house.grey, legs))
+    house.document.thing("cups", (house.white, cups))
+    house.save(path, (1.2, 0.9, 0.6))
+
+
 SKY = ("--site", "52.5,13.4,1", "--time", "2026-06-21T18:30", "--sky", "perez=500,120", "--set", "north=180")
 ROOMS = {"doors": (doors_ajar, ()), "cove": (cove, ()), "hatch": (hatch, ()),
-         "window": (small_window, (*SKY, "--set", "portals=off"))}
+         "window": (small_window, (*SKY, "--set", "portals=off")), "blinds": (blinds, SKY)}
 PATHS_OF_PICTURE = 1024  # of a pixel, of one picture of the reference
 
 
@@ -198,14 +221,16 @@ def measured(given, name, folder):
 
 
 def ratio_text(given, scene, options, mean):
-    """Of the means to paths, and the standard error of the paths; nothing where none are asked for."""
+    """Of the means to paths, and the standard error of the paths, of the picture and of the sixteenth that is
+    farthest off; nothing where none are asked for."""
     if not given.paths:
-        return ""
+        return " | "
     found = path_references.pictures(given.photile, scene, SIZE, given.paths, given.folder / "references",
                                      options, PATHS_OF_PICTURE)
-    means = [picture.mean() for picture in found]
-    return (f"{mean.mean() / np.mean(means):.3f} +-"
-            f"{np.std(means, ddof=1) / np.sqrt(len(means)) / np.mean(means):.3f}")
+    own, of_paths = sixteenths(mean), np.array([sixteenths(picture) for picture in found])
+    part = np.argmax(np.abs(own / of_paths.mean(axis=0) - 1))
+    return " | ".join(f"{ours / np.mean(paths):.3f} +-{np.std(paths, ddof=1) / np.sqrt(len(paths)) / np.mean(paths):.3f}"
+                      for ours, paths in ((own.mean(), of_paths.mean(axis=1)), (own[part], of_paths[:, part])))
 
 
 def main():
@@ -218,8 +243,9 @@ def main():
     parser.add_argument("--options", default="", help="further options of photile render")
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
-    print("| | noise, relMSE | mean to that of paths | scatter of the mean | of a sixteenth | processor s |")
-    print("|---|--:|--:|--:|--:|--:|")
+    print("| | noise, relMSE | mean to that of paths | of the sixteenth farthest off | "
+          "scatter of the mean | of a sixteenth | processor s |")
+    print("|---|--:|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as name:
         for room in given.only:
             measured(given, room, pathlib.Path(name))
