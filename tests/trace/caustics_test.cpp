@@ -9,7 +9,7 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/emission_sampling.hpp"
-#include "trace/specular_targets.hpp"
+#include "trace/targets.hpp"
 #include "validation/analytic_cases.hpp"
 
 namespace photile::test {
@@ -160,7 +160,7 @@ TEST_CASE("Photons of a caustic lie more evenly than by chance") {
 
 TEST_CASE("Scenes without mirrors and glass have no targets and no caustics") {
   const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
-  CHECK(trace::SpecularTargets(scene).empty());
+  CHECK(trace::Targets(scene).empty());
   const PhotonTracerResult traced =
       trace_photons(RayScene(scene), {.emitted_photons = 1000, .keep_caustics = true});
   CHECK(traced.caustics.size() == 0);

@@ -134,7 +134,7 @@ double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
   return 1 / ((1 - portal_fraction_) + portal_fraction_ * through);
 }
 
-EmittedRay LightEmitter::emit_towards(const SpecularTargets& targets, const RandomStream& random,
+EmittedRay LightEmitter::emit_towards(const Targets& targets, const RandomStream& random,
                                       const glm::dvec2& aim) const {
   if (area_) return emit_from_area_towards(targets, random, aim);
   if (light_->is_distant()) return emit_from_beyond_towards(targets, random, aim);
@@ -144,7 +144,7 @@ EmittedRay LightEmitter::emit_towards(const SpecularTargets& targets, const Rand
   return {light_->position, direction, over_density(light_->color, own, density)};
 }
 
-EmittedRay LightEmitter::emit_from_area_towards(const SpecularTargets& targets,
+EmittedRay LightEmitter::emit_from_area_towards(const Targets& targets,
                                                 const RandomStream& random,
                                                 const glm::dvec2& aim) const {
   const TriangleHit where =
@@ -162,7 +162,7 @@ EmittedRay LightEmitter::emit_from_area_towards(const SpecularTargets& targets,
   return {point.origin_towards(direction), direction, over_density(color_of(point), own, density)};
 }
 
-EmittedRay LightEmitter::emit_from_beyond_towards(const SpecularTargets& targets,
+EmittedRay LightEmitter::emit_from_beyond_towards(const Targets& targets,
                                                   const RandomStream& random,
                                                   const glm::dvec2& aim) const {
   DistantSampler::Sample from{-light_->direction, light_->color, 0.0f};

@@ -41,7 +41,7 @@ struct PathSetup {
   std::uint64_t paths;  ///< that share the light's flux 1
   bool keep_incoming;
   /// Where paths of caustics alone are aimed; null: all light.
-  const SpecularTargets* caustics;
+  const Targets* caustics;
   RandomBlock scramble;                    ///< of the points by which paths are aimed
   const WeightWindows* windows = nullptr;  ///< null: photons keep the weight that they have
   double unit_flux = 1;                    ///< of a photon of weight 1; with windows

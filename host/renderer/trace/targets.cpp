@@ -1,4 +1,4 @@
-#include "trace/specular_targets.hpp"
+#include "trace/targets.hpp"
 
 #include <algorithm>
 #include <array>
@@ -158,7 +158,7 @@ class DirectionsTo {
 
 }  // namespace
 
-SpecularTargets::SpecularTargets(const Scene& scene) {
+Targets::Targets(const Scene& scene) {
   std::vector<Box> boxes;
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
     if (scene.materials[scene.triangle_material[t]].interaction == Interaction::opaque) continue;
@@ -181,7 +181,7 @@ SpecularTargets::SpecularTargets(const Scene& scene) {
   }
 }
 
-SpecularTargets::Direction SpecularTargets::direction_from(const glm::dvec3& from,
+Targets::Direction Targets::direction_from(const glm::dvec3& from,
                                                            const glm::vec3* normal,
                                                            glm::dvec2 u) const {
   std::array<DirectionsTo, most_spheres> to;
@@ -201,7 +201,7 @@ SpecularTargets::Direction SpecularTargets::direction_from(const glm::dvec3& fro
   return {direction, found / all};
 }
 
-SpecularTargets::Line SpecularTargets::line_along(const glm::dvec3& travel, glm::dvec2 u) const {
+Targets::Line Targets::line_along(const glm::dvec3& travel, glm::dvec2 u) const {
   std::array<double, most_spheres> weights{};
   double all = 0;
   for (std::size_t i = 0; i < spheres_.size(); ++i) {

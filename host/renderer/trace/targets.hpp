@@ -12,9 +12,9 @@ namespace photile::trace {
 /// straight line to one of them, so that paths which are aimed at them, and carry their flux over
 /// the density of their line, find the same light as paths in all directions: Jensen's projection
 /// maps ("Global illumination using photon maps", 1996) with spheres in place of cells.
-class SpecularTargets {
+class Targets {
  public:
-  explicit SpecularTargets(const Scene& scene);
+  explicit Targets(const Scene& scene);
 
   /// Whether there are no mirrors and no glass.
   bool empty() const { return spheres_.empty(); }
