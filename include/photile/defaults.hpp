@@ -54,6 +54,13 @@ inline constexpr double dim_part = 1.0 / 32, hidden_part = 0.1;
 /// Light is not split for ever: what is behind a few doors may have no photon.
 inline constexpr double least_window = 0x1p-14;
 
+// Bright surface that rays are aimed at
+/// The brightest part of the lit surface, where more than so much of all reflected light comes from
+/// it. In a room with a cove half comes from 4%, in an office by day from 7%, in others from 9% and
+/// more: there aimed rays bring nothing.
+inline constexpr double bright_part = 0.05, bright_light = 0.5;
+inline constexpr double rays_to_bright = 0.5;  ///< of all
+
 // Caustics
 /// Paths that are aimed at mirrors and glass, for each path of all light.
 inline constexpr std::uint64_t aimed_paths = 3;

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
@@ -9,6 +10,7 @@
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 #include "trace/emission_sampling.hpp"
+#include "trace/sampling.hpp"
 #include "trace/targets.hpp"
 #include "validation/analytic_cases.hpp"
 
@@ -158,9 +160,46 @@ TEST_CASE("Photons of a caustic lie more evenly than by chance") {
   CHECK(squares - mean * mean < 0.3 * mean);  // by chance it is the mean, within a third
 }
 
+TEST_CASE("Aims: directions have the densities that are told, over all that targets show") {
+  // Two spheres that overlap, one that the point is within, one below the horizon.
+  const glm::vec3 up(0.0f, 0.0f, 1.0f);
+  const trace::Targets targets({{{0.5, 0, 2}, 0.5, 3.0},
+                                {{0.9, 0.2, 2}, 0.6, 1.0},
+                                {{0, 0.1, 0}, 0.4, 0.2},
+                                {{0, 0, -3}, 1.0, 5.0}});
+  for (const glm::vec3* normal : {&up, static_cast<const glm::vec3*>(nullptr)}) {
+    const trace::Aim aim(targets, glm::dvec3(0.0), normal);
+    REQUIRE(aim.possible());
+    constexpr int count = 50'000;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform;
+    // Of a function of the direction, by the aim and by directions to all sides.
+    const auto of = [](const glm::vec3& d) { return 1 + d.x + 0.5 * d.y * d.y; };
+    double aimed = 0, aimed_squares = 0, everywhere = 0, squares = 0, all = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto [direction, density] = aim.sample({uniform(random), uniform(random)});
+      CHECK(density == Approx(aim.density(direction)).epsilon(1e-3));
+      aimed += of(direction) / count;
+      aimed_squares += of(direction) * of(direction) / count;
+      const glm::vec3 other = trace::sample_sphere(static_cast<float>(uniform(random)),
+                                                   static_cast<float>(uniform(random)));
+      const double weight = 4 * pi * aim.density(other);
+      all += weight / count;
+      everywhere += weight * of(other) / count;
+      squares += weight * weight * of(other) * of(other) / count;
+    }
+    const double error =
+        std::sqrt((aimed_squares - aimed * aimed + squares - everywhere * everywhere) / count);
+    CHECK(aimed == Approx(everywhere).margin(4 * error));
+    CHECK(all == Approx(1).margin(4 * std::sqrt(squares / count)));
+  }
+  CHECK_FALSE(
+      trace::Aim(trace::Targets({{{0, 0, -3}, 1.0, 5.0}}), glm::dvec3(0.0), &up).possible());
+}
+
 TEST_CASE("Scenes without mirrors and glass have no targets and no caustics") {
   const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
-  CHECK(trace::Targets(scene).empty());
+  CHECK(trace::specular_targets(scene).empty());
   const PhotonTracerResult traced =
       trace_photons(RayScene(scene), {.emitted_photons = 1000, .keep_caustics = true});
   CHECK(traced.caustics.size() == 0);

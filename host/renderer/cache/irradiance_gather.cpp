@@ -18,6 +18,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
+#include "trace/bright_surface.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/hemisphere_rays.hpp"
 #include "trace/ray_query.hpp"
@@ -280,6 +281,8 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
       light_sampler_(rays.scene()),
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
       layer_powers_(estimate::layer_powers(rays.scene())),
+      bright_(parameters.rays > 0 ? trace::bright_surface(rays, layer_powers_, parameters.seed)
+                                  : trace::Targets({})),
       secondary_(rays, photons, of_nodes, secondary) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("light samples from a point", parameters.light_samples, 0, limits::max_direct_rays);
@@ -331,7 +334,8 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
               : 0.0f,
       .near = near,
       .slats = near > 0 && rays > 0 && points.size() > 0 ? secondary_.slats(near / 2)
-                                                         : std::span<const std::uint8_t>{}};
+                                                         : std::span<const std::uint8_t>{},
+      .bright = &bright_};
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
       std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));

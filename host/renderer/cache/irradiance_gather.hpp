@@ -13,6 +13,7 @@
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "trace/light_sampler.hpp"
+#include "trace/targets.hpp"
 
 namespace photile::cache {
 
@@ -112,6 +113,7 @@ class IrradianceGather {
   trace::LightSampler light_sampler_;
   std::vector<glm::vec3> emitted_;  ///< per light
   std::vector<double> layer_powers_;
+  trace::Targets bright_;  ///< empty where light is spread
   SecondaryLight secondary_;
   Costs costs_;
 };

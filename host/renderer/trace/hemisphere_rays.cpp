@@ -142,6 +142,36 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
   }
 }
 
+/// A direction of a ray, and its density by the cosine over that of all that could be sampled.
+struct Leaving {
+  glm::vec3 direction;
+  float weight;
+};
+
+/// By the cosine, or into the aim for a part of the square.
+///   aim   null: by the cosine alone
+Leaving leaving(const Frame& frame, const Aim* aim, glm::dvec2 u) {
+  const auto by_cosine = [&] {
+    const glm::vec2 on_square(u);
+    return frame.to_world(
+        sample_cosine_hemisphere(std::min(on_square.x, 0x1.fffffep-1f), on_square.y));
+  };
+  if (!aim) return {by_cosine(), 1.0f};
+  constexpr double aimed = defaults::rays_to_bright;
+  Aim::Direction way{};
+  if (u.x < aimed) {
+    way = aim->sample({u.x / aimed, u.y});
+  } else {
+    u.x = (u.x - aimed) / (1 - aimed);
+    way.direction = by_cosine();
+    way.density = aim->density(way.direction);
+  }
+  const double cosine = std::max(0.0, static_cast<double>(glm::dot(way.direction, frame.n)));
+  const double by_cosine_alone = cosine * glm::one_over_pi<double>();
+  return {way.direction, static_cast<float>(by_cosine_alone /
+                                            (aimed * way.density + (1 - aimed) * by_cosine_alone))};
+}
+
 /// All rays of a point. Returns the sum of their inverse distances to what they meet first.
 ///   run_point   its position in the run
 float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
@@ -158,17 +188,23 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
   near_light_samples.clear();
   if (parameters.rays_per_light_sample > 0)
     parameters.light_sampler->weigh(point.position, point.normal, probabilities);
+  std::optional<Aim> aim;
+  if (parameters.bright && !parameters.bright->empty()) {
+    aim.emplace(*parameters.bright, glm::dvec3(point.position), &point.normal);
+    if (!aim->possible()) aim.reset();
+  }
   float inverse_distances = 0;
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
     for (std::uint32_t i = 0; i < rays; ++i) {
-      const glm::vec2 on_square(sobol_point(i, scramble));
-      const glm::vec3 direction = frame.to_world(
-          sample_cosine_hemisphere(std::min(on_square.x, 0x1.fffffep-1f), on_square.y));
+      const auto [direction, weight] =
+          leaving(frame, aim ? &*aim : nullptr, sobol_point(i, scramble));
       if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
+      if (!(weight > 0)) continue;  // below the horizon
       // A stream for each, apart from the point's own.
       const std::uint32_t stream = batch * rays + i + 1;
       const RandomStream random(parameters.seed, number, stream);
+      // Light samples are weighed beside rays by the cosine alone.
       const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
       const LightTechnique light_sampling{
           *parameters.light_sampler,
@@ -176,12 +212,12 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
           probabilities};
       const std::size_t before = ray_hits.hits.size();
       follow_eye_ray(run.first,
-                     {point.origin_towards(direction), direction, throughput,
+                     {point.origin_towards(direction), direction, weight * throughput,
                       (run_point * batches + batch) * rays + i},
                      random, ray_hits, &light_sampling);
       if (ray_hits.hits.size() == before) continue;
       inverse_distances +=
-          1 / std::max(1e-6f, glm::distance(point.position, ray_hits.hits.back().position));
+          weight / std::max(1e-6f, glm::distance(point.position, ray_hits.hits.back().position));
       if (parameters.near > 0) {
         go_on_from_near(run, point, number, before, stream, batches * rays, near_light_samples,
                         ray_hits);

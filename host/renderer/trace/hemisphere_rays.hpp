@@ -10,6 +10,7 @@
 
 #include "photile/ray_scene.hpp"
 #include "trace/eye_path.hpp"
+#include "trace/targets.hpp"
 
 namespace photile::trace {
 
@@ -29,6 +30,8 @@ struct HemisphereParameters {
   /// Where `near` is not 0: 1 for each oriented face that ends no ray either, however far it is;
   /// empty = none.
   std::span<const std::uint8_t> slats = {};
+  /// That a part of the rays is aimed at, `defaults::rays_to_bright`; null or empty = none.
+  const Targets* bright = nullptr;
 };
 
 /// Rays of a run of points that end on an opaque surface, in the order point, batch, ray.
@@ -61,8 +64,9 @@ struct HitReflection {
 };
 HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t hit);
 
-/// Traces rays with the density of the cosine to the geometric normal, through cutouts, mirrors and
-/// glass to the next opaque surface. Lights in mirrors or behind glass that bends are not seen:
+/// Traces rays with the density of the cosine to the geometric normal, or with that of a mix of it
+/// and of directions to bright surface, through cutouts, mirrors and glass to the next opaque
+/// surface. Lights in mirrors or behind glass that bends are not seen:
 /// their light is a caustic.
 /// Depends on the scene, each point, its number and the parameters only.
 ///   number   of each point, below 2^48: the same number and point give the same rays

@@ -135,26 +135,25 @@ double LightEmitter::flux_of_line(const glm::dvec3& travel, int entered) const {
 }
 
 EmittedRay LightEmitter::emit_towards(const Targets& targets, const RandomStream& random,
-                                      const glm::dvec2& aim) const {
-  if (area_) return emit_from_area_towards(targets, random, aim);
-  if (light_->is_distant()) return emit_from_beyond_towards(targets, random, aim);
-  const auto [direction, density] =
-      targets.direction_from(glm::dvec3(light_->position), nullptr, aim);
+                                      const glm::dvec2& u) const {
+  if (area_) return emit_from_area_towards(targets, random, u);
+  if (light_->is_distant()) return emit_from_beyond_towards(targets, random, u);
+  const auto [direction, density] = Aim(targets, glm::dvec3(light_->position), nullptr).sample(u);
   const double own = candela_per_lumen(*scene_, *light_, glm::dvec3(direction));
   return {light_->position, direction, over_density(light_->color, own, density)};
 }
 
-EmittedRay LightEmitter::emit_from_area_towards(const Targets& targets,
-                                                const RandomStream& random,
-                                                const glm::dvec2& aim) const {
+EmittedRay LightEmitter::emit_from_area_towards(const Targets& targets, const RandomStream& random,
+                                                const glm::dvec2& u) const {
   const TriangleHit where =
       area_->sample(random.block(Purpose::emission, intensity_ ? luminaire_block : point_block));
   const RandomBlock numbers = random.block(Purpose::emission, direction_block);
   const std::uint32_t front = scene_->front_side[where.triangle];
   const std::uint32_t side = light_->two_sided && numbers.bit(2) ? 1 - front : front;
   SurfacePoint point = surface_point(*scene_, where, side);
-  const auto [direction, density] =
-      targets.direction_from(glm::dvec3(point.position), intensity_ ? nullptr : &point.normal, aim);
+  const Aim aim(targets, glm::dvec3(point.position), intensity_ ? nullptr : &point.normal);
+  if (!aim.possible()) return {point.position, point.normal, glm::vec3(0.0f)};
+  const auto [direction, density] = aim.sample(u);
   const double cosine = static_cast<double>(glm::dot(direction, point.normal));
   if (intensity_ && cosine < 0) point = surface_point(*scene_, where, 1 - side);
   const double own = intensity_ ? candela_per_lumen(*scene_, *light_, glm::dvec3(direction))
@@ -164,11 +163,11 @@ EmittedRay LightEmitter::emit_from_area_towards(const Targets& targets,
 
 EmittedRay LightEmitter::emit_from_beyond_towards(const Targets& targets,
                                                   const RandomStream& random,
-                                                  const glm::dvec2& aim) const {
+                                                  const glm::dvec2& u) const {
   DistantSampler::Sample from{-light_->direction, light_->color, 0.0f};
   if (distant_) from = distant_->sample(random.block(Purpose::emission, direction_block));
   const glm::dvec3 travel(-from.direction);
-  const auto [point, density] = targets.line_along(travel, aim);
+  const auto [point, density] = targets.line_along(travel, u);
   const double back = glm::dot(point - bounds_.center, travel) + bounds_.radius;
   const double own = 1 / (glm::pi<double>() * bounds_.radius * bounds_.radius);
   return {glm::vec3(point - back * travel), glm::vec3(travel),

@@ -11,8 +11,8 @@
 #include "trace/emission_sampling.hpp"
 #include "trace/portals.hpp"
 #include "trace/random_stream.hpp"
-#include "trace/targets.hpp"
 #include "trace/surface.hpp"
+#include "trace/targets.hpp"
 
 namespace photile::trace {
 
@@ -44,7 +44,7 @@ class LightEmitter {
   /// Towards mirrors and glass alone, of which there are some: the same light arrives there as by
   /// `emit`, on more photons, each with its flux over the density of its ray among those of `emit`.
   EmittedRay emit_towards(const Targets& targets, const RandomStream& random,
-                          const glm::dvec2& aim) const;
+                          const glm::dvec2& u) const;
 
  private:
   EmittedRay emit_from_area(const RandomStream& random) const;
@@ -52,9 +52,9 @@ class LightEmitter {
   EmittedRay emit_from_beyond(const RandomStream& random) const;
   EmittedRay emit_through_portals(const RandomStream& random) const;
   EmittedRay emit_from_area_towards(const Targets& targets, const RandomStream& random,
-                                    const glm::dvec2& aim) const;
+                                    const glm::dvec2& u) const;
   EmittedRay emit_from_beyond_towards(const Targets& targets, const RandomStream& random,
-                                      const glm::dvec2& aim) const;
+                                      const glm::dvec2& u) const;
   double flux_of_line(const glm::dvec3& travel, int entered) const;
   glm::vec3 color_of(const SurfacePoint& point) const;
   float spot_cosine(double u) const;

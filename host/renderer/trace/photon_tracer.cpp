@@ -275,7 +275,7 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
 /// What leads paths to where photons are wanted; by default nothing.
 struct Guidance {
   const trace::WeightWindows* windows = nullptr;
-  std::uint64_t paths_per_photon = 1;                ///< that windows trace for each asked for
+  std::uint64_t paths_per_photon = 1;        ///< that windows trace for each asked for
   const trace::Targets* caustics = nullptr;  ///< of paths of caustics alone
 };
 
@@ -433,7 +433,7 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   if (parameters.keep_caustics) {
     result.caustics.first_of.assign(oriented_faces + 1, 0);
     if (needs.specular_paths) {
-      const trace::Targets targets(scene);
+      const trace::Targets targets = trace::specular_targets(scene);
       const PhotonTracerParameters aimed = aimed_at_targets(parameters);
       const std::vector<std::uint64_t> aimed_per_light =
           times(asked_per_light, defaults::aimed_paths);

@@ -1,20 +1,20 @@
 #include "trace/targets.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cassert>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
-#include <optional>
 #include <span>
+#include <utility>
 
 #include "trace/sampling.hpp"
 
 namespace photile::trace {
 namespace {
 
-/// A path pays for each when it starts.
-constexpr std::size_t most_spheres = 16;
+/// Of mirrors and glass: a path pays for each when it starts.
+constexpr std::size_t most_specular_spheres = 16;
 /// Two spheres in place of one have to show less than this part of its disc.
 constexpr double worth_splitting = 0.8;
 /// Rays start so close beside the points that directions are from, in parts of the radius.
@@ -72,21 +72,6 @@ Part part_of(std::span<Box> boxes) {
   return part;
 }
 
-/// The sphere as seen from a point.
-struct Cone {
-  glm::dvec3 axis;
-  double below_one;  ///< 1 - cosine of its half angle
-};
-
-/// None from within the sphere.
-std::optional<Cone> cone_towards(const glm::dvec3& centre, double radius, const glm::dvec3& from) {
-  const glm::dvec3 towards = centre - from;
-  const double squared = glm::dot(towards, towards);
-  if (squared <= radius * radius) return std::nullopt;
-  const double squared_sine = radius * radius / squared;
-  return Cone{towards / std::sqrt(squared), squared_sine / (1 + std::sqrt(1 - squared_sine))};
-}
-
 /// One of some, in proportion to its weight, by a number in [0, 1) that is as even afterwards.
 ///   all   the sum of the weights
 std::size_t choose(std::span<const double> weights, double all, double& u) {
@@ -102,63 +87,22 @@ std::size_t choose(std::span<const double> weights, double all, double& u) {
   return chosen;
 }
 
-/// The largest cosine to a normal within the cone; 0 where all of it is below the horizon.
-double largest_cosine(const Cone& cone, const glm::dvec3& normal) {
-  const double cosine = std::clamp(glm::dot(cone.axis, normal), -1.0, 1.0);
-  const double of_cone = 1 - cone.below_one;
+/// The largest cosine to a normal within a cone; 0 where all of it is below the horizon.
+///   of_cone   cosine of its half angle
+double largest_cosine(const glm::dvec3& axis, double of_cone, const glm::dvec3& normal) {
+  const double cosine = std::clamp(glm::dot(axis, normal), -1.0, 1.0);
   if (cosine >= of_cone) return 1;
   const double sines = (1 - cosine * cosine) * (1 - of_cone * of_cone);
   return std::max(0.0, cosine * of_cone + std::sqrt(std::max(0.0, sines)));
 }
 
-/// Directions from a point to a sphere: evenly into its cone; from within it in all directions, or
-/// by the cosine law where there is a normal.
-class DirectionsTo {
- public:
-  DirectionsTo() = default;
-  DirectionsTo(const glm::dvec3& centre, double radius, const glm::dvec3& from,
-               const glm::vec3* normal)
-      : cone_(cone_towards(centre, radius, from)), normal_(normal) {
-    if (cone_) {
-      weight_ = normal ? largest_cosine(*cone_, glm::dvec3(*normal)) : 1;
-      all_ = weight_ * glm::two_pi<double>() * cone_->below_one;
-    } else {
-      all_ = (normal ? 1 : 4) * glm::pi<double>();
-    }
-  }
-  double all() const { return all_; }  ///< integral of `weight` over the sphere
-
-  glm::vec3 sample(const glm::dvec2& u) const {
-    const auto x = static_cast<float>(u.x), y = static_cast<float>(u.y);
-    if (!cone_) {
-      return normal_ ? Frame(*normal_).to_world(sample_cosine_hemisphere(x, y))
-                     : sample_sphere(x, y);
-    }
-    const double below_one = u.x * cone_->below_one;
-    const double sine = std::sqrt(below_one * (2 - below_one));
-    const double phi = glm::two_pi<double>() * u.y;
-    const glm::vec3 local(sine * std::cos(phi), sine * std::sin(phi), 1 - below_one);
-    return glm::normalize(Frame(glm::vec3(cone_->axis)).to_world(local));
-  }
-  /// Where `sample` says so it may lie at the border, to a rounding beyond it.
-  double weight(const glm::vec3& direction, bool sampled) const {
-    if (cone_) {
-      const glm::dvec3 apart = glm::dvec3(direction) - cone_->axis;
-      return sampled || 0.5 * glm::dot(apart, apart) <= cone_->below_one ? weight_ : 0;
-    }
-    if (!normal_) return 1;
-    return std::max(0.0, static_cast<double>(glm::dot(direction, *normal_)));
-  }
-
- private:
-  std::optional<Cone> cone_;
-  const glm::vec3* normal_ = nullptr;
-  double weight_ = 0, all_ = 0;
-};
-
 }  // namespace
 
-Targets::Targets(const Scene& scene) {
+Targets::Targets(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
+  assert(spheres_.size() <= most_spheres);
+}
+
+Targets specular_targets(const Scene& scene) {
   std::vector<Box> boxes;
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
     if (scene.materials[scene.triangle_material[t]].interaction == Interaction::opaque) continue;
@@ -166,9 +110,9 @@ Targets::Targets(const Scene& scene) {
     boxes.push_back(
         {glm::dvec3(glm::min(a, glm::min(b, c))), glm::dvec3(glm::max(a, glm::max(b, c)))});
   }
-  if (boxes.empty()) return;
+  if (boxes.empty()) return Targets({});
   std::vector<Part> parts{part_of(boxes)};
-  while (parts.size() < most_spheres) {
+  while (parts.size() < most_specular_spheres) {
     const auto widest = std::max_element(
         parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.gain < b.gain; });
     if (!(widest->gain > 0)) break;
@@ -176,29 +120,11 @@ Targets::Targets(const Scene& scene) {
     *widest = part_of(whole.boxes.first(whole.cut));
     parts.push_back(part_of(whole.boxes.subspan(whole.cut)));
   }
+  std::vector<Targets::Sphere> spheres;
   for (const Part& part : parts) {
-    spheres_.push_back({part.box.middle(), (1 + margin) * std::sqrt(part.box.squared_radius())});
+    spheres.push_back({part.box.middle(), (1 + margin) * std::sqrt(part.box.squared_radius())});
   }
-}
-
-Targets::Direction Targets::direction_from(const glm::dvec3& from,
-                                                           const glm::vec3* normal,
-                                                           glm::dvec2 u) const {
-  std::array<DirectionsTo, most_spheres> to;
-  std::array<double, most_spheres> weights{};
-  double all = 0;
-  for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    to[i] = DirectionsTo(spheres_[i].centre, spheres_[i].radius, from, normal);
-    all += weights[i] = to[i].all();
-  }
-  if (!(all > 0)) return {glm::vec3(0, 0, 1), 0};
-  const std::size_t chosen = choose(std::span(weights).first(spheres_.size()), all, u.x);
-  const glm::vec3 direction = to[chosen].sample(u);
-  double found = 0;
-  for (std::size_t i = 0; i < spheres_.size(); ++i) {
-    found += to[i].weight(direction, i == chosen);
-  }
-  return {direction, found / all};
+  return Targets(std::move(spheres));
 }
 
 Targets::Line Targets::line_along(const glm::dvec3& travel, glm::dvec2 u) const {
@@ -219,6 +145,59 @@ Targets::Line Targets::line_along(const glm::dvec3& travel, glm::dvec2 u) const 
     shown_by += i != chosen && glm::dot(across, across) <= spheres_[i].radius * spheres_[i].radius;
   }
   return {point, shown_by / (glm::pi<double>() * all)};
+}
+
+Aim::Aim(const Targets& targets, const glm::dvec3& from, const glm::vec3* normal)
+    : normal_(normal) {
+  for (const Targets::Sphere& sphere : targets.spheres_) {
+    const glm::dvec3 towards = sphere.centre - from;
+    const double squared = glm::dot(towards, towards);
+    if (squared <= sphere.radius * sphere.radius) {
+      around_ += sphere.brightness;
+      continue;
+    }
+    const double squared_sine = sphere.radius * sphere.radius / squared;
+    Cone& cone = cone_[cones_];
+    cone.axis = towards / std::sqrt(squared);
+    cone.below_one = squared_sine / (1 + std::sqrt(1 - squared_sine));
+    cone.weight =
+        sphere.brightness *
+        (normal ? largest_cosine(cone.axis, 1 - cone.below_one, glm::dvec3(*normal)) : 1.0);
+    all_ += share_[cones_++] = cone.weight * glm::two_pi<double>() * cone.below_one;
+  }
+  all_ += share_[cones_] = around_ * (normal ? 1 : 4) * glm::pi<double>();
+}
+
+double Aim::weight_around(const glm::vec3& direction) const {
+  if (!normal_) return around_;
+  return around_ * std::max(0.0, static_cast<double>(glm::dot(direction, *normal_)));
+}
+
+Aim::Direction Aim::sample(glm::dvec2 u) const {
+  const std::size_t chosen = choose(std::span(share_).first(cones_ + 1), all_, u.x);
+  const auto x = static_cast<float>(u.x), y = static_cast<float>(u.y);
+  if (chosen == cones_) {
+    const glm::vec3 direction =
+        normal_ ? Frame(*normal_).to_world(sample_cosine_hemisphere(x, y)) : sample_sphere(x, y);
+    return {direction, density(direction)};
+  }
+  const Cone& cone = cone_[chosen];
+  const double below_one = u.x * cone.below_one;
+  const double sine = std::sqrt(below_one * (2 - below_one));
+  const double phi = glm::two_pi<double>() * u.y;
+  const glm::vec3 local(sine * std::cos(phi), sine * std::sin(phi), 1 - below_one);
+  const glm::vec3 direction = glm::normalize(Frame(glm::vec3(cone.axis)).to_world(local));
+  // At the border it may lie a rounding beyond its own cone.
+  return {direction, std::max(density(direction), cone.weight / all_)};
+}
+
+double Aim::density(const glm::vec3& direction) const {
+  double weight = weight_around(direction);
+  for (const Cone& cone : std::span(cone_).first(cones_)) {
+    const glm::dvec3 apart = glm::dvec3(direction) - cone.axis;
+    if (0.5 * glm::dot(apart, apart) <= cone.below_one) weight += cone.weight;
+  }
+  return weight / all_;
 }
 
 }  // namespace photile::trace

@@ -1,6 +1,8 @@
-// Where mirrors and glass are, for photons that are aimed at them.
+// Where photons and rays are aimed: mirrors and glass, and bright surface.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -8,27 +10,22 @@
 
 namespace photile::trace {
 
-/// A few spheres that hold all mirrors and glass of a scene. Every path to a caustic begins with a
-/// straight line to one of them, so that paths which are aimed at them, and carry their flux over
-/// the density of their line, find the same light as paths in all directions: Jensen's projection
-/// maps ("Global illumination using photon maps", 1996) with spheres in place of cells.
+/// A few spheres that paths are aimed at. What is aimed carries its flux, or its light, over the
+/// density of its line: Jensen's projection maps ("Global illumination using photon maps", 1996)
+/// with spheres in place of cells.
 class Targets {
  public:
-  explicit Targets(const Scene& scene);
-
-  /// Whether there are no mirrors and no glass.
-  bool empty() const { return spheres_.empty(); }
-
-  struct Direction {
-    glm::vec3 direction;  ///< unit
-    double density;       ///< per steradian, of this direction among all that could be sampled
+  struct Sphere {
+    glm::dvec3 centre;
+    double radius;
+    double brightness = 1;  ///< times its solid angle, how often it is aimed at
   };
-  /// From a point into one of the cones of the spheres, each in proportion to its solid angle times
-  /// the largest cosine in it; evenly in a cone. From within a sphere in all directions, by the
-  /// cosine law where there is a normal. No density where no sphere rises above the horizon.
-  ///   normal   of the surface that emits by the cosine law; null: all cosines count 1
-  ///   u        in [0, 1)^2: points that fill it evenly give directions that do
-  Direction direction_from(const glm::dvec3& from, const glm::vec3* normal, glm::dvec2 u) const;
+  static constexpr std::size_t most_spheres = 64;
+
+  /// At most so many.
+  explicit Targets(std::vector<Sphere> spheres);
+
+  bool empty() const { return spheres_.empty(); }
 
   struct Line {
     glm::dvec3 point;  ///< on the line, beside the middle of a sphere
@@ -39,11 +36,51 @@ class Targets {
   Line line_along(const glm::dvec3& travel, glm::dvec2 u) const;
 
  private:
-  struct Sphere {
-    glm::dvec3 centre;
-    double radius;
-  };
+  friend class Aim;
   std::vector<Sphere> spheres_;
+};
+
+/// A few spheres that hold all mirrors and glass of a scene; none without such. Every path to a
+/// caustic begins with a straight line to one of them.
+Targets specular_targets(const Scene& scene);
+
+/// Directions from a point to targets.
+class Aim {
+ public:
+  /// The normal is kept as a reference. Into the cones of the spheres, each in proportion to its
+  /// brightness, its solid angle and the largest cosine in it; evenly in a cone. From within a
+  /// sphere in all directions, by the cosine law where there is a normal.
+  ///   normal   unit, of a surface that sends or receives light by the cosine law; null: all
+  ///            cosines count 1
+  Aim(const Targets& targets, const glm::dvec3& from, const glm::vec3* normal);
+
+  /// Whether some target rises above the horizon.
+  bool possible() const { return all_ > 0; }
+
+  struct Direction {
+    glm::vec3 direction;  ///< unit
+    double density;       ///< per steradian, of this direction among all that could be sampled
+  };
+  /// Only where it is possible.
+  ///   u   in [0, 1)^2: points that fill it evenly give directions that do
+  Direction sample(glm::dvec2 u) const;
+  /// Per steradian, at which `sample` gives this direction.
+  double density(const glm::vec3& direction) const;
+
+ private:
+  struct Cone {
+    glm::dvec3 axis;
+    double below_one;  ///< 1 - cosine of its half angle
+    double weight;     ///< of a direction in it
+  };
+  double weight_around(const glm::vec3& direction) const;
+
+  const glm::vec3* normal_;
+  std::size_t cones_ = 0;  ///< spheres that the point is not within
+  std::array<Cone, Targets::most_spheres> cone_;
+  double around_ = 0;  ///< weight of each direction, or over its cosine, from within spheres
+  std::array<double, Targets::most_spheres + 1> share_;  ///< of the cones, and of all directions
+  double all_ = 0;                                       ///< of these
 };
 
 }  // namespace photile::trace
