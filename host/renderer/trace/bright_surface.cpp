@@ -34,12 +34,12 @@ struct Cell {
 /// The border of a square, in its own `extent`.
 const double border_of_square = std::sqrt(3.0);
 
-using Place = std::array<std::int32_t, 4>;
+using CellIndex = std::array<std::int32_t, 4>;
 
 std::vector<Cell> cells_of(const Scene& scene, const Photons& photons,
                            std::span<const double> layer_powers, const glm::dvec3& centre,
                            double cells_per_metre) {
-  tsl::robin_map<Place, std::size_t, BytesHash> cell_at;
+  tsl::robin_map<CellIndex, std::size_t, BytesHash> cell_at;
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < photons.size(); ++i) {
     const glm::dvec3 position = glm::dvec3(photons.position[i]) - centre;
@@ -48,8 +48,8 @@ std::vector<Cell> cells_of(const Scene& scene, const Photons& photons,
     const glm::dvec3 normal = face_normal(scene, face), steep = glm::abs(normal);
     const int axis = steep.x > steep.y ? (steep.x > steep.z ? 0 : 2) : (steep.y > steep.z ? 1 : 2);
     const glm::ivec3 cube(glm::floor(position * cells_per_metre));
-    const Place place{cube.x, cube.y, cube.z, 2 * axis + (normal[axis] > 0 ? 1 : 0)};
-    const auto [entry, is_new] = cell_at.insert({place, cells.size()});
+    const CellIndex index{cube.x, cube.y, cube.z, 2 * axis + (normal[axis] > 0 ? 1 : 0)};
+    const auto [entry, is_new] = cell_at.insert({index, cells.size()});
     if (is_new) cells.emplace_back();
     Cell& cell = cells[entry->second];
     const double power = layer_powers[photons.light.empty() ? 0 : photons.light[i]];
