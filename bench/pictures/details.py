@@ -27,6 +27,7 @@ packages.require("numpy", "OpenImageIO")
 import numpy as np
 
 import hard_rooms
+from lighting import worked_project
 from tools import picture_error
 
 SIZE = "960x720"
@@ -36,10 +37,8 @@ GAP = 6  # pixels between the pictures of a strip
 
 SCENES = ROOT / "scenes"
 OFFICE = SCENES / "office/office.gltf"
-SURFACES = ("--reflectance", "wall=0.7", "--reflectance", "carpet=0.3")
+SURFACES = tuple(worked_project.SURFACES.split())
 BY_DAY = (*SURFACES, "--site", "52.5,13.4,1", "--time", "2026-03-10T15:00", "--sky", "perez=500,120")
-LAMPS = """[{"name": "lamp", "file": "panel.ies", "position": [3, 2.795, 1.25], "count": [3, 2], "spacing": [2, 2.5]}]
-"""
 
 
 class Detail(NamedTuple):
@@ -130,7 +129,7 @@ def main():
     given.folder.mkdir(parents=True, exist_ok=True)
     given.photile = given.photile.resolve()
     given.before = given.before and given.before.resolve()
-    (given.folder / "lamps.json").write_text(LAMPS)
+    (given.folder / "lamps.json").write_text(worked_project.SIX)
     shutil.copy(OFFICE.parent / "panel.ies", given.folder)
     if given.kitchen:
         PICTURES["kitchen"] = Picture(given.kitchen.resolve())

@@ -8,8 +8,8 @@ Writes small scenes to FOLDER and renders each by `--quality good` with some see
 of a picture beside the mean of all seeds' (as of one picture, without bias), what the mean and a sixteenth
 of the picture scatter by from seed to seed, and processor seconds. With `--paths` the means of the picture
 and of its sixteenths are held against photile's path tracer, whose pictures FOLDER keeps: single pixels of
-these are too noisy, since paths from the camera hardly find such lamps. Needs the built command and the Debian packages python3-numpy and
-python3-openimageio.
+these are too noisy, since paths from the camera hardly find such lamps. Needs the built command and the
+Debian packages python3-numpy and python3-openimageio.
 """
 
 import argparse

@@ -15,7 +15,6 @@
 #include "render/path_estimate.hpp"
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
-#include "trace/bright_surface.hpp"
 #include "trace/emission_sampling.hpp"
 #include "validation/analytic_cases.hpp"
 
@@ -197,56 +196,6 @@ TEST_CASE("gathering: layers of a furnished room are those of paths") {
   check_against_paths(furnished_room(), 0.03);
 }
 
-TEST_CASE("gathering: rays are aimed at a bright plate, and find its light in closed form") {
-  // A white plate of 0.6 m below the ceiling of a black box of 4 m, which another lamp fills with
-  // photons: all that is reflected comes from the plate. A spot lights it from 2 m below.
-  constexpr float side = 0.6f;
-  constexpr double height = 3.999, albedo = 0.8;
-  SceneBuilder builder;
-  builder.box({-2, -2, 0}, {2, 2, 4}, builder.add(diffuse(glm::vec3(0.0f))), true, 2);
-  builder.grid({-side / 2, -side / 2, height}, {0, side, 0}, {side, 0, 0}, 1,
-               builder.add(diffuse(glm::vec3(albedo))));
-  Light spot = point_light("spot", {0.1f, 0.0f, 1.9f});
-  spot.kind = LightKind::spot;
-  spot.direction = {0, 0, 1};
-  spot.inner_cone_angle = 0.3f;
-  spot.outer_cone_angle = 0.35f;
-  builder.add(spot);
-  builder.add(point_light("lamp", {0, 0, 1}));
-  const double candela = 1 / (2 * pi * trace::SpotFalloff(spot).integral());
-  GatheringScene room(builder.build(), looked_up(400'000));
-  const std::vector<double> powers = estimate::layer_powers(room.scene);
-  REQUIRE_FALSE(trace::bright_surface(room.rays, powers, 1).empty());
-
-  const std::vector<Sensor> sensors = sensors_on({-1.9, -1.9, 0}, {3.8, 0, 0}, {0, 3.8, 0}, up, 12);
-  const cache::GatheredIrradiance light =
-      room.gather({})
-          .gather(trace::sensor_hits(room.rays, sensors), numbers(sensors.size()), 144, 96)
-          .indirect;
-  double relative = 0;
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    double truth = 0;
-    constexpr int cells = 64;
-    for (int cell = 0; cell < cells * cells; ++cell) {
-      const glm::dvec3 at((cell % cells + 0.5) / cells * side - side / 2,
-                          (cell / cells + 0.5) / cells * side - side / 2, height);
-      const double from_spot = glm::length(at - glm::dvec3(spot.position));
-      const double to_sensor = glm::length(at - sensors[i].position);
-      const double lit = candela * (height - spot.position.z) / std::pow(from_spot, 3);
-      truth += lit * albedo / pi * std::pow(height, 2) / std::pow(to_sensor, 4) *
-               std::pow(side / cells, 2);
-    }
-    const double found = lux(light, 2 * i);
-    CAPTURE(i, found, truth);
-    CHECK(found == Approx(truth).epsilon(0.02).margin(5 * light.error(2 * i)));
-    // By the cosine alone few of the rays would meet the plate: 40% of noise.
-    CHECK(light.error(2 * i) < 0.15 * truth);
-    relative += (found / truth - 1) / static_cast<double>(sensors.size());
-  }
-  CHECK(std::abs(relative) < 0.02);
-  CHECK(trace::bright_surface(RayScene(furnished_room()), std::vector<double>{1, 1}, 1).empty());
-}
-
 TEST_CASE("gathering: light gathered from near surface is that of paths, with less bias") {
   Scene scene = furnished_room();
   check_against_paths(scene, 0.015, {.near = 0.6});
@@ -364,11 +313,7 @@ TEST_CASE("gathering: a caustic ends where the image of its mirror ends") {
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(glm::vec3(0.0f))));
   builder.grid({-0.1f, -0.1f, 1.2f}, {0, 0.2f, 0}, {0.2f, 0, 0}, 1,
                builder.add(mirror(glm::vec3(1.0f))));
-  Light spot = point_light("spot", {0, 0, 1});
-  spot.kind = LightKind::spot;
-  spot.direction = {0, 0, 1};
-  spot.inner_cone_angle = 1.0f;
-  spot.outer_cone_angle = 1.1f;
+  const Light spot = spot_light("spot", {0, 0, 1}, {0, 0, 1}, 1.0f, 1.1f);
   builder.add(spot);
   const double candela = 1 / (2 * pi * trace::SpotFalloff(spot).integral());
   GatheringScene place(builder.build(), looked_up(60'000));

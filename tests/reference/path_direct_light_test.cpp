@@ -72,11 +72,7 @@ TEST_CASE("a point light gives intensity times cosine over squared distance, wit
 TEST_CASE(
     "a spot light has full intensity in its inner cone, none beyond its outer, all its flux") {
   Scene scene = test::plate(black, 6.0f, 1);
-  Light spot = test::point_light("spot", {0, 0, 1});
-  spot.kind = LightKind::spot;
-  spot.inner_cone_angle = 0.3f;
-  spot.outer_cone_angle = 0.6f;
-  scene.lights.push_back(spot);
+  scene.lights.push_back(test::spot_light("spot", {0, 0, 1}, {0, 0, -1}, 0.3f, 0.6f));
   const double inner = std::cos(0.3), outer = std::cos(0.6);
   // Flux of intensity 1: the inner cap, and the falloff by the midpoint rule.
   double flux = 2 * pi * (1 - inner);

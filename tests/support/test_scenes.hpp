@@ -58,6 +58,17 @@ inline Light point_light(const std::string& name, const glm::vec3& position, dou
   return light;
 }
 
+/// Angles of the cones are radians from the direction.
+inline Light spot_light(const std::string& name, const glm::vec3& position,
+                        const glm::vec3& direction, float inner, float outer) {
+  Light light = point_light(name, position);
+  light.kind = LightKind::spot;
+  light.direction = direction;
+  light.inner_cone_angle = inner;
+  light.outer_cone_angle = outer;
+  return light;
+}
+
 /// The inside of the cube [0, 1]^3, every wall of one material, a point light off its centre.
 inline Scene closed_box(const Material& wall, int cells = 1) {
   SceneBuilder builder("closed box");

@@ -80,12 +80,8 @@ TEST_CASE("Caustics of a bare bulb carry the flux within the solid angle of the 
 
 TEST_CASE("Caustics of a spot light carry the flux that its cone sends to the mirrors") {
   SceneBuilder builder = box_of_mirrors();
-  Light spot = point_light("spot", glm::vec3(0.0f));
-  spot.kind = LightKind::spot;
-  spot.direction = {1, 0, 0};
-  spot.inner_cone_angle =
-      0.9f;  // 52 degrees: farther than the corners at 0.9 m, not those at 0.7 m
-  spot.outer_cone_angle = 0.95f;
+  // 52 degrees: farther than the corners at 0.9 m, not those at 0.7 m.
+  const Light spot = spot_light("spot", glm::vec3(0.0f), {1, 0, 0}, 0.9f, 0.95f);
   builder.add(spot);
   const double candela = 1 / (2 * pi * trace::SpotFalloff(spot).integral());
   const double truth = candela * 2 * solid_angle(0.9, -0.3, 0.3, 0.05, 0.65);

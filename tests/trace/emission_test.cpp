@@ -49,11 +49,7 @@ std::vector<double> expected_in_rings(Within&& within) {
 }
 
 Light spot_light(float inner, float outer) {
-  Light light = point_light("spot", {0, 0, 1.5f});
-  light.kind = LightKind::spot;
-  light.inner_cone_angle = inner;
-  light.outer_cone_angle = outer;
-  return light;
+  return test::spot_light("spot", {0, 0, 1.5f}, {0, 0, -1}, inner, outer);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "trace/targets.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
@@ -99,7 +98,7 @@ double largest_cosine(const glm::dvec3& axis, double of_cone, const glm::dvec3& 
 }  // namespace
 
 Targets::Targets(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
-  assert(spheres_.size() <= most_spheres);
+  if (spheres_.size() > most_spheres) spheres_.resize(most_spheres);
 }
 
 Targets specular_targets(const Scene& scene) {

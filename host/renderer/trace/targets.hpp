@@ -22,7 +22,7 @@ class Targets {
   };
   static constexpr std::size_t most_spheres = 64;
 
-  /// At most so many.
+  /// Of the first so many.
   explicit Targets(std::vector<Sphere> spheres);
 
   bool empty() const { return spheres_.empty(); }

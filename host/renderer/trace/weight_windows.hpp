@@ -3,8 +3,6 @@
 
 #include <tsl/robin_map.h>
 
-#include <array>
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -12,6 +10,7 @@
 #include "common/content_hash.hpp"
 #include "photile/scene.hpp"
 #include "trace/ray_scene.hpp"
+#include "trace/surface_cells.hpp"
 
 namespace photile::trace {
 
@@ -48,13 +47,10 @@ class WeightWindows {
   std::optional<float> at(const glm::vec3& position, const glm::vec3& normal) const;
 
  private:
-  using Cell = std::array<std::int32_t, 4>;
-  Cell cell_of(const glm::vec3& position, const glm::vec3& normal) const;
-
-  glm::dvec3 centre_;
-  double per_metre_;  ///< cells
+  SurfaceCells cells_;
   int pilots_ = 0;
-  tsl::robin_map<Cell, double, BytesHash> weight_;  ///< of all pilots' photons in a cell
+  tsl::robin_map<SurfaceCells::Facing, double, BytesHash>
+      weight_;       ///< of all pilots' photons in a cell
   double even_ = 1;  ///< weight of a pilot's photons in a cell, from which on the window is 1
 };
 
