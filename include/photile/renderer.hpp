@@ -67,7 +67,9 @@ struct RenderParameters {
   int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
   PhotonPaths photons = {};
   /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
-  /// their mean. 0 = as many as the host's memory asks for.
+  /// their mean. 0 = as many as the host's memory asks for. With light maps `on` whose nodes
+  /// gather: so many parts of all rays, photons and samples are done in rounds
+  /// (docs/light-maps.md).
   int passes = 0;
   MapMode maps = MapMode::automatic;
   double radius = 0;  ///< metres; 0 = automatic_radius

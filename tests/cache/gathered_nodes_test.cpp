@@ -278,4 +278,43 @@ TEST_CASE("gathered nodes: many lights, each in its layer, are what their group 
   CHECK(rms_of_layers < 1.2 * rms_of_group);
 }
 
+TEST_CASE("gathered nodes: rays of before count, as many as they are") {
+  Scene box = closed_box(diffuse(glm::vec3(0.5f)));
+  box.lights = {area_light("lamp")};
+  box.triangle_light[0] = 0;
+  box.lights[0].triangles = {0};
+  GatheringScene lit(box, looked_up(50'000));
+  PrimaryHits hits;
+  const PrimaryHits all = points_on(box, 6);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (side_of(all.oriented_face[i]) == box.front_side[triangle_of(all.oriented_face[i])]) {
+      add_hit(hits, all.position[i], all.oriented_face[i]);
+    }
+  }
+  /// What it gathered, and what nodes that go on from it have.
+  const auto points_of = [&](cache::IrradianceGather& gather, int rays,
+                             cache::GatheredPoints former) {
+    const LightMapParameters parameters = GatheredMaps::parameters_of(lit, 0.32);
+    cache::GatheredNodes nodes(gather, lit.estimators.layer_powers(), {{rays, rays}, {rays, rays}},
+                               std::move(former));
+    LightMaps maps(lit.scene, parameters);
+    maps.fill(hits, nodes, Progress::none(), 1);
+    return nodes.take_points();
+  };
+  cache::IrradianceGather first = lit.gather({}), more = lit.gather({.seed = 99});
+  const cache::GatheredPoints before = points_of(first, 32, {});
+  const cache::GatheredPoints both = points_of(more, 96, before);
+  const cache::GatheredPoints alone = points_of(more, 64, {});
+  REQUIRE(before.row_of.size() > 100);
+  REQUIRE(both.row_of.size() == before.row_of.size());
+  for (const auto& [number, row] : both.row_of) {
+    CHECK(both.rays[row].rays == 96);
+    const auto part = [&](const cache::GatheredPoints& of) {
+      return of.light.indirect.mean.irradiance[of.row_of.at(number)].x;
+    };
+    CHECK(both.light.indirect.mean.irradiance[row].x ==
+          Approx((part(before) + 2 * part(alone)) / 3).margin(1e-7));
+  }
+}
+
 }  // namespace photile::test

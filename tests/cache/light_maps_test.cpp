@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 
 #include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
@@ -264,6 +265,50 @@ TEST_CASE(
       return sum;
     };
     CHECK(read_coarse(coarse) == read_coarse(fine));
+  }
+}
+
+/// Keeps the positions of the points that it is asked for, by their numbers.
+class NumberedPoints : public FormulaSource {
+ public:
+  NumberedPoints() : FormulaSource([](const glm::vec3&, std::uint32_t) { return 1.0f; }) {}
+
+  NodeValues value(const NodeBatch& batch, const Progress& progress) override {
+    for (std::size_t i = 0; i < batch.nodes; ++i) {
+      position.insert({batch.number[i], batch.points.position[i]});
+      coarse += batch.coarse[i];
+    }
+    return FormulaSource::value(batch, progress);
+  }
+
+  std::map<std::uint64_t, glm::vec3> position;
+  std::size_t coarse = 0;
+};
+
+TEST_CASE("light maps: points keep their numbers where coarse levels are skipped") {
+  SceneBuilder builder;
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 0.7f, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  const Scene scene = with_one_lamp(builder.build());
+  const PrimaryHits hits = points_on(scene, 40);
+  const auto filled = [&](int levels, int skipped) {
+    LightMapParameters parameters = quiet_parameters(0.1, levels);
+    parameters.skipped_levels = skipped;
+    LightMaps maps(scene, parameters);
+    NumberedPoints source;
+    maps.fill(hits, source, Progress::none());
+    return source;
+  };
+  const NumberedPoints plain = filled(3, 0), finer = filled(4, 1), finest = filled(5, 2);
+  CHECK(plain.coarse == plain.position.size());
+  CHECK(finer.coarse == finer.position.size());
+  CHECK(finer.position.size() > 3 * plain.position.size());
+  CHECK(finest.position.size() > 3 * finer.position.size());
+  for (const auto& [coarser, closer] : {std::pair(&plain, &finer), std::pair(&finer, &finest)}) {
+    for (const auto& [number, position] : coarser->position) {
+      CAPTURE(number, position.x, position.y);
+      REQUIRE(closer->position.contains(number));
+      CHECK(glm::distance(closer->position.at(number), position) < 0.1f / 4 / 16);
+    }
   }
 }
 

@@ -87,7 +87,8 @@ TEST_CASE("pictures are made until one states the requested error, which its set
   CHECK(used["light_map_rays"] > 8);
   photile({"-o", folder / "again.exr", "--set", "light_map_rays=" + used["light_map_rays"].dump(),
            "--photons", used["photons_emitted"].dump(), "--samples",
-           used["samples_per_pixel"].dump(), "-q"});
+           used["samples_per_pixel"].dump(), "--set", "passes=" + used["passes"].dump(), "--set",
+           "light_maps=on", "-q"});
   const Image made = read_image(folder / "box.exr"), again = read_image(folder / "again.exr");
   CHECK(made.channels == again.channels);
 }
@@ -290,6 +291,12 @@ TEST_CASE("pages are made for a time, the first from a quarter of the work") {
   succeed(typed("publish", scene, "-o", folder / "same.html",
                 "--texel 0.2 --title box --photons 125000 -k 100 --set light_map_rays=16"));
   CHECK(page == folder.read("same.html"));
+  // Those of a longer time have several parts.
+  succeed(typed("publish", scene, "-o", folder / "one.html",
+                "--texel 0.2 --title box --photons 20k --set light_map_rays=8"));
+  succeed(typed("publish", scene, "-o", folder / "three.html",
+                "--texel 0.2 --title box --photons 20k --set light_map_rays=24 --set passes=3"));
+  CHECK(folder.read("one.html") != folder.read("three.html"));
   CHECK_THAT(only_error(run_photile(publish({"--for", "1s", "--set", "light_map_rays=0"})), 2),
              Contains("--for") && Contains("--quality good"));
 }

@@ -1,7 +1,6 @@
 // The errors that a picture states, and what is done about them.
 #include "render/refinement.hpp"
 
-#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -11,6 +10,7 @@
 #include "photile/limits.hpp"
 #include "photile/renderer.hpp"
 #include "render/film.hpp"
+#include "render/quality.hpp"
 #include "render/setting.hpp"
 
 namespace photile::test {
@@ -18,19 +18,20 @@ namespace {
 
 // When pictures are made again, and when not: pictures whose error and time follow formulas.
 
-/// Pictures of relative error `error_of_one` / sqrt(rays) that take time by rays.
+/// Pictures of relative error `error_of_one` / sqrt(rays), rounds that take time by their rays.
 struct Studio {
   double error_of_one = 0.16;  ///< 2% with 64 rays
   double power_of_error = 0.5;
   double seconds_of_good = 10;
-  double power_of_time = 1.7;
+  double power_of_time = 1.0;  ///< of all rounds together
   double clock = 0;
+  int parts = 0;
+  RenderParameters part;
   std::vector<RenderParameters> made;
   std::vector<double> finished_at;
-  bool user_stops = false;
 
-  double seconds(const RenderParameters& p) const {
-    return seconds_of_good * std::pow(p.light_map_rays / 64.0, power_of_time);
+  double seconds(double rays) const {
+    return seconds_of_good * std::pow(rays / 64.0, power_of_time);
   }
   double error(const RenderParameters& p) const {
     return error_of_one / std::pow(p.light_map_rays, power_of_error);
@@ -38,24 +39,41 @@ struct Studio {
 
   RefinementSteps steps() {
     return {.make =
-                [this](const RenderParameters& p, Progress& progress) {
+                [this](int more, Progress& progress) {
                   constexpr int slices = 1000;
+                  const double before = seconds(parts * part.light_map_rays);
+                  const double after = seconds((parts + more) * part.light_map_rays);
                   for (int i = 0; i < slices; ++i) {
-                    clock += seconds(p) / slices;
+                    clock += (after - before) / slices;
                     progress.throw_if_cancelled();
                   }
-                  made.push_back(p);
+                  parts += more;
                   RenderResult result;
-                  result.used = p;
+                  result.used = of_parts(part, parts);
+                  made.push_back(result.used);
                   StageStatistics maps;
                   maps.stage = "light maps";
-                  maps.figures.emplace_back("standard error percent", 100 * error(p));
+                  maps.figures.emplace_back("standard error percent", 100 * error(result.used));
                   result.statistics.push_back(maps);
                   return result;
                 },
-            .finished = [this](const RenderParameters&,
-                               const RenderResult&) { finished_at.push_back(clock); },
+            .finished =
+                [this](int all, const RenderResult& result) {
+                  CHECK(all == parts);
+                  CHECK(result.used.light_map_rays == parts * part.light_map_rays);
+                  finished_at.push_back(clock);
+                },
             .elapsed = [this] { return clock; }};
+  }
+
+  RenderResult refine_to(const RefinementGoal& goal, const RenderParameters& asked,
+                         Progress& progress = Progress::none()) {
+    return refine_by(steps(), goal, asked, progress);
+  }
+  RenderResult refine_by(const RefinementSteps& steps, const RefinementGoal& goal,
+                         const RenderParameters& asked, Progress& progress = Progress::none()) {
+    part = first_part(goal, asked);
+    return refine(goal, part, steps, progress);
   }
 };
 
@@ -86,38 +104,49 @@ class Stopped : public Progress {
 
 TEST_CASE("refinement: a picture that is good enough is the only one") {
   Studio studio;
-  const RenderResult result = refine({.error = 0.025}, good(), studio.steps(), Progress::none());
+  const RenderResult result = studio.refine_to({.error = 0.025}, good());
   CHECK(studio.made.size() == 1);
   CHECK(result.used.light_map_rays == 64);
   CHECK(standard_error_of(result) == Approx(0.02));
 }
 
-TEST_CASE(
-    "refinement: the second picture has the work that the error asks for, by a power of two") {
+TEST_CASE("refinement: rounds add parts until the error is reached, and no more") {
   Studio studio;
   const double requested = GENERATE(0.015, 0.01, 0.008);
-  const RenderResult result =
-      refine({.error = requested}, good(), studio.steps(), Progress::none());
+  const RenderResult result = studio.refine_to({.error = requested}, good());
   CHECK(standard_error_of(result) <= requested);
-  CHECK(standard_error_of(result) > requested / std::sqrt(2.0));  // half the work does not do
-  REQUIRE(studio.made.size() == 2);
-  CHECK(studio.finished_at.size() == 2);
-  const RenderParameters &first = studio.made[0], &second = studio.made[1];
-  const int growth = second.light_map_rays / first.light_map_rays;
-  CHECK(std::has_single_bit(static_cast<unsigned>(growth)));
-  CHECK(second.light_map_rays == growth * first.light_map_rays);
-  CHECK(second.photons.emitted_photons == growth * first.photons.emitted_photons);
-  CHECK(second.film.samples_per_pixel == growth * first.film.samples_per_pixel);
-  CHECK(second.neighbours == first.neighbours);
+  CHECK(studio.made.size() == studio.finished_at.size());
+  REQUIRE(studio.made.size() > 1);
+  CHECK(studio.error(studio.made[studio.made.size() - 2]) > requested);
+  const std::vector<int> expected{1, 2, 3, 4, 6, 8, 12, 16};
+  for (std::size_t i = 0; i < studio.made.size(); ++i) {
+    const RenderParameters &first = studio.made[0], &later = studio.made[i];
+    CHECK(later.light_map_rays == expected[i] * first.light_map_rays);
+    CHECK(later.film.samples_per_pixel == expected[i] * first.film.samples_per_pixel);
+    CHECK(later.neighbours == first.neighbours);
+  }
 }
 
-TEST_CASE("refinement: goes on where an error falls less than the square root of work says") {
-  Studio studio;
-  studio.power_of_error = 0.35;
-  studio.error_of_one = 0.02 * std::pow(64.0, 0.35);
-  const RenderResult result = refine({.error = 0.005}, good(), studio.steps(), Progress::none());
-  CHECK(standard_error_of(result) <= 0.005);
-  CHECK(studio.made.size() > 2);
+TEST_CASE("refinement: photons are traced anew when there are four times the parts") {
+  CHECK(photons_of_parts(1) == 1);
+  CHECK(photons_of_parts(3) == 1);
+  CHECK(photons_of_parts(4) == 4);
+  CHECK(photons_of_parts(15) == 4);
+  CHECK(photons_of_parts(16) == 16);
+}
+
+TEST_CASE("refinement: the settings of parts together say what each of them is") {
+  const int parts = GENERATE(1, 2, 3, 7, 16);
+  const RenderParameters all = of_parts(good(), parts);
+  CHECK(grows(all) == (parts > 1));
+  RenderParameters known = all;
+  known.passes = parts;
+  const RenderParameters part = part_of(known);
+  for (const Setting& setting : settings()) {
+    CAPTURE(setting.name);
+    if (setting.name == "passes" || setting.name == "light_maps") continue;
+    CHECK(setting.value(part) == setting.value(good()));
+  }
 }
 
 TEST_CASE("refinement: the quality final is good with four times the work") {
@@ -134,81 +163,61 @@ TEST_CASE("refinement: the quality final is good with four times the work") {
 TEST_CASE("refinement: a time is kept, and the picture took a good part of it") {
   Studio studio;
   const double seconds = GENERATE(10.0, 30.0, 100.0, 1000.0);
-  studio.power_of_time = GENERATE(1.0, 1.35, 1.7);
-  const RenderResult result =
-      refine({.seconds = seconds}, good(), studio.steps(), Progress::none());
+  studio.power_of_time = GENERATE(0.9, 1.0, 1.1);
+  const RenderResult result = studio.refine_to({.seconds = seconds}, good());
   CHECK(studio.clock <= 1.001 * seconds);
   CHECK(studio.made.size() == studio.finished_at.size());  // none was given up
-  CHECK(studio.seconds(result.used) > 0.3 * seconds);
+  CHECK(studio.seconds(result.used.light_map_rays) > 0.3 * seconds);
   CHECK(studio.made.front().light_map_rays == 16);
 }
 
 TEST_CASE("refinement: with an error and a time, neither is exceeded by much") {
   Studio studio;
   const double seconds = GENERATE(10.0, 1000.0);
-  const RenderResult result =
-      refine({.error = 0.008, .seconds = seconds}, good(), studio.steps(), Progress::none());
+  const RenderResult result = studio.refine_to({.error = 0.008, .seconds = seconds}, good());
   CHECK(studio.clock <= 1.001 * seconds);
   CHECK(standard_error_of(result) > 0.008 / std::sqrt(2.0));
   if (seconds == 1000) CHECK(standard_error_of(result) <= 0.008);
 }
 
-TEST_CASE(
-    "refinement: a picture is not begun where one of more work does not fit in what is left") {
+TEST_CASE("refinement: a round that is not likely to fit in what is left is not begun") {
   Studio studio;
-  refine({.seconds = 1.2}, good(), studio.steps(), Progress::none());
-  CHECK(studio.made.size() == 1);  // took 0.95
-  CHECK(studio.clock < 1);
+  studio.refine_to({.seconds = 3.5}, good());
+  CHECK(studio.made.size() == 1);  // took 2.5
+  CHECK(studio.clock < 3);
 }
 
-TEST_CASE("refinement: a picture that states more error than one before is not kept") {
+TEST_CASE("refinement: a round that takes too long is given up, the picture before is kept") {
   Studio studio;
   RefinementSteps steps = studio.steps();
   const auto make = steps.make;
-  steps.make = [&](const RenderParameters& p, Progress& progress) {
-    const bool later = p.light_map_rays > 16;
-    if (later) studio.error_of_one *= 8;
-    RenderResult result = make(p, progress);
-    if (later) studio.error_of_one /= 8;
-    return result;
-  };
-  const RenderResult result = refine({.seconds = 6}, good(), steps, Progress::none());
-  CHECK(studio.made.size() == 2);
-  CHECK(studio.finished_at.size() == 1);
-  CHECK(result.used.light_map_rays == 16);
-}
-
-TEST_CASE("refinement: a picture that takes too long is given up, the one before is kept") {
-  Studio studio;
-  RefinementSteps steps = studio.steps();
-  const auto make = steps.make;
-  steps.make = [&](const RenderParameters& p, Progress& progress) {
+  steps.make = [&](int more, Progress& progress) {
     if (!studio.made.empty()) studio.seconds_of_good = 1e6;  // another program takes the machine
-    return make(p, progress);
+    return make(more, progress);
   };
-  const RenderResult result = refine({.seconds = 10}, good(), steps, Progress::none());
+  const RenderResult result = studio.refine_by(steps, {.seconds = 10}, good());
   CHECK(studio.made.size() == 1);
   CHECK(result.used.light_map_rays == 16);
 }
 
 TEST_CASE("refinement: the first picture is finished, however little time there is") {
   Studio studio;
-  refine({.seconds = 0.001}, good(), studio.steps(), Progress::none());
+  studio.refine_to({.seconds = 0.001}, good());
   CHECK(studio.made.size() == 1);
 }
 
 TEST_CASE("refinement: a user who stops is heard, and has the pictures so far") {
   Studio studio;
-  Stopped progress(studio, 50);
-  CHECK_THROWS_AS(refine({.seconds = 1000}, good(), studio.steps(), progress), Interrupted);
-  CHECK(studio.finished_at.size() == 2);  // at 10 x 0.25^1.7 = 0.95, and 10 x 2^1.7 = 32.5 later
-  CHECK(studio.clock < 51);
+  Stopped progress(studio, 8);
+  CHECK_THROWS_AS(studio.refine_to({.seconds = 1000}, good(), progress), Interrupted);
+  CHECK(studio.finished_at.size() == 3);  // at 2.5, 5 and 7.5; the next would be at 10
+  CHECK(studio.clock < 8.1);
 }
 
 TEST_CASE("refinement: an error below what all rays and photons leave is told at once") {
   Studio studio;
   Notes notes;
-  const RenderResult result = refine({.error = 1e-9}, good(), studio.steps(), notes);
+  const RenderResult result = studio.refine_to({.error = 1e-9}, good(), notes);
   CHECK(studio.made.size() == 1);
   CHECK(result.used.light_map_rays == 64);
   CHECK_THAT(notes.text, Catch::Contains("1e-07% is out of reach"));
@@ -218,12 +227,13 @@ TEST_CASE("refinement: an error that does not fall any longer is told") {
   Studio studio;
   RefinementSteps steps = studio.steps();
   const auto make = steps.make;
-  steps.make = [&](const RenderParameters& p, Progress& progress) {
-    studio.error_of_one = p.light_map_rays > 128 ? 0.014 * std::sqrt(p.light_map_rays) : 0.16;
-    return make(p, progress);
+  steps.make = [&](int more, Progress& progress) {
+    const double rays = (studio.parts + more) * studio.part.light_map_rays;
+    studio.error_of_one = rays > 128 ? 0.014 * std::sqrt(rays) : 0.16;
+    return make(more, progress);
   };
   Notes notes;
-  refine({.error = 0.005}, good(), steps, notes);
+  studio.refine_by(steps, {.error = 0.005}, good(), notes);
   CHECK(studio.made.size() == 3);  // 2%, 1.41%, 1.4%
   CHECK_THAT(notes.text, Catch::Contains("0.5% is out of reach: about 1.4%"));
 }
@@ -231,9 +241,8 @@ TEST_CASE("refinement: an error that does not fall any longer is told") {
 TEST_CASE("refinement: ends where rays and photons cannot grow") {
   Studio studio;
   studio.seconds_of_good = 1e-9;
-  const RenderResult result = refine({.seconds = 1}, good(), studio.steps(), Progress::none());
+  const RenderResult result = studio.refine_to({.seconds = 1}, good());
   CHECK(result.used.light_map_rays == limits::max_gathering_rays);
-  CHECK(result.used.photons.emitted_photons == limits::max_emitted_photons);
 }
 
 // The noise of a pixel's samples, told from the scatter of runs of them.

@@ -29,6 +29,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "publish/published_room.hpp"
+#include "render/quality.hpp"
 #include "render/refinement.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
@@ -38,7 +39,7 @@ namespace photile::app {
 namespace {
 
 /// Settings that a page has no use for.
-const std::initializer_list<std::string_view> without{"samples_per_pixel", "passes", "direct_rays",
+const std::initializer_list<std::string_view> without{"samples_per_pixel", "direct_rays",
                                                       "light_maps"};
 
 struct PublishOptions {
@@ -82,11 +83,20 @@ class LitRoom {
   LitRoom(const std::shared_ptr<const PreparedScene>& scene, std::span<Device> devices,
           const RenderParameters& parameters, const bake::BakeParameters& baking,
           Progress& progress)
-      : session_(scene, devices, parameters, nullptr, {}, progress),
-        baked_(scene->rays.scene(), cache().maps(), session_.light().nodes(), cache().visibility(),
-               with_texels(baking), progress) {}
+      : scene_(scene->rays.scene()),
+        baking_(baking),
+        session_(scene, devices, parameters, nullptr, {}, progress) {
+    bake(progress);
+  }
 
-  const bake::BakedLight& baked() const { return baked_; }
+  /// See RenderSession::grow.
+  void grow(int parts, Progress& progress) {
+    baked_.reset();
+    session_.grow(parts, progress);
+    bake(progress);
+  }
+
+  const bake::BakedLight& baked() const { return *baked_; }
   /// As GatheredNodes::errors; none where photons value nodes.
   std::optional<Estimates> errors() {
     const cache::GatheredNodes* nodes = session_.light().gathered();
@@ -94,17 +104,20 @@ class LitRoom {
   }
 
  private:
-  cache::SurfaceCache& cache() { return *session_.light().cache(); }
-
-  bake::BakeParameters with_texels(bake::BakeParameters baking) {
+  void bake(Progress& progress) {
+    cache::SurfaceCache& cache = *session_.light().cache();
+    bake::BakeParameters baking = baking_;
     if (!baking.exact) {  // in a small room finer, as nodes are
-      baking.texel = std::min(defaults::published_texel, cache().maps().charts().spacing() / 2);
+      baking.texel = std::min(defaults::published_texel, cache.maps().charts().spacing() / 2);
     }
-    return baking;
+    baked_.emplace(scene_, cache.maps(), session_.light().nodes(), cache.visibility(), baking,
+                   progress);
   }
 
+  const Scene& scene_;
+  const bake::BakeParameters baking_;
   RenderSession session_;
-  bake::BakedLight baked_;
+  std::optional<bake::BakedLight> baked_;
 };
 
 void run_publish(PublishOptions& options) {
@@ -133,7 +146,7 @@ void run_publish(PublishOptions& options) {
   options.baking.most_texels =
       limits::max_published_texels / std::max<std::size_t>(1, mix.lights.size());
 
-  const auto write = [&](LitRoom& lit, const RenderParameters& parameters) {
+  const auto write = [&](LitRoom& lit) {
     progress.begin("write files", 0, "");
     const std::optional<Estimates> errors = lit.errors();
     for (const std::filesystem::path file : options.outputs) {
@@ -147,7 +160,7 @@ void run_publish(PublishOptions& options) {
            .baked = lit.baked(),
            .mix = mix,
            .node_errors = errors ? &*errors : nullptr,
-           .relative_error = 1 / std::sqrt(static_cast<double>(parameters.neighbours)),
+           .relative_error = 1 / std::sqrt(static_cast<double>(render.parameters.neighbours)),
            .presets = presets,
            .hours = hours,
            .title = options.title.empty() ? std::filesystem::path(render.scene).stem().string()
@@ -163,27 +176,36 @@ void run_publish(PublishOptions& options) {
     }
   };
   if (!render.goal.is_given()) {
-    LitRoom lit(prepared_scene, devices, render.parameters, options.baking, progress);
-    write(lit, render.parameters);
+    const RenderParameters& asked = render.parameters;
+    const bool growing = grows(asked);
+    LitRoom lit(prepared_scene, devices, growing ? part_of(asked) : asked, options.baking,
+                progress);
+    if (growing) {
+      for_later_rounds(asked.passes, [&](int parts) { lit.grow(parts, progress); });
+    }
+    write(lit);
     return;
   }
-  std::unique_ptr<LitRoom> lit;
-  const auto make = [&](const RenderParameters& parameters, Progress& deadline) {
-    lit.reset();  // the one before
-    auto made =
-        std::make_unique<LitRoom>(prepared_scene, devices, parameters, options.baking, deadline);
-    const double error = made->baked().standard_error(options.baking.powers, *made->errors());
+  const RenderParameters part = first_part(render.goal, render.parameters);
+  std::optional<LitRoom> lit;
+  const auto make = [&](int parts, Progress& deadline) {
+    if (lit) {
+      lit->grow(parts, deadline);
+    } else {
+      lit.emplace(prepared_scene, devices, part, options.baking, deadline);
+    }
+    const double error = lit->baked().standard_error(options.baking.powers, *lit->errors());
     RenderResult result;
     result.statistics = {stage("light maps", {}, {{"standard error percent", 100 * error}})};
-    lit = std::move(made);
     return result;
   };
-  const auto finished = [&](const RenderParameters& parameters, const RenderResult& result) {
-    write(*lit, parameters);
+  const auto finished = [&](int parts, const RenderResult& result) {
+    write(*lit);
     progress.note(fmt::format("standard error {:.2g}%, {}; {}", 100 * standard_error_of(result),
-                              format_seconds(elapsed()), options_text(parameters, without)));
+                              format_seconds(elapsed()),
+                              options_text(of_parts(part, parts), without)));
   };
-  refine(render.goal, render.parameters, {make, finished, elapsed}, progress);
+  refine(render.goal, part, {make, finished, elapsed}, progress);
 }
 
 }  // namespace

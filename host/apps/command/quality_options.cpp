@@ -11,6 +11,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "photile/errors.hpp"
+#include "render/quality.hpp"
 #include "render/render_plan.hpp"
 
 namespace photile::app {
@@ -23,11 +24,11 @@ std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); 
 std::span<const GoalOption> goal_options() {
   static constexpr std::array<GoalOption, 2> options{{
       {"target_error", "target-error", "PERCENT",
-       "make pictures, each with more work than the one before, until one states this root mean "
-       "square relative error",
+       "add as many rays, photons and samples again and again, until the picture states this root "
+       "mean square relative error",
        &RefinementGoal::error},
       {"for", "for", "TIME",
-       "make such pictures for so long, from a quarter of the work on; the picture depends on the "
+       "add such rounds for so long, from a quarter of the work on; the picture depends on the "
        "machine",
        &RefinementGoal::seconds},
   }};
@@ -63,19 +64,16 @@ void check_goal(const RefinementGoal& goal, const RenderParameters& parameters) 
   }
 }
 
-RenderResult render_refined(
-    const RefinementGoal& goal, const RenderParameters& parameters,
-    const std::function<RenderResult(const RenderParameters&, Progress&)>& make,
-    const std::function<void(const RenderResult&)>& finished,
-    const std::function<double()>& elapsed, Progress& progress) {
+RenderResult render_refined(const RefinementGoal& goal, const RenderParameters& part,
+                            RefinementSteps steps, Progress& progress) {
   int pictures = 0;
-  const auto tell = [&](const RenderParameters& asked, const RenderResult& picture) {
-    finished(picture);
+  const auto finished = [&](int parts, const RenderResult& picture) {
+    steps.finished(parts, picture);
     progress.note(fmt::format("picture {}: standard error {}, {}; {}", ++pictures,
-                              percent(standard_error_of(picture)), format_seconds(elapsed()),
-                              options_text(asked)));
+                              percent(standard_error_of(picture)), format_seconds(steps.elapsed()),
+                              options_text(of_parts(part, parts))));
   };
-  RenderResult best = refine(goal, parameters, {make, tell, elapsed}, progress);
+  RenderResult best = refine(goal, part, {steps.make, finished, steps.elapsed}, progress);
   if (standard_error_of(best) > goal.error && goal.error > 0) {
     progress.warn(fmt::format("a standard error of {} was not reached, but {}", percent(goal.error),
                               percent(standard_error_of(best))));

@@ -48,12 +48,8 @@ void add_goal_options(CLI::App& command, RefinementGoal& goal);
 /// pictures state.
 void check_goal(const RefinementGoal& goal, const RenderParameters& parameters);
 
-/// `refine` by these functions, with a note about each picture and what was reached.
-///   elapsed   since the process began, seconds
-RenderResult render_refined(
-    const RefinementGoal& goal, const RenderParameters& parameters,
-    const std::function<RenderResult(const RenderParameters&, Progress&)>& make,
-    const std::function<void(const RenderResult&)>& finished,
-    const std::function<double()>& elapsed, Progress& progress);
+/// `refine` by these steps, with a note about each picture and what was reached.
+RenderResult render_refined(const RefinementGoal& goal, const RenderParameters& part,
+                            RefinementSteps steps, Progress& progress);
 
 }  // namespace photile::app

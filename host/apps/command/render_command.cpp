@@ -31,6 +31,7 @@
 #include "render/hit_source.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
+#include "render/render_session.hpp"
 #include "view/snapshots.hpp"
 
 namespace photile::app {
@@ -100,24 +101,30 @@ bool keeps_maps(const RenderOptions& options) {
   return !options.save_maps.empty() || !options.load_maps.empty() || !options.glare.empty();
 }
 
-/// Pictures until one is good enough; `write` writes the last of `record`.
+/// Pictures of light maps that grow until one is good enough; `write` writes the last of `record`.
 ///   elapsed   since the process began, seconds
 void render_until_good(const Scene& scene, std::span<Device> devices, const RenderOptions& options,
                        const HitSource& hits, RunRecord& record,
                        const std::function<void(const LightLayers&)>& write,
                        const std::function<double()>& elapsed, Progress& progress) {
   const RunStatistics before = record.stages;
-  render_refined(
-      options.goal, options.parameters,
-      [&](const RenderParameters& parameters, Progress& deadline) {
-        return render_hits(scene, hits, parameters.film, devices, parameters, deadline);
-      },
-      [&](const RenderResult& result) {
-        record.stages = before;
-        note_result(result, devices, record);
-        write(result.layers);
-      },
-      elapsed, progress);
+  const RenderParameters part = first_part(options.goal, options.parameters);
+  const auto prepared = std::make_shared<const PreparedScene>(scene);
+  std::optional<RenderSession> session;
+  const auto make = [&](int parts, Progress& deadline) {
+    if (session) {
+      session->grow(parts, deadline);
+    } else {
+      session.emplace(prepared, devices, part, nullptr, KeepPhotons(), deadline);
+    }
+    return session->render(hits, session->film(), deadline);
+  };
+  const auto finished = [&](int, const RenderResult& result) {
+    record.stages = before;
+    note_result(result, devices, record);
+    write(result.layers);
+  };
+  render_refined(options.goal, part, {make, finished, elapsed}, progress);
 }
 
 /// The layers by photon maps. Fills in what `record` tells of them.

@@ -6,7 +6,7 @@
 #include "photile/layered_picture.hpp"
 #include "photile/progress.hpp"
 #include "photile/renderer.hpp"
-#include "render/refinement.hpp"
+#include "render/quality.hpp"
 #include "render/setting.hpp"
 
 namespace photile::trade {

@@ -104,7 +104,7 @@ void GatheredIrradiance::append(GatheredIrradiance other) {
 }
 
 GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
-                          std::size_t lights) {
+                          std::size_t lights, float share_a, float share_b) {
   GatheredIrradiance sum;
   sum.batches = a.batches;
   const bool sparse = !a.mean.first.empty();
@@ -117,24 +117,28 @@ GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance&
   for (std::size_t point = 0; point < points; ++point) {
     const std::size_t first = sum.mean.irradiance.size();
     index_of.assign(lights, first + lights);  // of none
-    for (const GatheredIrradiance* part : {&a, &b}) {
-      estimate::for_each_estimate(part->mean, point, lights, [&](std::size_t layer, std::size_t i) {
-        if (index_of[layer] == first + lights) {
-          index_of[layer] = sum.mean.irradiance.size();
-          sum.mean.irradiance.emplace_back(0.0f);
-          if (smooth) sum.mean.by_normal.emplace_back(0.0f);
-          sum.batch.resize(sum.batch.size() + count, 0.0f);
-          if (sparse) sum.mean.light.push_back(static_cast<std::uint16_t>(layer));
-          if (shared) sum.shared_variance.push_back(0);
-        }
-        const std::size_t to = index_of[layer];
-        sum.mean.irradiance[to] += part->mean.irradiance[i];
-        if (smooth) sum.mean.by_normal[to] += part->mean.by_normal[i];
-        for (std::size_t b = 0; b < count; ++b) {
-          sum.batch[to * count + b] += part->batch[i * count + b];
-        }
-        if (!part->shared_variance.empty()) sum.shared_variance[to] += part->shared_variance[i];
-      });
+    for (const auto& [part, share] : {std::pair(&a, share_a), std::pair(&b, share_b)}) {
+      estimate::for_each_estimate(
+          part->mean, point, lights,
+          [&, part = part, share = share](std::size_t layer, std::size_t i) {
+            if (index_of[layer] == first + lights) {
+              index_of[layer] = sum.mean.irradiance.size();
+              sum.mean.irradiance.emplace_back(0.0f);
+              if (smooth) sum.mean.by_normal.emplace_back(0.0f);
+              sum.batch.resize(sum.batch.size() + count, 0.0f);
+              if (sparse) sum.mean.light.push_back(static_cast<std::uint16_t>(layer));
+              if (shared) sum.shared_variance.push_back(0);
+            }
+            const std::size_t to = index_of[layer];
+            sum.mean.irradiance[to] += share * part->mean.irradiance[i];
+            if (smooth) sum.mean.by_normal[to] += share * part->mean.by_normal[i];
+            for (std::size_t b = 0; b < count; ++b) {
+              sum.batch[to * count + b] += share * part->batch[i * count + b];
+            }
+            if (!part->shared_variance.empty()) {
+              sum.shared_variance[to] += share * share * part->shared_variance[i];
+            }
+          });
     }
     if (sparse) sum.mean.first.push_back(sum.mean.irradiance.size());
   }

@@ -57,9 +57,10 @@ struct GatheredIrradiance {
   double error(std::size_t estimate, double of_shared) const;
 };
 
-/// Light of two kinds at the same points, whose batches are as many.
+/// Light of two kinds, or found twice, at the same points, whose batches are as many.
+///   share_a, share_b   what each counts
 GatheredIrradiance sum_of(const GatheredIrradiance& a, const GatheredIrradiance& b,
-                          std::size_t lights);
+                          std::size_t lights, float share_a = 1, float share_b = 1);
 
 /// Writes points one after another. Sums run in the order of the calls.
 class BatchSums {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "cache/irradiance_filter.hpp"
@@ -51,7 +52,36 @@ void append(const GatheredParts& from, std::size_t point, std::size_t lights, Ga
   to.distance.push_back(from.distance[point]);
 }
 
+/// The light that all rays and light samples found at the same points.
+GatheredParts mean_of(const GatheredParts& a, NodeRays of_a, const GatheredParts& b, NodeRays of_b,
+                      std::size_t lights) {
+  const auto share = [](int one, int other) {
+    return static_cast<float>(one) / static_cast<float>(std::max(1, one + other));
+  };
+  const float rays_a = share(of_a.rays, of_b.rays), rays_b = share(of_b.rays, of_a.rays);
+  GatheredParts mean{
+      sum_of(a.indirect, b.indirect, lights, rays_a, rays_b),
+      sum_of(a.direct, b.direct, lights, share(of_a.light_samples, of_b.light_samples),
+             share(of_b.light_samples, of_a.light_samples)),
+      {}};
+  for (std::size_t i = 0; i < a.distance.size(); ++i) {
+    mean.distance.push_back(1 / (rays_a / a.distance[i] + rays_b / b.distance[i]));
+  }
+  return mean;
+}
+
 }  // namespace
+
+void GatheredPoints::append(std::span<const std::uint64_t> numbers, NodeRays of_each,
+                            GatheredParts found) {
+  for (const std::uint64_t number : numbers) {
+    row_of.insert({number, static_cast<std::uint32_t>(rays.size())});
+    rays.push_back(of_each);
+  }
+  light.indirect.append(std::move(found.indirect));
+  light.direct.append(std::move(found.direct));
+  light.distance.insert(light.distance.end(), found.distance.begin(), found.distance.end());
+}
 
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse) {
   // Shadow borders stand at the finer levels: there light samples matter more than rays.
@@ -72,14 +102,14 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse) {
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
 
 std::uint64_t GatheredNodes::bytes() const {
-  return raw_.bytes() + nodes_.bytes() + gather_.bytes() +
-         (raw_of_.size() + row_of_.size()) * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+  const std::size_t rows = former_.row_of.size() + raw_.row_of.size() + row_of_.size();
+  return former_.light.bytes() + raw_.light.bytes() + nodes_.bytes() + gather_.bytes() +
+         rows * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 void GatheredNodes::forget() {
-  raw_of_.clear();
-  row_of_.clear();
   raw_ = {};
+  row_of_.clear();
   nodes_ = {};
   gather_.forget();
 }
@@ -90,16 +120,17 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
     (batch.coarse[i] ? coarse : fine).push_back(i);
   }
-  gather_new(batch, coarse, parameters_.coarse, progress);
-  gather_new(batch, fine, parameters_.fine, progress);
+  gather_new(batch, coarse, rays_.coarse, progress);
+  gather_new(batch, fine, rays_.fine, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
   const auto averaged_fine = [&](const GatheredIrradiance& raw, const GatheredIrradiance& known,
                                  const NoiseTolerance& tolerated) {
     return corrected(known, with_neighbours(raw, batch, fine, tolerated), batch, fine, tolerated);
   };
-  const GatheredIrradiance indirect = averaged_fine(raw_.indirect, nodes_.indirect, of_indirect);
-  const GatheredIrradiance direct = averaged_fine(raw_.direct, nodes_.direct, of_direct);
+  const GatheredIrradiance indirect =
+      averaged_fine(raw_.light.indirect, nodes_.indirect, of_indirect);
+  const GatheredIrradiance direct = averaged_fine(raw_.light.direct, nodes_.direct, of_direct);
 
   const std::size_t before = nodes_.distance.size();
   std::size_t next_coarse = 0, next_fine = 0;
@@ -111,7 +142,7 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
     } else {
       nodes_.indirect.append(indirect, next_fine, lights);
       nodes_.direct.append(direct, next_fine++, lights);
-      nodes_.distance.push_back(raw_.distance[raw_of_.at(batch.number[node])]);
+      nodes_.distance.push_back(raw_.light.distance[raw_.row_of.at(batch.number[node])]);
     }
   }
   GatheredParts own;
@@ -140,22 +171,35 @@ Estimates GatheredNodes::errors() const {
   return errors;
 }
 
-/// Gathers at points that have no rays yet.
+/// Gathers at points that have no rays yet, or fewer than they are to have.
 void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points,
-                               const NodeRays& rays, const Progress& progress) {
-  std::vector<std::uint32_t> fresh;
+                               NodeRays rays, const Progress& progress) {
+  std::map<NodeRays, std::vector<std::uint32_t>> with;  // by the rays that they have
   for (const std::uint32_t point : points) {
-    if (!raw_of_.contains(batch.number[point])) fresh.push_back(point);
+    const std::uint64_t number = batch.number[point];
+    if (raw_.row_of.contains(number)) continue;
+    const auto known = former_.row_of.find(number);
+    with[known == former_.row_of.end() ? NodeRays{} : former_.rays[known->second]].push_back(point);
   }
-  GatheredParts found =
-      gather_.gather(estimate::reordered(batch.points, 0, fresh), numbers_at(batch, fresh),
-                     rays.rays, rays.light_samples, progress);
-  for (const std::uint32_t point : fresh) {
-    raw_of_.insert({batch.number[point], static_cast<std::uint32_t>(raw_of_.size())});
+  const std::size_t lights = layer_powers_.size();
+  for (const auto& [before, chosen] : with) {
+    const NodeRays more{std::max(0, rays.rays - before.rays),
+                        std::max(0, rays.light_samples - before.light_samples)};
+    const std::vector<std::uint64_t> numbers = numbers_at(batch, chosen);
+    GatheredParts light, known;
+    if (more != NodeRays{}) {
+      light = gather_.gather(estimate::reordered(batch.points, 0, chosen), numbers, more.rays,
+                             more.light_samples, progress);
+    }
+    if (before != NodeRays{}) {
+      for (const std::uint64_t number : numbers) {
+        append(former_.light, former_.row_of.at(number), lights, known);
+      }
+      light = more == NodeRays{} ? std::move(known) : mean_of(known, before, light, more, lights);
+    }
+    raw_.append(numbers, {before.rays + more.rays, before.light_samples + more.light_samples},
+                std::move(light));
   }
-  raw_.indirect.append(std::move(found.indirect));
-  raw_.direct.append(std::move(found.direct));
-  raw_.distance.insert(raw_.distance.end(), found.distance.begin(), found.distance.end());
 }
 
 /// Coarse points averaged with those around them.
@@ -164,7 +208,7 @@ GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
   const std::size_t lights = layer_powers_.size();
   GatheredParts parts;
   for (const std::uint32_t point : coarse) {
-    append(raw_, raw_of_.at(batch.number[point]), lights, parts);
+    append(raw_.light, raw_.row_of.at(batch.number[point]), lights, parts);
   }
   if (coarse.empty()) return parts;
   const PointLinks links = links_between(batch, coarse);
@@ -182,7 +226,7 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
                                                   const NoiseTolerance& tolerated) const {
   std::vector<std::size_t> rows;
   if (!fine.empty()) {
-    for (const std::uint64_t number : batch.number) rows.push_back(raw_of_.at(number));
+    for (const std::uint64_t number : batch.number) rows.push_back(raw_.row_of.at(number));
   }
   const KnownPoints points(raw, std::move(rows), layer_powers_);
   return means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cache/irradiance_filter.hpp"
@@ -15,7 +16,8 @@ namespace photile::cache {
 
 /// Rays and light samples of a node.
 struct NodeRays {
-  int rays, light_samples;
+  int rays = 0, light_samples = 0;
+  friend auto operator<=>(const NodeRays&, const NodeRays&) = default;
 };
 
 struct GatheredNodesParameters {
@@ -27,6 +29,15 @@ struct GatheredNodesParameters {
 /// where the sun or a sky shines more light samples, and as many at all levels.
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse);
 
+/// Points at which rays gathered, and what they found.
+struct GatheredPoints {
+  tsl::robin_map<std::uint64_t, std::uint32_t> row_of;  ///< by number
+  std::vector<NodeRays> rays;                           ///< by row
+  GatheredParts light;                                  ///< by row
+
+  void append(std::span<const std::uint64_t> numbers, NodeRays of_each, GatheredParts found);
+};
+
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
 /// finer ones with those next to them and with what coarser ones say of their position, as far as
@@ -35,9 +46,12 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse);
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. One LightMaps uses it.
+  ///   rays     of a node, with those that it has in `former`
+  ///   former   points of light maps before, with the same numbers. Those that nobody asks for
+  ///            again go with it
   GatheredNodes(IrradianceGather& gather, std::span<const double> layer_powers,
-                const GatheredNodesParameters& parameters)
-      : gather_(gather), layer_powers_(layer_powers), parameters_(parameters) {}
+                const GatheredNodesParameters& rays, GatheredPoints former = {})
+      : gather_(gather), layer_powers_(layer_powers), rays_(rays), former_(std::move(former)) {}
 
   Surroundings surroundings() const override;
   NodeValues value(const NodeBatch& batch, const Progress& progress) override;
@@ -45,13 +59,16 @@ class GatheredNodes : public NodeSource {
   std::uint64_t bytes() const override;
   void forget() override;
 
+  /// The points at which rays gathered so far; none are left.
+  GatheredPoints take_points() { return std::move(raw_); }
+
   /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
   /// each light at power 1, in the colour of its light.
   Estimates errors() const;
 
  private:
-  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points,
-                  const NodeRays& rays, const Progress& progress);
+  void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points, NodeRays rays,
+                  const Progress& progress);
   GatheredParts smoothed(const NodeBatch& batch, std::span<const std::uint32_t> coarse) const;
   GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
                                      std::span<const std::uint32_t> fine,
@@ -62,9 +79,9 @@ class GatheredNodes : public NodeSource {
 
   IrradianceGather& gather_;
   std::span<const double> layer_powers_;
-  GatheredNodesParameters parameters_;
-  tsl::robin_map<std::uint64_t, std::uint32_t> raw_of_;  ///< by number of the point
-  GatheredParts raw_;                                    ///< of points, as gathered
+  GatheredNodesParameters rays_;
+  GatheredPoints former_;
+  GatheredPoints raw_;
   tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
   GatheredParts nodes_;
 };

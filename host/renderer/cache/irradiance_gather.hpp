@@ -84,6 +84,9 @@ class IrradianceGather {
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
 
+  /// The next rays and light samples are those of this seed: others from the same points.
+  void reseed(std::uint64_t seed) { parameters_.seed = seed; }
+
   /// What rays find where they end.
   SecondaryLight& secondary() { return secondary_; }
 

@@ -52,6 +52,10 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
     throw UsageError(fmt::format("light maps: {} levels are not between 1 and {}",
                                  parameters.levels, limits::max_light_map_levels));
   }
+  if (parameters.skipped_levels < 0 || parameters.skipped_levels >= parameters.levels) {
+    throw UsageError(fmt::format("light maps: {} of {} levels cannot be skipped",
+                                 parameters.skipped_levels, parameters.levels));
+  }
   if (parameters.powers.size() != layers) {
     throw UsageError(fmt::format("light maps: {} powers for {} layers of light",
                                  parameters.powers.size(), layers));
@@ -75,6 +79,8 @@ LightMaps::Impl::Impl(const Scene& from, const LightMapParameters& given)
       parameters(given),
       charts(scene, parameters.spacing, parameters.angle_degrees),
       levels(cache::levels_that_fit(charts, parameters.levels)),
+      skipped_levels(levels -
+                     cache::levels_that_fit(charts, parameters.levels - parameters.skipped_levels)),
       tiles(charts) {
   clear();
 }
@@ -160,10 +166,10 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
 std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(
     std::span<const NodeCoordinates> nodes, NodeSource& source, const Progress& progress) {
   const auto batch_of = [&](std::span<const NodeCoordinates> coordinates) {
-    return cache::node_batch(scene, charts, coordinates, levels, needs.glossy,
+    return cache::node_batch(scene, charts, coordinates, {levels, skipped_levels}, needs.glossy,
                              source.surroundings());
   };
-  for (const auto& coordinates : cache::unknown_parents(nodes, levels, source)) {
+  for (const auto& coordinates : cache::unknown_parents(nodes, {levels, skipped_levels}, source)) {
     // For the source: they have their values here.
     if (!coordinates.empty()) source.value(batch_of(coordinates), progress);
   }
@@ -197,7 +203,9 @@ void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
 }
 
 /// By more than contrast and noise allow.
-bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const {
+bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, int level) const {
+  if (level < skipped_levels) return true;
+  const double spacing = std::ldexp(charts.spacing(), -level);
   const auto [low, high] = std::minmax_element(
       nodes.begin(), nodes.end(),
       [&](std::uint32_t a, std::uint32_t b) { return together[a] < together[b]; });
@@ -267,9 +275,7 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     for (const auto& [tile, cell] : cells) {
       tiles[tile].known |= std::uint64_t{1} << cell;
       if (static_cast<int>(tiles[tile].level) + 1 < impl_->levels &&
-          impl_->differ(
-              tiles[tile].corners(cell),
-              std::ldexp(impl_->charts.spacing(), -static_cast<int>(tiles[tile].level)))) {
+          impl_->differ(tiles[tile].corners(cell), static_cast<int>(tiles[tile].level))) {
         tiles.split(tile, cell);
       }
     }

@@ -33,7 +33,8 @@ struct LightMaps::Impl {
                                                NodeSource& source, const Progress& progress);
   void append(Estimates estimates, const PrimaryHits& at,
               std::span<const cache::NodeCoordinates> nodes);
-  bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
+  /// Whether a cell of a level is to be split.
+  bool differ(const std::array<std::uint32_t, 4>& nodes, int level) const;
   bool is_dark(double light) const;
   bool differ_by_photons(double high, double low) const;
 
@@ -42,6 +43,7 @@ struct LightMaps::Impl {
   const LightMapParameters parameters;
   cache::Charts charts;
   const int levels;
+  const int skipped_levels;  ///< of them
   cache::Tiles tiles;
   cache::NodeIndex node_at;
   std::vector<cache::NodeCoordinates> coordinates;  ///< of nodes

@@ -56,20 +56,35 @@ std::uint64_t hash_of(const NodeCoordinates& node) {
 /// Bits of the numbers of points: as many as random streams tell apart.
 constexpr int number_bits = 48;
 
-std::uint64_t number_of(const NodeCoordinates& node) { return hash_of(node) >> (64 - number_bits); }
+/// The number of a point is that of its position in the lattice that is the finest without the
+/// levels which skipped ones make room for, if that has it.
+std::uint64_t number_of(const NodeCoordinates& node, const Levels& levels) {
+  NodeCoordinates at = node;
+  int finer = levels.skipped;
+  for (; finer > 0 && ((at.x | at.y) & 1) == 0; --finer) at.x /= 2, at.y /= 2;
+  std::uint64_t hash = hash_of(at);
+  if (finer > 0) hash = (hash ^ static_cast<std::uint64_t>(finer)) * 0x9E3779B97F4A7C15ull;
+  return hash >> (64 - number_bits);
+}
+
+/// Between nodes of the coarsest level that is not skipped, in cells of the finest.
+std::uint32_t coarsest_step(const Levels& levels) {
+  return 1u << (levels.all - 1 - levels.skipped);
+}
 
 /// The distance, at the coarsest level that has the node, from one position to the next.
-std::uint32_t step_of(const NodeCoordinates& node, int levels) {
-  const std::uint32_t coarsest = 1u << (levels - 1);
+std::uint32_t step_of(const NodeCoordinates& node, const Levels& levels) {
+  const std::uint32_t coarsest = coarsest_step(levels);
   std::uint32_t step = 1;
   while (step < coarsest && (node.x | node.y) % (2 * step) == 0) step *= 2;
   return step;
 }
 
 /// The positions next to a node in the lattice of the next coarser level, or none at the coarsest.
-std::optional<std::array<NodeCoordinates, 4>> parents_of(const NodeCoordinates& node, int levels) {
+std::optional<std::array<NodeCoordinates, 4>> parents_of(const NodeCoordinates& node,
+                                                         const Levels& levels) {
   const std::uint32_t step = step_of(node, levels);
-  if (step == 1u << (levels - 1)) return std::nullopt;
+  if (step == coarsest_step(levels)) return std::nullopt;
   const std::uint32_t dx = node.x % (2 * step), dy = node.y % (2 * step);
   std::array<NodeCoordinates, 4> parents;
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -78,11 +93,12 @@ std::optional<std::array<NodeCoordinates, 4>> parents_of(const NodeCoordinates& 
   return parents;
 }
 
-std::array<std::uint64_t, 4> parent_numbers(const NodeCoordinates& node, int levels) {
+std::array<std::uint64_t, 4> parent_numbers(const NodeCoordinates& node, const Levels& levels) {
   std::array<std::uint64_t, 4> numbers;
   numbers.fill(NodeBatch::no_parent);
   if (const auto parents = parents_of(node, levels)) {
-    std::transform(parents->begin(), parents->end(), numbers.begin(), number_of);
+    std::transform(parents->begin(), parents->end(), numbers.begin(),
+                   [&](const NodeCoordinates& parent) { return number_of(parent, levels); });
   }
   return numbers;
 }
@@ -90,10 +106,10 @@ std::array<std::uint64_t, 4> parent_numbers(const NodeCoordinates& node, int lev
 /// The positions around nodes, each in the coarsest lattice that has the node.
 class Lattices {
  public:
-  Lattices(const Charts& charts, int levels) : charts_(charts), levels_(levels) {}
+  Lattices(const Charts& charts, const Levels& levels) : charts_(charts), levels_(levels) {}
 
   bool is_coarsest(const NodeCoordinates& node) const {
-    return step_of(node, levels_) == coarsest();
+    return step_of(node, levels_) == coarsest_step(levels_);
   }
 
   /// Calls visit(coordinates) for those up to so many positions away to both sides, and up and
@@ -102,7 +118,8 @@ class Lattices {
   void around(const NodeCoordinates& node, int across, int along, const Visit& visit) const {
     const Chart& chart = charts_[node.chart];
     const std::uint32_t step = step_of(node, levels_);
-    const std::int64_t cells = coarsest() / step, x = node.x / step, y = node.y / step;
+    const std::int64_t cells = (1u << (levels_.all - 1)) / step, x = node.x / step,
+                       y = node.y / step;
     const std::int64_t last_x = std::min(chart.columns * cells, x + across);
     const std::int64_t last_y = std::min(chart.rows * cells, y + along);
     for (std::int64_t j = std::max<std::int64_t>(0, y - along); j <= last_y; ++j) {
@@ -114,10 +131,8 @@ class Lattices {
   }
 
  private:
-  std::uint32_t coarsest() const { return 1u << (levels_ - 1); }
-
   const Charts& charts_;
-  int levels_;
+  const Levels levels_;
 };
 
 /// Appends the positions around each node that are not among them. Returns the numbers of all.
@@ -181,13 +196,10 @@ std::size_t NodeCoordinatesHash::operator()(const NodeCoordinates& node) const {
   return static_cast<std::size_t>(hash_of(node));
 }
 
-int level_of(const NodeCoordinates& node, int levels) {
-  return levels - 1 - std::countr_zero(step_of(node, levels));
-}
-
 std::vector<std::vector<NodeCoordinates>> unknown_parents(std::span<const NodeCoordinates> nodes,
-                                                          int levels, const NodeSource& source) {
-  std::vector<std::vector<NodeCoordinates>> by_level(static_cast<std::size_t>(levels));
+                                                          const Levels& levels,
+                                                          const NodeSource& source) {
+  std::vector<std::vector<NodeCoordinates>> by_level(static_cast<std::size_t>(levels.all));
   NodeIndex found;
   std::vector<NodeCoordinates> open(nodes.begin(), nodes.end());
   while (!open.empty()) {
@@ -195,8 +207,9 @@ std::vector<std::vector<NodeCoordinates>> unknown_parents(std::span<const NodeCo
     open.pop_back();
     if (!parents) continue;
     for (const NodeCoordinates& parent : *parents) {
-      if (source.knows(number_of(parent)) || !found.insert({parent, 0}).second) continue;
-      by_level[static_cast<std::size_t>(level_of(parent, levels))].push_back(parent);
+      if (source.knows(number_of(parent, levels)) || !found.insert({parent, 0}).second) continue;
+      const int level = levels.all - 1 - std::countr_zero(step_of(parent, levels));
+      by_level[static_cast<std::size_t>(level)].push_back(parent);
       open.push_back(parent);
     }
   }
@@ -204,7 +217,8 @@ std::vector<std::vector<NodeCoordinates>> unknown_parents(std::span<const NodeCo
 }
 
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodeCoordinates> nodes,
-                     int levels, bool glossy, const NodeSource::Surroundings& surroundings) {
+                     const Levels& levels, bool glossy,
+                     const NodeSource::Surroundings& surroundings) {
   NodeBatch batch;
   batch.nodes = nodes.size();
   for (const NodeCoordinates& node : nodes) batch.parents.push_back(parent_numbers(node, levels));
@@ -215,9 +229,9 @@ NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodeCoo
   for (const NodeCoordinates& at : coordinates) batch.coarse.push_back(lattices.is_coarsest(at));
   if (surroundings.rounds > 0) link(lattices, surroundings, coordinates, index, batch);
   for (const NodeCoordinates& at : coordinates) {
-    batch.number.push_back(number_of(at));
+    batch.number.push_back(number_of(at, levels));
   }
-  batch.points = node_points(scene, charts, coordinates, levels, glossy);
+  batch.points = node_points(scene, charts, coordinates, levels.all, glossy);
   return batch;
 }
 

@@ -18,6 +18,12 @@ namespace photile::cache {
 PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const NodeCoordinates> nodes,
                         int levels, bool glossy);
 
+/// Levels of light maps.
+struct Levels {
+  int all = 1;
+  int skipped = 0;  ///< see LightMapParameters::skipped_levels
+};
+
 struct NodeCoordinatesHash {
   std::size_t operator()(const NodeCoordinates& node) const;
 };
@@ -26,18 +32,16 @@ struct NodeCoordinatesHash {
 using NodeIndex = tsl::robin_map<NodeCoordinates, std::uint32_t, NodeCoordinatesHash>;
 
 /// Their points, the numbers of these, parents and links.
-///   levels         of the light maps
 ///   glossy         whether hits of the scene have lobes
 ///   surroundings   positions that values depend on
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodeCoordinates> nodes,
-                     int levels, bool glossy, const NodeSource::Surroundings& surroundings);
-
-/// The coarsest level of so many that has a node.
-int level_of(const NodeCoordinates& node, int levels);
+                     const Levels& levels, bool glossy,
+                     const NodeSource::Surroundings& surroundings);
 
 /// The positions between which nodes lie, and those between which these do, as far as a source does
 /// not know them: by level, the coarsest first.
 std::vector<std::vector<NodeCoordinates>> unknown_parents(std::span<const NodeCoordinates> nodes,
-                                                          int levels, const NodeSource& source);
+                                                          const Levels& levels,
+                                                          const NodeSource& source);
 
 }  // namespace photile::cache

@@ -12,6 +12,7 @@
 #include "device/context.hpp"
 #include "estimate/neighbour_choice.hpp"
 #include "maps/map_page.hpp"
+#include "photile/limits.hpp"
 #include "render/exchange.hpp"
 #include "render/setting.hpp"
 #include "render/shared_photons.hpp"
@@ -36,26 +37,52 @@ class LazyLight : public estimate::LightAtPoints {
   std::shared_ptr<estimate::LightAtPoints> light_;
 };
 
+/// The same light maps, with nodes as close together as this spacing asks for, by levels that are
+/// split everywhere.
+LightMapParameters finer_than(LightMapParameters maps, double spacing) {
+  const double halvings = std::round(std::log2(maps.spacing / spacing));
+  maps.skipped_levels =
+      std::clamp(static_cast<int>(halvings), 0, limits::max_light_map_levels - maps.levels);
+  maps.levels += maps.skipped_levels;
+  return maps;
+}
+
 }  // namespace
 
-PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons)
-    : photons_(std::move(photons)),
+PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons,
+                     Growth growth)
+    : rays_(rays),
+      plan_(plan),
+      photons_(std::move(photons)),
       layer_powers_(estimate::layer_powers(rays.scene())),
       is_shared_(plan.used().processes != nullptr) {
   if (!plan.reads_light_maps()) return;
-  estimate::LightAtPoints& of_points = *photons_.all.of_points;
-  estimate::LightAtPoints& of_nodes = *photons_.all.of_nodes;
   if (plan.gathers_at_nodes()) {
-    gather_.emplace(rays, of_points, of_nodes, photons_.ends, photons_.caustics.of_points.get(),
-                    plan.node_gathering(photons_.pass, photons_.first_radius));
-    gathered_.emplace(*gather_, layer_powers_,
-                      cache::rays_of_nodes(rays.scene(), plan.used().light_map_rays));
+    gather_.emplace(rays, *photons_.all.of_points, *photons_.all.of_nodes, photons_.ends,
+                    photons_.caustics.of_points.get(),
+                    plan.node_gathering(growth.round, photons_.radius));
   } else {
-    by_photons_.emplace(of_nodes);
+    by_photons_.emplace(*photons_.all.of_nodes);
   }
-  cache_.emplace(rays, photons_.maps, of_points, nodes(),
-                 gather_ ? &gather_->secondary() : nullptr);
+  read_light_maps(std::move(growth));
   if (photons_.contents) cache_->maps().restore(*photons_.contents);
+}
+
+void PassLight::grow(int round, int parts) {
+  gather_->reseed(plan_.node_gathering(round, photons_.radius).seed);
+  read_light_maps({round, parts, gathered_->take_points()});
+}
+
+void PassLight::read_light_maps(Growth growth) {
+  cache_.reset();
+  if (gather_) {
+    gathered_.emplace(
+        *gather_, layer_powers_,
+        cache::rays_of_nodes(rays_.scene(), growth.parts * plan_.used().light_map_rays),
+        std::move(growth.points));
+  }
+  cache_.emplace(rays_, photons_.maps, *photons_.all.of_points, nodes(),
+                 gather_ ? &gather_->secondary() : nullptr);
 }
 
 std::span<const std::uint32_t> PassLight::map_of() const {
@@ -89,8 +116,10 @@ std::string PhotonPasses::light_map_settings() const {
   return words;
 }
 
-PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
-                               Progress& progress) {
+PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress,
+                               int parts) {
+  parts_ = parts;
+  all_parts_ += parts;
   if (prepared && prepared->light_maps && plan_.reads_light_maps()) {
     if (prepared->light_maps->settings == light_map_settings()) return waiting(*prepared, keep);
     progress.note("light maps of the saved photons are of other settings: they are made anew");
@@ -103,7 +132,7 @@ PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
     photons.caustics = shared(estimate_of(std::move(maps.caustics)));
   }
   costs_.estimators.add(stopwatch.taken());
-  ++pass_;
+  if (!plan_.reads_light_maps()) ++pass_;
   return photons;
 }
 
@@ -138,12 +167,14 @@ PassPhotons PhotonPasses::waiting(TracedPhotons& prepared, const KeepPhotons* ke
   return photons;
 }
 
-PassPhotons PhotonPasses::facts(const Photons& photons) const {
-  PassPhotons facts{
-      .pass = pass_, .first_radius = radius_, .all = {}, .caustics = {}, .maps = {}, .ends = {}};
+PassPhotons PhotonPasses::facts(const Photons& photons) {
+  PassPhotons facts{.radius = radius_, .all = {}, .caustics = {}, .maps = {}, .ends = {}};
   if (plan_.reads_light_maps()) {
-    facts.maps = plan_.light_maps(pass_, radius_, scene_, photons, layer_powers_);
-    facts.ends = plan_.ends(pass_, radius_, scene_, photons, layer_powers_);
+    const double radius = radius_ * std::sqrt(static_cast<double>(parts_) / all_parts_);
+    facts.maps = plan_.light_maps(radius, scene_, photons, layer_powers_);
+    if (!first_maps_) first_maps_ = facts.maps;
+    facts.maps = finer_than(*first_maps_, facts.maps.spacing);
+    facts.ends = plan_.ends(radius_, scene_, photons, layer_powers_);
   }
   return facts;
 }
@@ -205,7 +236,7 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
     traced.photons = std::move(prepared->photons);
     if (plan_.keeps_caustics()) traced.caustics = std::move(*prepared->caustics);
   } else {
-    traced = trace_photons(rays_, plan_.tracing(pass_, paths_before_), progress);
+    traced = trace_photons(rays_, plan_.tracing(pass_, paths_before_, parts_), progress);
   }
   costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
   if (auto* const processes = plan_.used().processes) {

@@ -31,13 +31,19 @@ struct PhotonLight {
 
 /// The photons of one pass, and what follows from them.
 struct PassPhotons {
-  int pass = 0;
-  double first_radius = 0;  ///< of the first pass, metres
+  double radius = 0;  ///< of the first pass, metres
   PhotonLight all;
   PhotonLight caustics;           ///< that came by mirrors and glass alone; null without any
   LightMapParameters maps, ends;  ///< where light maps are read: of them, and of those at ray ends
   /// What such light maps held, if they were kept.
   std::optional<LightMapContents> contents = std::nullopt;
+};
+
+/// How far light maps have grown (docs/light-maps.md).
+struct Growth {
+  int round = 0;  ///< 0 for the first one
+  int parts = 1;  ///< so many times the rays that were asked for start from nodes, in all rounds
+  cache::GatheredPoints points = {};  ///< at which rays gathered in the rounds before
 };
 
 /// The light of a scene, as the photons of one pass give it: what answers whom is decided here, by
@@ -46,7 +52,12 @@ struct PassPhotons {
 class PassLight {
  public:
   /// References are kept. Errors: those of SurfaceCache.
-  PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons);
+  ///   growth   of light maps whose nodes gather
+  PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons, Growth growth = {});
+
+  /// Light maps of the same photons, after a further round of growing.
+  ///   parts   as Growth has them
+  void grow(int round, int parts);
 
   /// All light at points: the end of the chain.
   estimate::LightAtPoints& light() {
@@ -60,6 +71,8 @@ class PassLight {
   NodeSource& nodes() { return gathered_ ? static_cast<NodeSource&>(*gathered_) : *by_photons_; }
   /// Where rays value nodes; else null.
   const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
+  /// Takes the points at which rays gathered, for the light of further photons.
+  cache::GatheredPoints take_points() { return gathered_->take_points(); }
 
   /// The order in which the light is found fastest: per oriented face, the map of a hit; empty
   /// where the order does not matter, and where processes share the maps: each has maps of its own,
@@ -69,6 +82,10 @@ class PassLight {
   std::vector<double> fractions() const;
 
  private:
+  void read_light_maps(Growth growth);
+
+  const RayScene& rays_;
+  const RenderPlan& plan_;
   const PassPhotons photons_;
   const std::vector<double> layer_powers_;
   const bool is_shared_;                           ///< with other processes
@@ -79,7 +96,9 @@ class PassLight {
 };
 
 /// Traces the photons of one pass after another, and builds their maps. The first pass says the
-/// radius, the groups and the lit surface of all.
+/// radius, the groups and the lit surface of all. Where light maps are read there is one pass, and
+/// they may grow: further photons say a radius, groups and lit surface of their own, and all
+/// photons so far how close together nodes lie.
 class PhotonPasses {
  public:
   /// References are kept.
@@ -91,8 +110,10 @@ class PhotonPasses {
   ///              Where it has light maps of these settings, photon maps are built when an estimate
   ///              is first needed.
   ///   keep       is given those of the first pass, or null
+  ///   parts      where light maps are read: so many times the photons that were asked for
   /// Errors: those of the stages.
-  PassPhotons next(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  PassPhotons next(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress,
+                   int parts = 1);
 
   /// The radius of the first pass, metres.
   double radius() const { return radius_; }
@@ -123,7 +144,7 @@ class PhotonPasses {
   /// The estimate as it is asked for where several processes have the maps.
   PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.
-  PassPhotons facts(const Photons& photons) const;
+  PassPhotons facts(const Photons& photons);
   /// Where several processes share the rendering: sends photons to the owners of their maps.
   void move_to_owners(PhotonTracerResult& traced, Progress& progress);
   void count(const PhotonTracerResult& traced);
@@ -136,10 +157,12 @@ class PhotonPasses {
   const RenderPlan& plan_;
   RenderCosts& costs_;
   const std::vector<double> layer_powers_;
-  std::optional<KernelPreparation> kernels_;  ///< begun when photons are first traced
-  int pass_ = 0;                              ///< the next
-  std::vector<std::uint64_t> paths_before_;   ///< per light
-  double radius_ = 0;                         ///< of the first pass, metres
+  std::optional<KernelPreparation> kernels_;      ///< begun when photons are first traced
+  int pass_ = 0;                                  ///< the next; 0 where light maps are read
+  int parts_ = 0, all_parts_ = 0;                 ///< of the latest photons, and of all
+  std::optional<LightMapParameters> first_maps_;  ///< of the first photons
+  std::vector<std::uint64_t> paths_before_;       ///< per light
+  double radius_ = 0;                             ///< of the first pass, metres
   NeighbourGroups groups_;
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   std::shared_ptr<const MapOwners> owners_;      ///< where several processes share the rendering

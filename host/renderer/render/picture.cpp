@@ -39,9 +39,7 @@ Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device>
       costs_(costs),
       layers_(mixdown ? LightLayers(film_.width, film_.height, mixdown->layers)
                       : LightLayers(film_.width, film_.height, scene_)),
-      fractions_(devices.size(), 0.0) {
-  costs_.start_picture();
-}
+      fractions_(devices.size(), 0.0) {}
 
 void Picture::add(const HitSource& source, PassLight& light, Progress& progress) {
   LightLayers* const errors = source.errors();

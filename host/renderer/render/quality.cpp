@@ -12,6 +12,14 @@
 #include "render/setting.hpp"
 
 namespace photile {
+namespace {
+
+bool is_work(const Setting& setting) {
+  return setting.is_of_quality() &&
+         setting.by_quality[index_of(Quality::best)] > setting.by_quality[index_of(Quality::good)];
+}
+
+}  // namespace
 
 std::string_view name_of(Quality quality) { return name_in({"draft", "good", "final"}, quality); }
 
@@ -52,6 +60,45 @@ void set_by_name(RenderParameters& parameters, std::string_view name,
     throw SettingError(*found, out_of_range(text_of(fitting), found->range));
   }
   found->set(parameters, fitting);
+}
+
+RenderParameters with_work(RenderParameters parameters, double factor) {
+  for (const Setting& setting : settings()) {
+    if (is_work(setting)) setting.set(parameters, scaled(setting, parameters, factor));
+  }
+  return parameters;
+}
+
+bool allows_work(const RenderParameters& parameters, int factor) {
+  return std::all_of(settings().begin(), settings().end(), [&](const Setting& setting) {
+    if (!is_work(setting)) return true;
+    const SettingValue value = setting.value(parameters);
+    const auto* const whole = std::get_if<std::uint64_t>(&value);
+    return !whole || *whole <= std::get<WholeNumbers>(setting.range).most /
+                                   static_cast<std::uint64_t>(factor);
+  });
+}
+
+bool grows(const RenderParameters& asked) {
+  return asked.light_maps == LightMapMode::on && asked.passes > 1 && nodes_gather(asked);
+}
+
+RenderParameters of_parts(const RenderParameters& part, int parts) {
+  RenderParameters all = with_work(part, parts);
+  all.photons.emitted_photons = part.photons.emitted_photons * photons_of_parts(parts);
+  if (parts > 1) {
+    all.passes = parts;
+    all.light_maps = LightMapMode::on;
+  }
+  return all;
+}
+
+RenderParameters part_of(const RenderParameters& all) {
+  RenderParameters part = with_work(all, 1.0 / all.passes);
+  part.photons.emitted_photons =
+      std::max<std::uint64_t>(1, all.photons.emitted_photons / photons_of_parts(all.passes));
+  part.passes = 1;
+  return part;
 }
 
 RenderParameters first_picture_parameters(const RenderParameters& asked) {

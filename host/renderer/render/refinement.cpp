@@ -13,27 +13,27 @@
 
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
-#include "render/setting.hpp"
+#include "render/quality.hpp"
 
 namespace photile {
 namespace {
 
-/// The first picture of those for a time has this part of the work.
+/// Of those for a time.
 constexpr double first_fraction = 0.25;
 
-/// Twice the work leaves 0.7 of the error where it is noise, and more than this where it is not.
-constexpr double stalled = 0.95;
+/// A round leaves 0.71 to 0.87 of an error that is noise, and more than this of one that is not.
+constexpr double stalled = 0.97;
 
-/// The part of the time left that a picture is planned to take. The rest is for what the plan does
+/// The part of the time left that a round is planned to take. The rest is for what the plan does
 /// not know, such as other programs.
-constexpr double planned_part = 0.8;
+constexpr double planned_part = 0.9;
 
-/// Less would not show. A picture of so much is tried where less is planned, for nothing is lost.
-constexpr double least_growth = 1.4;
+/// Nodes are this power of the photons many, for they lie closer together with more of them: with
+/// four times the work, `--quality final` takes five to seven times as long as `good`.
+constexpr double power_of_nodes = 0.35;
 
-/// More would make a user wait long for the next picture, and saves little: one of an eighth of the
-/// work takes about a tenth of the time.
-constexpr double most_growth = 8;
+/// What the photons of a part take beside its rays.
+constexpr double time_of_photons = 0.4;
 
 /// Stops a picture that the time is over for.
 class Deadline : public Progress {
@@ -56,51 +56,24 @@ class Deadline : public Progress {
   double seconds_;
 };
 
-bool is_work(const Setting& setting) {
-  return setting.is_of_quality() &&
-         setting.by_quality[index_of(Quality::best)] > setting.by_quality[index_of(Quality::good)];
-}
-
-bool same_work(const RenderParameters& a, const RenderParameters& b) {
-  return std::all_of(settings().begin(), settings().end(), [&](const Setting& setting) {
-    return !is_work(setting) || setting.value(a) == setting.value(b);
-  });
-}
-
 /// The error of the most work that settings allow, where it is noise.
-double least_error(RenderParameters parameters, double error) {
-  for (;;) {
-    const RenderParameters more = with_work(parameters, 2);
-    if (same_work(more, parameters)) return error;
-    parameters = more;
-    error /= std::sqrt(2.0);
-  }
+double least_error(const RenderParameters& part, int parts, double error) {
+  for (; allows_work(part, 2 * parts); parts *= 2) error /= std::sqrt(2.0);
+  return error;
 }
 
-/// Work that leaves `error` times `from`, as a power of two, so that rounding on one device or
-/// another does not change the settings: the error falls with the square root of work.
-double growth_for_error(double from, double error) {
-  return std::exp2(std::max(1.0, std::ceil(2 * std::log2(from / error))));
+/// What goes with the time of all rounds that add up to so many parts.
+double work_of(int parts) {
+  const double photons = photons_of_parts(parts);
+  return parts * std::pow(photons, power_of_nodes) + time_of_photons * photons;
 }
 
-/// How many times the work of the last picture fits in a time. Time grows as a power of work, which
-/// the last two pictures tell. Before that it is taken as 1.6: less noise divides light maps more
-/// finely, so that four times the work took up to seven times as long (docs/quality.md), while much
-/// that does not grow made it less than four times in scenes of many lights.
-class TimePlan {
- public:
-  /// A picture of `growth` times the work of the one before took so long.
-  void add(double growth, double seconds) {
-    if (seconds_ > 0)
-      power_ = std::clamp(std::log(seconds / seconds_) / std::log(growth), 0.5, 2.0);
-    seconds_ = seconds;
-  }
-  double growth_within(double seconds) const { return std::pow(seconds / seconds_, 1 / power_); }
-
- private:
-  double power_ = 1.6;
-  double seconds_ = 0;  ///< of the last picture
-};
+/// What the next round is likely to take after one that led to so many parts in so many seconds.
+///   before   parts before that; 0 = none
+double seconds_of_next(double seconds, int before, int parts) {
+  const double work_before = before > 0 ? work_of(before) : 0;
+  return seconds * (work_of(parts_after(parts)) - work_of(parts)) / (work_of(parts) - work_before);
+}
 
 void tell_out_of_reach(double error, double floor, Progress& progress) {
   progress.note(
@@ -112,13 +85,6 @@ void tell_out_of_reach(double error, double floor, Progress& progress) {
 
 }  // namespace
 
-RenderParameters with_work(RenderParameters parameters, double factor) {
-  for (const Setting& setting : settings()) {
-    if (is_work(setting)) setting.set(parameters, scaled(setting, parameters, factor));
-  }
-  return parameters;
-}
-
 double standard_error_of(const RenderResult& picture) {
   for (const StageStatistics& stage : picture.statistics) {
     for (const auto& [name, value] : stage.figures) {
@@ -128,50 +94,42 @@ double standard_error_of(const RenderResult& picture) {
   return 0;
 }
 
-RenderResult refine(const RefinementGoal& goal, const RenderParameters& parameters,
+RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& asked) {
+  return goal.seconds > 0 ? with_work(asked, first_fraction) : asked;
+}
+
+RenderResult refine(const RefinementGoal& goal, const RenderParameters& part,
                     const RefinementSteps& steps, Progress& progress) {
-  RenderParameters next = goal.seconds > 0 ? with_work(parameters, first_fraction) : parameters;
-  std::optional<RenderResult> best;
+  std::optional<RenderResult> latest;
   double before = std::numeric_limits<double>::infinity();
-  TimePlan plan;
-  double growth = 1;
+  int parts = 0, next = 1;
   for (;;) {
     const double began = steps.elapsed();
-    Deadline deadline(progress, steps.elapsed, best ? goal.seconds : 0);
+    Deadline deadline(progress, steps.elapsed, latest ? goal.seconds : 0);
     try {
-      RenderResult picture = steps.make(next, deadline);
-      if (!best || standard_error_of(picture) <= standard_error_of(*best)) {
-        best = std::move(picture);
-        steps.finished(next, *best);
-      }
+      latest = steps.make(next - parts, deadline);
     } catch (const Interrupted&) {
-      if (!best || progress.cancelled()) throw;
+      if (!latest || progress.cancelled()) throw;
       progress.end();
       progress.note("the time is over; what was being made is given up");
-      return std::move(*best);
+      return std::move(*latest);
     }
-    const double now = steps.elapsed();
-    plan.add(growth, now - began);
-    growth = most_growth;
-    const double error = standard_error_of(*best);
+    const int parts_before = std::exchange(parts, next);
+    steps.finished(parts, *latest);
+    const double now = steps.elapsed(), error = standard_error_of(*latest);
     if (goal.error > 0) {
-      if (error <= goal.error) return std::move(*best);
-      const double floor = error > stalled * before ? error : least_error(next, error);
+      if (error <= goal.error) return std::move(*latest);
+      const double floor = error > stalled * before ? error : least_error(part, parts, error);
       if (floor > goal.error) {
         tell_out_of_reach(goal.error, floor, progress);
-        return std::move(*best);
+        return std::move(*latest);
       }
       before = error;
-      growth = std::min(growth, growth_for_error(error, goal.error));
     }
-    if (goal.seconds > 0) {
-      const double left = goal.seconds - now;
-      if (left < now - began) return std::move(*best);
-      growth = std::min(growth, std::max(least_growth, plan.growth_within(planned_part * left)));
-    }
-    const RenderParameters more = with_work(next, growth);
-    if (same_work(more, next)) return std::move(*best);
-    next = more;
+    const bool fits = goal.seconds == 0 || seconds_of_next(now - began, parts_before, parts) <=
+                                               planned_part * (goal.seconds - now);
+    next = parts_after(parts);
+    if (!fits || !allows_work(part, next)) return std::move(*latest);
   }
 }
 

@@ -94,8 +94,8 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   if (asked.light_maps == LightMapMode::on && passes() > 1) {
     throw SettingError(
         setting_named("light_maps"),
-        fmt::format("light maps are of one photon pass, and there are {}; take fewer "
-                    "photons, or one pass",
+        fmt::format("light maps are of one photon pass, but for single pictures whose nodes gather "
+                    "(light_map_rays), and there are {}; take fewer photons, or one pass",
                     passes()));
   }
   const bool read =
@@ -113,15 +113,18 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   if (asked.radius > 0) used_.radius = std::min(asked.radius, scene_diagonal(rays.scene()));
 }
 
-PhotonTracerParameters RenderPlan::tracing(int pass,
-                                           const std::vector<std::uint64_t>& paths_before) const {
+PhotonTracerParameters RenderPlan::tracing(int pass, const std::vector<std::uint64_t>& paths_before,
+                                           int parts) const {
   PhotonTracerParameters parameters = all_photons(used_);
   if (used_.processes) parameters.shard = {used_.processes->rank(), used_.processes->size()};
-  if (passes() == 1) return parameters;
+  parameters.paths_before = paths_before;
+  if (passes() == 1) {
+    parameters.emitted_photons *= static_cast<std::uint64_t>(parts);
+    return parameters;
+  }
   const std::uint64_t all = used_.photons.emitted_photons;
   const auto until = [&](int p) { return all / passes() * p + all % passes() * p / passes(); };
   parameters.emitted_photons = std::max<std::uint64_t>(1, until(pass + 1) - until(pass));
-  parameters.paths_before = paths_before;
   return parameters;
 }
 
@@ -174,22 +177,19 @@ std::vector<EstimateParameters> RenderPlan::estimates(
   return levels;
 }
 
-LightMapParameters RenderPlan::light_maps(int pass, double first_radius, const Scene& scene,
-                                          const Photons& photons,
+LightMapParameters RenderPlan::light_maps(double radius, const Scene& scene, const Photons& photons,
                                           std::span<const double> powers) const {
-  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
-  LightMapParameters parameters = cache::light_map_parameters(
-      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees,
-      used_.light_map_spacing, used_.light_map_detail, powers);
+  LightMapParameters parameters =
+      cache::light_map_parameters(scene, photons, used_.neighbours, radius, used_.angle_degrees,
+                                  used_.light_map_spacing, used_.light_map_detail, powers);
   parameters.processes = used_.processes;
   return parameters;
 }
 
-LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& scene,
-                                    const Photons& photons, std::span<const double> powers) const {
-  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+LightMapParameters RenderPlan::ends(double radius, const Scene& scene, const Photons& photons,
+                                    std::span<const double> powers) const {
   LightMapParameters parameters = cache::light_map_parameters(
-      scene, photons, estimate.neighbours, estimate.radius, used_.angle_degrees, 0, 0, powers);
+      scene, photons, used_.neighbours, radius, used_.angle_degrees, 0, 0, powers);
   // A point sees many ends: what their nodes are wrong by between each other cancels out.
   parameters.spacing *= 2;
   parameters.levels = 1;
@@ -197,13 +197,12 @@ LightMapParameters RenderPlan::ends(int pass, double first_radius, const Scene& 
   return parameters;
 }
 
-cache::IrradianceGatherParameters RenderPlan::node_gathering(int pass, double first_radius) const {
-  const PassEstimate estimate = estimate_of_pass(pass, {first_radius, used_.neighbours});
+cache::IrradianceGatherParameters RenderPlan::node_gathering(int repeat, double radius) const {
   return {.rays = used_.light_map_rays,
           .light_samples = used_.light_map_rays,
-          .near = defaults::near_radii * estimate.radius,
-          .caustic_neighbours = estimate.neighbours,
-          .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(pass)),
+          .near = defaults::near_radii * radius,
+          .caustic_neighbours = used_.neighbours,
+          .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(repeat)),
           .max_specular_depth = used_.max_specular_depth};
 }
 

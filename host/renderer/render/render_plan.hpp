@@ -50,7 +50,9 @@ class RenderPlan {
 
   /// The parameters of tracing in this pass, whose paths follow those of the passes before.
   ///   paths_before   of each light
-  PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before) const;
+  ///   parts          where light maps are read: so many times the paths that were asked for
+  PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before,
+                                 int parts = 1) const;
 
   /// The radius of the first pass, metres: as asked, or by its photons. Errors: SettingError where
   /// they tell none.
@@ -65,17 +67,19 @@ class RenderPlan {
   std::vector<EstimateParameters> estimates(
       int pass, DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const;
 
-  /// The parameters of light maps from the photons of this pass.
+  /// The parameters of light maps from these photons.
+  ///   radius   of their maps, metres
   ///   powers   per layer
-  LightMapParameters light_maps(int pass, double first_radius, const Scene& scene,
-                                const Photons& photons, std::span<const double> powers) const;
+  LightMapParameters light_maps(double radius, const Scene& scene, const Photons& photons,
+                                std::span<const double> powers) const;
 
   /// The parameters of light maps where gathering rays end.
-  LightMapParameters ends(int pass, double first_radius, const Scene& scene, const Photons& photons,
+  LightMapParameters ends(double radius, const Scene& scene, const Photons& photons,
                           std::span<const double> powers) const;
   /// At nodes of light maps.
-  ///   first_radius   of the first pass, metres
-  cache::IrradianceGatherParameters node_gathering(int pass, double first_radius) const;
+  ///   repeat   of rays at the same nodes, from 0
+  ///   radius   of the photon maps, metres
+  cache::IrradianceGatherParameters node_gathering(int repeat, double radius) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

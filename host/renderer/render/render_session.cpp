@@ -78,9 +78,37 @@ RenderSession::RenderSession(std::shared_ptr<const PreparedScene> scene, std::sp
 
 RenderResult RenderSession::render(const HitSource& hits, const Film& film, Progress& progress,
                                    const LayerMixdown* mixdown) {
+  // What light maps that grow take is spread over all of their pictures.
+  if (parts_ == 1) costs_.start_picture();
   Picture picture(scene_->rays, plan_, devices_, film, plan_.passes(), mixdown, costs_);
   for (const auto& pass : passes_) picture.add(hits, *pass, progress);
-  return picture.finish(photons_.radius());
+  RenderResult result = picture.finish(photons_.radius());
+  if (parts_ > 1) {
+    // Each round has a radius of its own, unless one was asked for.
+    const Film made = result.used.film;
+    result.used = of_parts(plan_.used(), parts_);
+    result.used.film = made;
+  }
+  return result;
+}
+
+void RenderSession::grow(int parts, Progress& progress) {
+  const int photons_before = photons_of_parts(parts_);
+  parts_ += parts;
+  const int more_photons = photons_of_parts(parts_) - photons_before;
+  frames_.reset();
+  costs_.light_map_nodes = 0;
+  ++round_;
+  if (more_photons == 0) {
+    light().grow(round_, parts_);
+  } else {
+    Growth growth{round_, parts_, light().take_points()};
+    passes_.clear();  // before other maps take its room
+    passes_.push_back(std::make_unique<PassLight>(
+        scene_->rays, plan_, photons_.next(nullptr, nullptr, progress, more_photons),
+        std::move(growth)));
+  }
+  frames_.emplace(scene_->rays, light().cache()->maps(), light().nodes());
 }
 
 std::optional<LightMapContents> RenderSession::light_map_contents() const {
@@ -92,11 +120,31 @@ std::optional<LightMapContents> RenderSession::light_map_contents() const {
   return contents;
 }
 
+namespace {
+
+/// The picture of light maps that grow.
+RenderResult render_grown(const std::shared_ptr<const PreparedScene>& scene, const HitSource& hits,
+                          Film film, std::span<Device> devices, const RenderParameters& parameters,
+                          Progress& progress) {
+  RenderParameters part = parameters;
+  part.film = film;
+  RenderSession session(scene, devices, part_of(part), nullptr, {}, progress);
+  RenderResult result = session.render(hits, session.film(), progress);
+  for_later_rounds(parameters.passes, [&](int parts) {
+    session.grow(parts, progress);
+    result = session.render(hits, session.film(), progress);
+  });
+  return result;
+}
+
+}  // namespace
+
 RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,
                          std::span<Device> devices, const RenderParameters& parameters,
                          Progress& progress) {
   require_device(devices);
   const auto prepared = std::make_shared<const PreparedScene>(scene);
+  if (grows(parameters)) return render_grown(prepared, hits, film, devices, parameters, progress);
   const RenderPlan plan(parameters, prepared->rays,
                         hits.dense() ? HitsAsk::pictures : HitsAsk::points, progress);
   RenderCosts costs;

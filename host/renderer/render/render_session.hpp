@@ -10,6 +10,7 @@
 #include "photile/renderer.hpp"
 #include "render/hit_source.hpp"
 #include "render/photon_passes.hpp"
+#include "render/quality.hpp"
 
 namespace photile {
 
@@ -36,6 +37,14 @@ class RenderSession {
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
                       const LayerMixdown* mixdown = nullptr);
 
+  /// Lets light maps whose nodes gather grow by a round: so many times more of the rays start that
+  /// were asked for, from the nodes that are looked at from now on, among photons traced anew where
+  /// `photons_of_parts` says so. Pictures are then those of `of_parts`, if as many were made on the
+  /// way.
+  void grow(int parts, Progress& progress);
+  /// The film asked for, with the samples of all parts.
+  Film film() const { return with_work(plan_.used(), parts_).film; }
+
   bool reads_light_maps() const { return plan_.reads_light_maps(); }
   /// The light of the scene; where light maps are read there is one pass.
   PassLight& light() { return *passes_.front(); }
@@ -51,6 +60,8 @@ class RenderSession {
   RenderCosts costs_;
   PhotonPasses photons_;
   std::vector<std::unique_ptr<PassLight>> passes_;
+  int round_ = 0;  ///< of growing
+  int parts_ = 1;  ///< of the work that was asked for
   std::optional<cache::LightMapFrames> frames_;
 };
 
