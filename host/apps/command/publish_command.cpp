@@ -231,8 +231,9 @@ void add_publish_command(CLI::App& photile) {
   add_quality_preset(*command, options->render.quality_options());
   OptionGroup(*command, "Quality")
       .add("--for", options->render.goal.seconds, "TIME",
-           "light the room again and again for so long, each time with more work, from a "
-           "quarter of it on; the page depends on the machine",
+           "add rays and photons for so long, from a quarter of the work on; the page depends on "
+           "the "
+           "machine",
            duration());
   add_setting_options(*command, options->render, without);
   command->callback([options, texel] {

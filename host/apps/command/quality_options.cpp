@@ -24,12 +24,11 @@ std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); 
 std::span<const GoalOption> goal_options() {
   static constexpr std::array<GoalOption, 2> options{{
       {"target_error", "target-error", "PERCENT",
-       "add as many rays, photons and samples again and again, until the picture states this root "
-       "mean square relative error",
+       "add rays, photons and samples, until the picture states this root mean square relative "
+       "error",
        &RefinementGoal::error},
       {"for", "for", "TIME",
-       "add such rounds for so long, from a quarter of the work on; the picture depends on the "
-       "machine",
+       "add them for so long, from a quarter of the work on; the picture depends on the machine",
        &RefinementGoal::seconds},
   }};
   return options;

@@ -35,8 +35,8 @@ void for_later_rounds(int all, const Grow& grow) {
     parts = next;
   }
 }
-/// So many times the photons of a part are there, with so many parts of rays and samples: photons
-/// err less than rays, and those of every other round are enough.
+/// So many times the photons of a part are there with so many parts of rays and samples: photons
+/// err less than rays, and are traced anew when there are four times the parts.
 constexpr int photons_of_parts(int parts) {
   int photons = 1;
   while (parts / 4 >= photons) photons *= 4;

@@ -165,8 +165,9 @@ std::vector<Setting> photon_rows() {
           "roulette_start", paths, WholeNumbers{1, most_int},
           "first bounce at which a path may end by chance", kept_as_it_is),
       row<&P::passes>("passes", "all", WholeNumbers{1, limits::max_passes},
-                      "photon passes, each of its part of the paths", not_kept,
-                      "as many as the host's memory needs"),
+                      "photon passes, each of its part of the paths; with light maps on, parts of "
+                      "all work",
+                      not_kept, "as many as the host's memory needs"),
   };
 }
 
