@@ -19,6 +19,16 @@ struct DarkPart {
   std::uint32_t oriented_face;
 };
 
+/// The corners of least and of greatest coordinates.
+struct PartBounds {
+  glm::vec3 lower, upper;
+
+  bool contain(const glm::vec3& position) const {
+    return glm::all(glm::lessThanEqual(lower, position)) &&
+           glm::all(glm::lessThanEqual(position, upper));
+  }
+};
+
 /// What the area of a disc clipped to the surface needs to know of a scene.
 ///
 /// A *component* is a set of oriented faces that connect over edges which fold by no more than the
@@ -54,6 +64,10 @@ struct SurfaceIndex {
   std::uint32_t components = 0;
   std::vector<DarkPart> unlit_regions;            ///< in the order of their oriented faces
   std::vector<std::uint32_t> first_unlit_region;  ///< per oriented face, and their number; or empty
+  /// Of so many unlit regions in turn, which lie beside each other as a rule: a hit on a wall with
+  /// hundreds looks at few of them.
+  static constexpr std::uint32_t bounded_together = 4;
+  std::vector<PartBounds> unlit_bounds;
 
   /// The component of a hit: of its triangle, or `components`, which stands for all unlit regions.
   std::uint32_t component_at(std::uint32_t oriented_face, const glm::vec3& position) const;

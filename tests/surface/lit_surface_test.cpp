@@ -75,6 +75,49 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
   }
 }
 
+TEST_CASE("of hundreds of unlit regions the one is found that a hit lies in") {
+  Scene scene = test::empty_scene();
+  test::add_plate(scene, {0, 0, 0}, {2, 0.3f, 0.1f}, {0.2f, 2, 0.7f}, 1);
+  const Photons everywhere = test::uniform_photons(scene, 100'000, 67, false);
+  Photons photons;
+  std::mt19937_64 random(68);
+  for (std::size_t i = 0; i < everywhere.size(); ++i) {
+    const glm::vec3& p = everywhere.position[i];
+    const bool in_a_square = std::sin(20 * p.x) > 0 && std::sin(20 * p.y) > 0;
+    if (in_a_square) test::add_photon(photons, scene, p, everywhere.oriented_face[i], random);
+  }
+  photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
+  const SurfaceIndex index = index_surface(scene, photons, 0.05, 60);
+  REQUIRE(index.unlit_regions.size() >= 200);
+  const PrimaryHits hits = test::uniform_hits(scene, 2000, 69, false);
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const std::uint32_t own = hits.oriented_face[i];
+    const glm::dvec3 normal(face_normal(scene, own)), hit(hits.position[i]);
+    const auto holds_hit = [&](const DarkPart& part) {
+      double least = 1, greatest = -1;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const glm::dvec3 from(part.corner[c]), to(part.corner[(c + 1) % 3]);
+        const double left = glm::dot(normal, glm::cross(to - from, hit - from));
+        least = std::min(least, left);
+        greatest = std::max(greatest, left);
+      }
+      return part.oriented_face == own && (least >= 0 || greatest <= 0);
+    };
+    const bool expected =
+        std::any_of(index.unlit_regions.begin(), index.unlit_regions.end(), holds_hit);
+    CAPTURE(i);
+    CHECK((index.component_at(own, hits.position[i]) == index.components) == expected);
+    dark += expected ? 1 : 0;
+  }
+  CHECK(dark >= 500);
+  for (const DarkPart& part : index.unlit_regions) {
+    for (const glm::vec3& corner : part.corner) {
+      CHECK(index.component_at(part.oriented_face, corner) == index.components);
+    }
+  }
+}
+
 // Sides that no photon reaches, by what their component lets expect.
 
 /// The unlit sides of a plate of 200 equal triangles, where so many photons landed on the front of

@@ -4,7 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <span>
 
+#include "geometry/box.hpp"
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
@@ -59,6 +61,29 @@ PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
   return leaf;
 }
 
+/// Hits lie off the plane of their triangle, and corners of its parts, too, by roundings: by far
+/// less than this part of the radius.
+constexpr double part_margin = 1.0 / 64;
+
+PartBounds bounds_of(std::span<const DarkPart> parts, float margin) {
+  geometry::Box box;
+  for (const DarkPart& part : parts) {
+    for (const glm::vec3& corner : part.corner) box.extend(corner);
+  }
+  return {box.lower - margin, box.upper + margin};
+}
+
+/// Of each SurfaceIndex::bounded_together parts.
+std::vector<PartBounds> bounds_of_blocks(std::span<const DarkPart> parts, float margin) {
+  std::vector<PartBounds> bounds;
+  while (!parts.empty()) {
+    const std::size_t count = std::min<std::size_t>(SurfaceIndex::bounded_together, parts.size());
+    bounds.push_back(bounds_of(parts.first(count), margin));
+    parts = parts.subspan(count);
+  }
+  return bounds;
+}
+
 /// Where photons are given, with unlit regions.
 SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& landed,
                       const Photons* photons, double radius, double angle_degrees) {
@@ -93,6 +118,8 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
     std::erase_if(index.unlit_regions, [&](const DarkPart& part) {
       return index.open_fraction[part.oriented_face] < 1;
     });
+    index.unlit_bounds =
+        bounds_of_blocks(index.unlit_regions, static_cast<float>(part_margin * radius));
     index.first_unlit_region.resize(2 * scene.triangle_count() + 1);
     std::size_t next = 0;
     for (std::size_t s = 0; s < index.first_unlit_region.size(); ++s) {
@@ -129,23 +156,39 @@ std::uint64_t SurfaceIndex::bytes() const {
   return (original.size() + region.size() + component.size()) * sizeof(std::uint32_t) +
          dark.size() + unlit_regions.size() * sizeof(DarkPart) +
          first_unlit_region.size() * sizeof(std::uint32_t) +
+         unlit_bounds.size() * sizeof(PartBounds) +
          normal.size() * (sizeof(glm::vec3) + sizeof(float)) + nodes.size() * sizeof(nodes[0]) +
          leaves.size() * sizeof(leaves[0]);
 }
 
+namespace {
+
+/// Whether the point above or below which `position` lies is on the part; `normal`: of its face.
+bool lies_on(const DarkPart& part, const glm::vec3& normal, const glm::vec3& position) {
+  const glm::dvec3 n(normal), p(position);
+  bool left = true, right = true;
+  for (std::size_t c = 0; c < 3 && (left || right); ++c) {
+    const glm::dvec3 from(part.corner[c]), to(part.corner[(c + 1) % 3]);
+    const double turn = glm::dot(n, glm::cross(to - from, p - from));
+    left = left && turn >= 0;
+    right = right && turn <= 0;
+  }
+  return left || right;
+}
+
+}  // namespace
+
 std::uint32_t SurfaceIndex::component_at(std::uint32_t s, const glm::vec3& position) const {
   const std::uint32_t own = original[s];
   if (first_unlit_region.empty()) return component[own];
-  for (std::uint32_t i = first_unlit_region[own]; i < first_unlit_region[own + 1]; ++i) {
-    const auto& corner = unlit_regions[i].corner;
-    const glm::dvec3 n(normal[own]), p(position);
-    int left = 0, right = 0;
-    for (int c = 0; c < 3; ++c) {
-      const glm::dvec3 from(corner[c]), to(corner[(c + 1) % 3]);
-      const double turn = glm::dot(n, glm::cross(to - from, p - from));
-      left += turn >= 0, right += turn <= 0;
+  const std::uint32_t end = first_unlit_region[own + 1];
+  for (std::uint32_t i = first_unlit_region[own]; i < end;) {
+    const std::uint32_t block = i / bounded_together;
+    const std::uint32_t end_of_block = std::min(end, (block + 1) * bounded_together);
+    if (!unlit_bounds[block].contain(position)) i = end_of_block;
+    for (; i < end_of_block; ++i) {
+      if (lies_on(unlit_regions[i], normal[own], position)) return components;
     }
-    if (left == 3 || right == 3) return components;
   }
   return component[own];
 }
