@@ -45,6 +45,7 @@ struct RunLight {
   const trace::LightSampler& light_sampler;
   const IrradianceGatherParameters& parameters;
   int rays_per_batch, light_samples_per_batch;
+  int most_light_samples_per_batch;  ///< where light is uncertain
   const PrimaryHits& points;
   std::span<const std::uint64_t> number;
   const IndirectLight* traced;  ///< null where no rays are
@@ -121,8 +122,8 @@ struct RunLight {
           found_by(0, light_samples_per_batch, first);
       std::span<const trace::ShadowRays::Found> others;
       int count = light_samples_per_batch;
-      const int most = std::min(defaults::light_samples_again * count,
-                                defaults::most_light_samples_again / parameters.batches);
+      const int most =
+          std::min(defaults::light_samples_again * count, most_light_samples_per_batch);
       if (most > count && is_uncertain(found, indirect + exact)) {
         others = found_by(count, most, more);
         count = most;
@@ -291,9 +292,13 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
 
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,
                                        std::span<const std::uint64_t> number, int rays,
-                                       int light_samples, const Progress& progress) {
+                                       int light_samples, const Progress& progress,
+                                       int light_samples_before) {
   auto* const processes = secondary_.processes();
-  if (!processes) return gather_own(points, number, rays, light_samples, points.size(), progress);
+  if (!processes) {
+    return gather_own(points, number, rays, light_samples, light_samples_before, points.size(),
+                      progress);
+  }
   const Shard shard{processes->rank(), processes->size()};
   const std::uint64_t begin = shard.begin(points.size()), end = shard.end(points.size());
   std::vector<std::uint32_t> own(end - begin);
@@ -301,7 +306,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
   const std::size_t most = (points.size() + shard.count - 1) / shard.count;
   const GatheredParts part =
       gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
-                 light_samples, most, progress);
+                 light_samples, light_samples_before, most, progress);
   GatheredParts all;
   all.indirect.batches = all.direct.batches = parameters_.batches;
   for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);
@@ -310,8 +315,8 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
 
 GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            std::span<const std::uint64_t> number, int rays,
-                                           int light_samples, std::size_t most,
-                                           const Progress& progress) {
+                                           int light_samples, int light_samples_before,
+                                           std::size_t most, const Progress& progress) {
   const SecondaryLight::Costs before = secondary_.costs();
   const Stopwatch caustics_watch;
   const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
@@ -320,6 +325,10 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
 
   const int rays_per_batch = per_batch(rays, parameters_.batches);
   const int light_samples_per_batch = per_batch(light_samples, parameters_.batches);
+  // This round's share of as many as all rounds may take.
+  const int most_light_samples_per_batch =
+      defaults::most_light_samples_again * light_samples /
+      (std::max(1, light_samples_before + light_samples) * parameters_.batches);
   const float near = caustics_ ? 0.0f : static_cast<float>(parameters_.near);
   const trace::HemisphereParameters hemisphere{
       .batches = parameters_.batches,
@@ -365,6 +374,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
              .parameters = parameters_,
              .rays_per_batch = rays_per_batch,
              .light_samples_per_batch = light_samples_per_batch,
+             .most_light_samples_per_batch = most_light_samples_per_batch,
              .points = points,
              .number = number,
              .traced = rays_per_batch > 0 ? &traced : nullptr,

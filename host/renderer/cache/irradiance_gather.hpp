@@ -74,11 +74,14 @@ class IrradianceGather {
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
   ///   rays, light_samples   in place of the parameters'
+  ///   light_samples_before  that the points have already: of these they need the fewer more where
+  ///                         light is uncertain
   /// Where several processes have the photon maps, all give the same points; each gathers at a part
   /// of them, and all get all.
   /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
   GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
-                       int light_samples, const Progress& progress = Progress::none());
+                       int light_samples, const Progress& progress = Progress::none(),
+                       int light_samples_before = 0);
 
   /// All light together.
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
@@ -108,7 +111,8 @@ class IrradianceGather {
  private:
   /// Gathers at this process's points, in as many rounds as so many points take.
   GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
-                           int rays, int light_samples, std::size_t most, const Progress& progress);
+                           int rays, int light_samples, int light_samples_before, std::size_t most,
+                           const Progress& progress);
 
   const RayScene& rays_;
   estimate::LightAtPoints* caustics_;
