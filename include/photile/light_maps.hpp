@@ -91,8 +91,9 @@ class NodeSource {
 struct LightMapParameters {
   double spacing = defaults::light_map_spacing;  ///< metres, > 0: of the coarsest nodes, at most
   int levels = defaults::light_map_levels;       ///< the finest is spacing / 2^(levels - 1)
-  /// So many of the coarsest levels are split everywhere: the next one then counts as the coarsest,
-  /// and points have the numbers that they have with fewer of these, and as many levels fewer.
+  /// So many of the coarsest levels are split everywhere and have no nodes: the next one then
+  /// counts as the coarsest, and points have the numbers that they have with fewer of these, and as
+  /// many levels fewer.
   int skipped_levels = 0;
   double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours in a smooth component
   /// Cells are split where their corners differ by this part of the brightest, and by its noise.

@@ -127,16 +127,24 @@ TEST_CASE("refinement: rounds add parts until the error is reached, and no more"
   }
 }
 
-TEST_CASE("refinement: photons are traced anew when there are four times the parts") {
+TEST_CASE("refinement: photons are traced anew when there are 16 parts, and four times as many") {
   CHECK(photons_of_parts(1) == 1);
-  CHECK(photons_of_parts(3) == 1);
-  CHECK(photons_of_parts(4) == 4);
-  CHECK(photons_of_parts(15) == 4);
-  CHECK(photons_of_parts(16) == 16);
+  CHECK(photons_of_parts(15) == 1);
+  CHECK(photons_of_parts(16) == 4);
+  CHECK(photons_of_parts(63) == 4);
+  CHECK(photons_of_parts(64) == 16);
+}
+
+TEST_CASE("refinement: for a time there is a part of the rays and samples, and of all photons") {
+  const RenderParameters part = first_part({.seconds = 1}, good());
+  CHECK(part.light_map_rays == 16);
+  CHECK(part.film.samples_per_pixel == good().film.samples_per_pixel / 4);
+  CHECK(part.photons.emitted_photons == 500'000);
+  CHECK(first_part({.error = 0.1}, good()).light_map_rays == 64);
 }
 
 TEST_CASE("refinement: the settings of parts together say what each of them is") {
-  const int parts = GENERATE(1, 2, 3, 7, 16);
+  const int parts = GENERATE(1, 2, 3, 7, 16, 100);
   const RenderParameters all = of_parts(good(), parts);
   CHECK(grows(all) == (parts > 1));
   RenderParameters known = all;

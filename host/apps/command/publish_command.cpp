@@ -231,7 +231,7 @@ void add_publish_command(CLI::App& photile) {
   add_quality_preset(*command, options->render.quality_options());
   OptionGroup(*command, "Quality")
       .add("--for", options->render.goal.seconds, "TIME",
-           "add rays and photons for so long, from a quarter of the work on; the page depends on "
+           "add rays and photons for so long, from a quarter of the rays on; the page depends on "
            "the "
            "machine",
            duration());

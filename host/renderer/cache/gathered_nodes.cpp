@@ -189,7 +189,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
     GatheredParts light, known;
     if (more != NodeRays{}) {
       light = gather_.gather(estimate::reordered(batch.points, 0, chosen), numbers, more.rays,
-                             more.light_samples, progress, before.light_samples);
+                             more.light_samples, progress, before);
     }
     if (before != NodeRays{}) {
       for (const std::uint64_t number : numbers) {

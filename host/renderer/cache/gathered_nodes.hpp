@@ -14,12 +14,6 @@
 
 namespace photile::cache {
 
-/// Rays and light samples of a node.
-struct NodeRays {
-  int rays = 0, light_samples = 0;
-  friend auto operator<=>(const NodeRays&, const NodeRays&) = default;
-};
-
 struct GatheredNodesParameters {
   NodeRays coarse{64, 64};  ///< at the coarsest level
   NodeRays fine{25, 32};    ///< at all others

@@ -46,6 +46,7 @@ struct RunLight {
   const IrradianceGatherParameters& parameters;
   int rays_per_batch, light_samples_per_batch;
   int most_light_samples_per_batch;  ///< where light is uncertain
+  std::uint32_t first_light_sample;  ///< of a batch
   const PrimaryHits& points;
   std::span<const std::uint64_t> number;
   const IndirectLight* traced;  ///< null where no rays are
@@ -96,7 +97,7 @@ struct RunLight {
     const auto batches = static_cast<std::uint32_t>(parameters.batches);
     const auto samples_of = [&](std::uint32_t batch) {
       return trace::LightSampleNumbers(trace::RandomStream(parameters.seed, number[point], batch),
-                                       0);
+                                       first_light_sample);
     };
     if (traced) {
       const double exact = add_sampled_once(where, sums);
@@ -293,11 +294,10 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,
                                        std::span<const std::uint64_t> number, int rays,
                                        int light_samples, const Progress& progress,
-                                       int light_samples_before) {
+                                       NodeRays before) {
   auto* const processes = secondary_.processes();
   if (!processes) {
-    return gather_own(points, number, rays, light_samples, light_samples_before, points.size(),
-                      progress);
+    return gather_own(points, number, rays, light_samples, before, points.size(), progress);
   }
   const Shard shard{processes->rank(), processes->size()};
   const std::uint64_t begin = shard.begin(points.size()), end = shard.end(points.size());
@@ -306,7 +306,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
   const std::size_t most = (points.size() + shard.count - 1) / shard.count;
   const GatheredParts part =
       gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
-                 light_samples, light_samples_before, most, progress);
+                 light_samples, before, most, progress);
   GatheredParts all;
   all.indirect.batches = all.direct.batches = parameters_.batches;
   for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);
@@ -315,9 +315,9 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
 
 GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            std::span<const std::uint64_t> number, int rays,
-                                           int light_samples, int light_samples_before,
-                                           std::size_t most, const Progress& progress) {
-  const SecondaryLight::Costs before = secondary_.costs();
+                                           int light_samples, NodeRays before, std::size_t most,
+                                           const Progress& progress) {
+  const SecondaryLight::Costs costs_before = secondary_.costs();
   const Stopwatch caustics_watch;
   const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
   costs_.estimate_seconds += caustics_watch.seconds();
@@ -328,11 +328,12 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
   // This round's share of as many as all rounds may take.
   const int most_light_samples_per_batch =
       defaults::most_light_samples_again * light_samples /
-      (std::max(1, light_samples_before + light_samples) * parameters_.batches);
+      (std::max(1, before.light_samples + light_samples) * parameters_.batches);
   const float near = caustics_ ? 0.0f : static_cast<float>(parameters_.near);
   const trace::HemisphereParameters hemisphere{
       .batches = parameters_.batches,
       .rays = rays_per_batch,
+      .first_ray = static_cast<std::uint32_t>(per_batch(before.rays, parameters_.batches)),
       .seed = parameters_.seed,
       .max_specular_depth = parameters_.max_specular_depth,
       .light_sampler = &light_sampler_,
@@ -369,26 +370,30 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
       costs_.estimate_seconds += estimate_watch.seconds();
     }
     const Stopwatch sum_watch;
-    add_run({.rays = rays_,
-             .light_sampler = light_sampler_,
-             .parameters = parameters_,
-             .rays_per_batch = rays_per_batch,
-             .light_samples_per_batch = light_samples_per_batch,
-             .most_light_samples_per_batch = most_light_samples_per_batch,
-             .points = points,
-             .number = number,
-             .traced = rays_per_batch > 0 ? &traced : nullptr,
-             .secondary = secondary_,
-             .caustics = caustics,
-             .caustic_relative_variance =
-                 caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
-             .layer_powers = layer_powers_},
-            first, count, all);
+    add_run(
+        {.rays = rays_,
+         .light_sampler = light_sampler_,
+         .parameters = parameters_,
+         .rays_per_batch = rays_per_batch,
+         .light_samples_per_batch = light_samples_per_batch,
+         .most_light_samples_per_batch = most_light_samples_per_batch,
+         // Those before may have been so many times as many, where light was uncertain.
+         .first_light_sample = static_cast<std::uint32_t>(
+             defaults::light_samples_again * per_batch(before.light_samples, parameters_.batches)),
+         .points = points,
+         .number = number,
+         .traced = rays_per_batch > 0 ? &traced : nullptr,
+         .secondary = secondary_,
+         .caustics = caustics,
+         .caustic_relative_variance =
+             caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
+         .layer_powers = layer_powers_},
+        first, count, all);
     costs_.sum_seconds += sum_watch.seconds();
   }
-  costs_.rays += secondary_.costs().rays - before.rays;
-  costs_.hits += secondary_.costs().hits - before.hits;
-  costs_.estimated += secondary_.costs().estimated - before.estimated;
+  costs_.rays += secondary_.costs().rays - costs_before.rays;
+  costs_.hits += secondary_.costs().hits - costs_before.hits;
+  costs_.estimated += secondary_.costs().estimated - costs_before.estimated;
   return all;
 }
 

@@ -17,6 +17,12 @@
 
 namespace photile::cache {
 
+/// Rays and light samples of a point.
+struct NodeRays {
+  int rays = 0, light_samples = 0;
+  friend auto operator<=>(const NodeRays&, const NodeRays&) = default;
+};
+
 struct IrradianceGatherParameters {
   /// Rays from each point to the surfaces around; 0 = indirect light is left out.
   int rays = 144;
@@ -74,21 +80,17 @@ class IrradianceGather {
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
   ///   rays, light_samples   in place of the parameters'
-  ///   light_samples_before  that the points have already: of these they need the fewer more where
-  ///                         light is uncertain
+  ///   before   that the points have already: these go on to spread evenly with them
   /// Where several processes have the photon maps, all give the same points; each gathers at a part
   /// of them, and all get all.
   /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
   GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
                        int light_samples, const Progress& progress = Progress::none(),
-                       int light_samples_before = 0);
+                       NodeRays before = {});
 
   /// All light together.
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
-
-  /// The next rays and light samples are those of this seed: others from the same points.
-  void reseed(std::uint64_t seed) { parameters_.seed = seed; }
 
   /// What rays find where they end.
   SecondaryLight& secondary() { return secondary_; }
@@ -111,7 +113,7 @@ class IrradianceGather {
  private:
   /// Gathers at this process's points, in as many rounds as so many points take.
   GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
-                           int rays, int light_samples, int light_samples_before, std::size_t most,
+                           int rays, int light_samples, NodeRays before, std::size_t most,
                            const Progress& progress);
 
   const RayScene& rays_;

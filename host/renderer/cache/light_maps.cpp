@@ -203,9 +203,7 @@ void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
 }
 
 /// By more than contrast and noise allow.
-bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, int level) const {
-  if (level < skipped_levels) return true;
-  const double spacing = std::ldexp(charts.spacing(), -level);
+bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const {
   const auto [low, high] = std::minmax_element(
       nodes.begin(), nodes.end(),
       [&](std::uint32_t a, std::uint32_t b) { return together[a] < together[b]; });
@@ -257,7 +255,15 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     }
     if (missing.empty()) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
-    for (const MissingCell& cell : missing) cells.emplace_back(tiles.tile_of(cell), cell.cell);
+    for (const MissingCell& cell : missing) {
+      const std::uint32_t tile = tiles.tile_of(cell);
+      if (static_cast<int>(tiles[tile].level) >= impl_->skipped_levels) {
+        cells.emplace_back(tile, cell.cell);
+        continue;
+      }
+      tiles[tile].known |= std::uint64_t{1} << cell.cell;
+      tiles.split(tile, cell.cell);
+    }
     std::vector<NodeCoordinates> added;
     impl_->number_corners(cells, added);
     try {
@@ -275,7 +281,9 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     for (const auto& [tile, cell] : cells) {
       tiles[tile].known |= std::uint64_t{1} << cell;
       if (static_cast<int>(tiles[tile].level) + 1 < impl_->levels &&
-          impl_->differ(tiles[tile].corners(cell), static_cast<int>(tiles[tile].level))) {
+          impl_->differ(
+              tiles[tile].corners(cell),
+              std::ldexp(impl_->charts.spacing(), -static_cast<int>(tiles[tile].level)))) {
         tiles.split(tile, cell);
       }
     }

@@ -33,8 +33,7 @@ struct LightMaps::Impl {
                                                NodeSource& source, const Progress& progress);
   void append(Estimates estimates, const PrimaryHits& at,
               std::span<const cache::NodeCoordinates> nodes);
-  /// Whether a cell of a level is to be split.
-  bool differ(const std::array<std::uint32_t, 4>& nodes, int level) const;
+  bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool is_dark(double light) const;
   bool differ_by_photons(double high, double low) const;
 

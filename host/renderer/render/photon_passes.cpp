@@ -59,8 +59,7 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
   if (!plan.reads_light_maps()) return;
   if (plan.gathers_at_nodes()) {
     gather_.emplace(rays, *photons_.all.of_points, *photons_.all.of_nodes, photons_.ends,
-                    photons_.caustics.of_points.get(),
-                    plan.node_gathering(growth.round, photons_.radius));
+                    photons_.caustics.of_points.get(), plan.node_gathering(photons_.radius));
   } else {
     by_photons_.emplace(*photons_.all.of_nodes);
   }
@@ -68,10 +67,7 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
   if (photons_.contents) cache_->maps().restore(*photons_.contents);
 }
 
-void PassLight::grow(int round, int parts) {
-  gather_->reseed(plan_.node_gathering(round, photons_.radius).seed);
-  read_light_maps({round, parts, gathered_->take_points()});
-}
+void PassLight::grow(int parts) { read_light_maps({parts, gathered_->take_points()}); }
 
 void PassLight::read_light_maps(Growth growth) {
   cache_.reset();

@@ -41,7 +41,6 @@ struct PassPhotons {
 
 /// How far light maps have grown (docs/light-maps.md).
 struct Growth {
-  int round = 0;  ///< 0 for the first one
   int parts = 1;  ///< so many times the rays that were asked for start from nodes, in all rounds
   cache::GatheredPoints points = {};  ///< at which rays gathered in the rounds before
 };
@@ -57,7 +56,7 @@ class PassLight {
 
   /// Light maps of the same photons, after a further round of growing.
   ///   parts   as Growth has them
-  void grow(int round, int parts);
+  void grow(int parts);
 
   /// All light at points: the end of the chain.
   estimate::LightAtPoints& light() {

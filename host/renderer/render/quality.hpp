@@ -36,10 +36,10 @@ void for_later_rounds(int all, const Grow& grow) {
   }
 }
 /// So many times the photons of a part are there with so many parts of rays and samples: photons
-/// err less than rays, and are traced anew when there are four times the parts.
+/// err less than rays, and nodes need to lie closer together only when these err little.
 constexpr int photons_of_parts(int parts) {
   int photons = 1;
-  while (parts / 4 >= photons) photons *= 4;
+  while (parts / 16 >= photons) photons *= 4;
   return photons;
 }
 

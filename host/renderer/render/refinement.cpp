@@ -18,7 +18,7 @@
 namespace photile {
 namespace {
 
-/// Of those for a time.
+/// Of the rays and samples, where a time is given.
 constexpr double first_fraction = 0.25;
 
 /// A round leaves 0.71 to 0.87 of an error that is noise, and more than this of one that is not.
@@ -30,10 +30,10 @@ constexpr double planned_part = 0.9;
 
 /// Nodes are this power of the photons many, for they lie closer together with more of them: with
 /// four times the work, `--quality final` takes five to seven times as long as `good`.
-constexpr double power_of_nodes = 0.35;
+constexpr double power_of_nodes = 0.5;
 
 /// What the photons of a part take beside its rays.
-constexpr double time_of_photons = 0.4;
+constexpr double time_of_photons = 0.5;
 
 /// Stops a picture that the time is over for.
 class Deadline : public Progress {
@@ -95,7 +95,10 @@ double standard_error_of(const RenderResult& picture) {
 }
 
 RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& asked) {
-  return goal.seconds > 0 ? with_work(asked, first_fraction) : asked;
+  if (goal.seconds == 0) return asked;
+  RenderParameters part = with_work(asked, first_fraction);
+  part.photons = asked.photons;
+  return part;
 }
 
 RenderResult refine(const RefinementGoal& goal, const RenderParameters& part,

@@ -28,7 +28,8 @@ struct RefinementSteps {
 };
 
 /// One part of the work on the way to the goal, where these settings are asked for: for an error
-/// the settings themselves, for a time a quarter of their work, so that there is a picture soon.
+/// the settings themselves, for a time a quarter of their rays and samples, so that there is a
+/// picture soon.
 RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& asked);
 
 /// Adds parts until the goal is met, and returns the last picture. Each round makes one, and leads

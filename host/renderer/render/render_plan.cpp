@@ -197,12 +197,12 @@ LightMapParameters RenderPlan::ends(double radius, const Scene& scene, const Pho
   return parameters;
 }
 
-cache::IrradianceGatherParameters RenderPlan::node_gathering(int repeat, double radius) const {
+cache::IrradianceGatherParameters RenderPlan::node_gathering(double radius) const {
   return {.rays = used_.light_map_rays,
           .light_samples = used_.light_map_rays,
           .near = defaults::near_radii * radius,
           .caustic_neighbours = used_.neighbours,
-          .seed = trace::seed_of_repeat(used_.seed, static_cast<std::uint32_t>(repeat)),
+          .seed = trace::seed_of_repeat(used_.seed, 0),
           .max_specular_depth = used_.max_specular_depth};
 }
 

@@ -77,9 +77,8 @@ class RenderPlan {
   LightMapParameters ends(double radius, const Scene& scene, const Photons& photons,
                           std::span<const double> powers) const;
   /// At nodes of light maps.
-  ///   repeat   of rays at the same nodes, from 0
   ///   radius   of the photon maps, metres
-  cache::IrradianceGatherParameters node_gathering(int repeat, double radius) const;
+  cache::IrradianceGatherParameters node_gathering(double radius) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

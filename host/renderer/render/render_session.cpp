@@ -98,11 +98,10 @@ void RenderSession::grow(int parts, Progress& progress) {
   const int more_photons = photons_of_parts(parts_) - photons_before;
   frames_.reset();
   costs_.light_map_nodes = 0;
-  ++round_;
   if (more_photons == 0) {
-    light().grow(round_, parts_);
+    light().grow(parts_);
   } else {
-    Growth growth{round_, parts_, light().take_points()};
+    Growth growth{parts_, light().take_points()};
     passes_.clear();  // before other maps take its room
     passes_.push_back(std::make_unique<PassLight>(
         scene_->rays, plan_, photons_.next(nullptr, nullptr, progress, more_photons),

@@ -60,7 +60,6 @@ class RenderSession {
   RenderCosts costs_;
   PhotonPasses photons_;
   std::vector<std::unique_ptr<PassLight>> passes_;
-  int round_ = 0;  ///< of growing
   int parts_ = 1;  ///< of the work that was asked for
   std::optional<cache::LightMapFrames> frames_;
 };

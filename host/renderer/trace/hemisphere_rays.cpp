@@ -33,6 +33,8 @@ struct RunSetup {
   const HemisphereParameters& parameters;
   EyeSetup first;  ///< of rays that leave a point
   EyeSetup later;  ///< of those that go on from near surface
+  /// Of all but the directions in which rays leave points.
+  std::uint64_t seed_of_rays;
 };
 
 /// A direction in which a ray goes on from near surface.
@@ -105,7 +107,7 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     std::optional<OpaqueBsdf> bsdf;
     if (reflection.strong_lobe) bsdf.emplace(scene, point, -ray_hits.glossy.back().outgoing);
     remove_last();
-    const RandomStream random(run.parameters.seed, number,
+    const RandomStream random(run.seed_of_rays, number,
                               stream + static_cast<std::uint32_t>(bounce) * streams);
     const RandomBlock numbers = random.block(Purpose::hemisphere_direction, 0);
     const float survival =
@@ -198,12 +200,12 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
     for (std::uint32_t i = 0; i < rays; ++i) {
       const auto [direction, weight] =
-          leaving(frame, aim ? &*aim : nullptr, sobol_point(i, scramble));
+          leaving(frame, aim ? &*aim : nullptr, sobol_point(parameters.first_ray + i, scramble));
       if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
       if (!(weight > 0)) continue;  // below the horizon
       // A stream for each, apart from the point's own.
       const std::uint32_t stream = batch * rays + i + 1;
-      const RandomStream random(parameters.seed, number, stream);
+      const RandomStream random(run.seed_of_rays, number, stream);
       // Light samples are weighed beside rays by the cosine alone.
       const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
       const LightTechnique light_sampling{
@@ -297,7 +299,10 @@ HemisphereRays trace_hemispheres(const RayScene& rays, const PrimaryHits& points
                        .distant = &parameters.light_sampler->distant()};
   EyeSetup leaving = later;
   if (!(parameters.rays_per_light_sample > 0)) leaving.emitted_radiance = nullptr;
-  const RunSetup run{rays, parameters, leaving, later};
+  const RunSetup run{rays, parameters, leaving, later,
+                     parameters.first_ray == 0
+                         ? parameters.seed
+                         : seed_of_repeat(parameters.seed, parameters.first_ray)};
   std::vector<TaskHits> tasks((count + points_per_task - 1) / points_per_task);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
     const FlushDenormals flush_denormals;

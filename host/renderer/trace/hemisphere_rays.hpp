@@ -17,6 +17,8 @@ namespace photile::trace {
 struct HemisphereParameters {
   int batches;  ///< of a point: independent of each other
   int rays;     ///< of a batch: spread evenly (random_stream.hpp)
+  /// Rays of the batch before these, which they go on to spread evenly.
+  std::uint32_t first_ray = 0;
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
   const LightSampler* light_sampler;
