@@ -144,7 +144,7 @@ TEST_CASE("refinement: for a time there is a part of the rays and samples, and o
 }
 
 TEST_CASE("refinement: the settings of parts together say what each of them is") {
-  const int parts = GENERATE(1, 2, 3, 7, 16, 100);
+  const int parts = GENERATE(1, 2, 3, 7, 16, 64);
   const RenderParameters all = of_parts(good(), parts);
   CHECK(grows(all) == (parts > 1));
   RenderParameters known = all;
