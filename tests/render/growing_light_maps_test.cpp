@@ -106,6 +106,15 @@ TEST_CASE("growing light maps: the error falls to that of the same work in one r
   CHECK(last < 1.5 * of_one_round);
 }
 
+TEST_CASE("growing light maps: parts smaller than a ray have one") {
+  RenderParameters asked = little_work();
+  asked.passes = 40;  // 16 rays and 2 samples are to be divided
+  asked.light_maps = LightMapMode::on;
+  const RenderResult picture = render(furnished_room(0), room_camera(), device(), asked);
+  CHECK(picture.used.light_map_rays == 40);
+  CHECK(picture.used.film.samples_per_pixel == 40);
+}
+
 TEST_CASE("growing light maps: photons alone do not grow them, and walks do not") {
   const Scene scene = furnished_room(0);
   RenderParameters several = of_parts(little_work(), 3);

@@ -97,6 +97,7 @@ RenderParameters part_of(const RenderParameters& all) {
   RenderParameters part = with_work(all, 1.0 / all.passes);
   part.photons.emitted_photons =
       std::max<std::uint64_t>(1, all.photons.emitted_photons / photons_of_parts(all.passes));
+  part.light_map_rays = std::max(1, part.light_map_rays);
   part.passes = 1;
   return part;
 }

@@ -19,7 +19,8 @@ bool allows_work(const RenderParameters& parameters, int factor);
 bool grows(const RenderParameters& asked);
 /// The settings of so many parts together, which `grows` where there are several.
 RenderParameters of_parts(const RenderParameters& part, int parts);
-/// The settings of one of its parts. `all.passes` is at least 1.
+/// The settings of one of its parts, which has a ray, a photon and a sample at least. `all.passes`
+/// is at least 1.
 RenderParameters part_of(const RenderParameters& all);
 /// The parts with which rounds end: 1, 2, 3, 4, 6, 8, 12, 16 and so on.
 constexpr int parts_after(int parts) {
