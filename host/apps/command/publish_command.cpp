@@ -232,8 +232,7 @@ void add_publish_command(CLI::App& photile) {
   OptionGroup(*command, "Quality")
       .add("--for", options->render.goal.seconds, "TIME",
            "add rays and photons for so long, from a quarter of the rays on; the page depends on "
-           "the "
-           "machine",
+           "the machine",
            duration());
   add_setting_options(*command, options->render, without);
   command->callback([options, texel] {

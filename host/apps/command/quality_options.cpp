@@ -28,8 +28,8 @@ std::span<const GoalOption> goal_options() {
        "error",
        &RefinementGoal::error},
       {"for", "for", "TIME",
-       "add them for so long, from a quarter of rays and samples on; the picture depends on the "
-       "machine",
+       "add them for so long, from a quarter of rays and samples on; the picture depends on "
+       "the machine",
        &RefinementGoal::seconds},
   }};
   return options;
