@@ -116,11 +116,13 @@ inline constexpr float most_inverse_cosine = 32;
 /// Points on each side that a point is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one point to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
-/// Standard errors by which points may differ, and by which standard errors of direct light may.
-inline constexpr double tolerated_errors = 3, tolerated_error_ratio = 2;
+/// Standard errors by which points may differ, those by which what coarser nodes say of a point may,
+/// and how many times as large the standard errors of direct light may be.
+inline constexpr double tolerated_errors = 2.5, tolerated_parent_errors = 2;
+inline constexpr double tolerated_error_ratio = 2;
 /// A light is judged apart from the others where the square of its own difference exceeds so many
-/// tolerated ones: 4.2 standard errors, which scatter in eight batches seldom brings about.
-inline constexpr double parting_difference = 2;
+/// tolerated ones: 4.3 standard errors, which scatter in eight batches seldom brings about.
+inline constexpr double parting_difference = 3;
 /// Errors above this fraction of the light that they are of are not known: few rays found any.
 inline constexpr double known_error = 0.5;
 /// What coarser nodes say of a point counts as much as so many nodes of its own few rays: it is a

@@ -28,6 +28,7 @@ cache::PointLinks lattice() {
       if (y > 0) links.to.push_back(static_cast<std::uint32_t>(index(x, y - 1)));
       if (y + 1 < side) links.to.push_back(static_cast<std::uint32_t>(index(x, y + 1)));
       links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+      links.position.emplace_back(x, y, 0);
     }
   return links;
 }
@@ -114,6 +115,42 @@ TEST_CASE("filter: steps that exceed the noise stay, slopes stay what they are")
   const Truth slope = [](int x, int) { return 1.0 + 0.02 * x; };
   CHECK(rms_error(cache::filter_irradiance(noisy(slope, 0.05, 4), lattice(), one_light), slope, 12,
                   side - 12) < 0.05 / 2.5);
+}
+
+TEST_CASE("filter: slopes go on to where surface ends") {
+  // One lamp rises by 6% from point to point, another falls as much: their sum is even.
+  const Truth rising = [](int x, int) { return 1.0 + 0.06 * x; };
+  const Truth falling = [](int x, int) { return 4.0 - 0.06 * x; };
+  const std::vector<double> powers{1.0, 1.0};
+  cache::PointLinks no_sides = lattice();  // points on one spot lie to no side of each other
+  no_sides.position.assign(no_sides.position.size(), glm::vec3(0.0f));
+  double with_sides = 0, without = 0, error = 0;
+  constexpr int seeds = 8, rows = side - 2 * border;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    cache::GatheredIrradiance both = noisy(rising, 0.05, 2 * seed, 2);
+    const cache::GatheredIrradiance other = noisy(falling, 0.05, 2 * seed + 1, 2);
+    for (std::size_t i = 1; i < both.mean.irradiance.size(); i += 2) {
+      both.mean.irradiance[i] = other.mean.irradiance[i];
+      std::copy_n(other.batch.begin() + static_cast<std::ptrdiff_t>(i * batches), batches,
+                  both.batch.begin() + static_cast<std::ptrdiff_t>(i * batches));
+    }
+    const auto at_end = [&](const cache::PointLinks& links) {
+      const cache::GatheredIrradiance after = cache::filter_irradiance(both, links, powers);
+      double sum = 0;
+      for (int y = border; y < side - border; ++y) {
+        const double off = double{after.mean.irradiance[2 * index(0, y)].g} - rising(0, y);
+        sum += off / (rows * seeds);
+        error += off * off / (2 * rows * seeds);
+      }
+      return sum;
+    };
+    with_sides += at_end(lattice());
+    without += at_end(no_sides);
+  }
+  CAPTURE(with_sides, without);
+  CHECK(without > 0.03);
+  CHECK(std::abs(with_sides) < without / 3);
+  CHECK(std::sqrt(error) < 0.05);
 }
 
 TEST_CASE("filter: without noise nothing changes, and what is dark stays dark") {

@@ -42,6 +42,7 @@ PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> 
       links.to.push_back(index_of[batch.neighbour[i]]);
     }
     links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+    links.position.push_back(batch.points.position[point]);
   }
   return links;
 }
@@ -252,9 +253,11 @@ GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
         }
       });
   const KnownPoints found_points(found, layer_powers_), expected_points(expected, layer_powers_);
+  NoiseTolerance of_parents = tolerated;
+  of_parents.errors = defaults::tolerated_parent_errors;
   return means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
     mean.add_own(found_points, i);
-    mean.add_other(expected_points, i, tolerated, defaults::weight_of_parents);
+    mean.add_other(expected_points, i, of_parents, defaults::weight_of_parents);
   });
 }
 

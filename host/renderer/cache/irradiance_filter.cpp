@@ -1,6 +1,7 @@
 #include "cache/irradiance_filter.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -42,6 +43,77 @@ double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance
   if (!(calm.error < tolerated.known * calm.luminance)) return 1;
   const double part = tolerated.ratio * calm.error / noisy.error;
   return part * part;
+}
+
+/// What multiplies the weights of a point and of those around it, so that their mean is that of a
+/// plane through them, at the point. Where they lie around it evenly that is 1.
+class PlaneThroughPoints {
+ public:
+  /// References are kept.
+  PlaneThroughPoints(const KnownPoints& points, std::span<const glm::vec3> positions,
+                     std::span<const double> layer_powers)
+      : points_(points), positions_(positions), layer_powers_(layer_powers) {}
+
+  void fit(std::size_t own, std::span<const std::uint32_t> others);
+
+  double of_own() const { return 1 + slope_ * middle_; }
+  double of_other(std::size_t i) const { return std::max(0.0, 1 + slope_ * (middle_ - along_[i])); }
+
+ private:
+  double share_of_slope(std::size_t own, std::span<const std::uint32_t> others, double spread);
+
+  const KnownPoints& points_;
+  std::span<const glm::vec3> positions_;
+  std::span<const double> layer_powers_;
+  std::vector<double> along_;              ///< the others, from the point towards the middle of all
+  std::vector<double> change_, variance_;  ///< of each layer
+  double middle_ = 0;                      ///< of all points, in metres from the point itself
+  double slope_ = 0;                       ///< of what multiplies weights, 1/m
+};
+
+void PlaneThroughPoints::fit(std::size_t own, std::span<const std::uint32_t> others) {
+  const auto offset = [&](std::uint32_t other) {
+    return glm::dvec3(positions_[other]) - glm::dvec3(positions_[own]);
+  };
+  slope_ = 0;
+  along_.assign(others.size(), 0.0);
+  const double count = static_cast<double>(others.size() + 1);
+  glm::dvec3 middle(0.0);
+  for (const std::uint32_t other : others) middle += offset(other) / count;
+  middle_ = glm::length(middle);
+  if (!(middle_ > 0)) return;
+  double spread = middle_ * middle_ / count, farthest = 0;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    along_[i] = glm::dot(offset(others[i]), middle) / middle_;
+    spread += (along_[i] - middle_) * (along_[i] - middle_) / count;
+    farthest = std::max(farthest, along_[i] - middle_);
+  }
+  // No weight may be negative.
+  slope_ = std::min(share_of_slope(own, others, spread) * middle_ / spread, 1 / farthest);
+}
+
+/// The part of a slope that light shows: of the square of what it changes the mean by, the part
+/// that is more than noise would, which is how James and Stein shrink a mean.
+double PlaneThroughPoints::share_of_slope(std::size_t own, std::span<const std::uint32_t> others,
+                                          double spread) {
+  change_.assign(layer_powers_.size(), 0.0);
+  variance_.assign(layer_powers_.size(), 0.0);
+  const auto add = [&](std::size_t point, double along) {
+    const double part = middle_ * (along - middle_) / (spread * double(others.size() + 1));
+    points_.for_each_layer(point, [&](std::size_t layer, const Total& light) {
+      const double factor = part * layer_powers_[layer];
+      change_[layer] += factor * light.luminance;
+      variance_[layer] += factor * factor * light.error * light.error;
+    });
+  };
+  add(own, 0.0);
+  for (std::size_t i = 0; i < others.size(); ++i) add(others[i], along_[i]);
+  double squared = 0, of_noise = 0;
+  for (std::size_t layer = 0; layer < layer_powers_.size(); ++layer) {
+    squared += change_[layer] * change_[layer];
+    of_noise += variance_[layer];
+  }
+  return squared > of_noise ? 1 - of_noise / squared : 0;
 }
 
 }  // namespace
@@ -117,11 +189,16 @@ GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointL
                                      const IrradianceFilterParameters& parameters) {
   for (int round = 0; round < parameters.rounds; ++round) {
     const KnownPoints points(irradiance, layer_powers);
+    tbb::enumerable_thread_specific<PlaneThroughPoints> planes(points, std::span(links.position),
+                                                               layer_powers);
     irradiance =
         means_of(irradiance, links.first.size() - 1, layer_powers, [&](std::size_t i, auto& light) {
-          light.add_own(points, i);
-          for (const std::uint32_t other : links.of(i)) {
-            light.add_other(points, other, parameters.tolerated);
+          PlaneThroughPoints& plane = planes.local();
+          const std::span<const std::uint32_t> others = links.of(i);
+          plane.fit(i, others);
+          light.add_own(points, i, plane.of_own());
+          for (std::size_t j = 0; j < others.size(); ++j) {
+            light.add_other(points, others[j], parameters.tolerated, plane.of_other(j));
           }
         });
   }

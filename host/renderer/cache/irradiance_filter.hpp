@@ -218,10 +218,10 @@ class MeanOfPoints {
   void add(const GatheredIrradiance& from, std::size_t row) {
     sums_.add(from, row, 1.0, [](std::size_t) { return 1.0; });
   }
-  /// The point itself.
-  void add_own(const KnownPoints& from, std::size_t point) {
+  /// The point itself; as heavy as so many.
+  void add_own(const KnownPoints& from, std::size_t point, double weight = 1) {
     own_.read(from, point);
-    add(from.irradiance(), from.row(point));
+    sums_.add(from.irradiance(), from.row(point), weight, [&](std::size_t) { return weight; });
   }
   /// One that may have the same light as the point itself; as heavy as so many.
   void add_other(const KnownPoints& from, std::size_t point, const NoiseTolerance& tolerated,
@@ -266,6 +266,7 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
 struct PointLinks {
   std::vector<std::uint32_t> first;  ///< one more than there are points
   std::vector<std::uint32_t> to;
+  std::vector<glm::vec3> position;  ///< of each point
 
   std::span<const std::uint32_t> of(std::size_t point) const {
     return std::span(to).subspan(first[point], first[point + 1] - first[point]);
@@ -277,13 +278,16 @@ struct IrradianceFilterParameters {
   NoiseTolerance tolerated = {};
 };
 
-/// Replaces each point's light by the mean of it and its neighbours', weighted by exp(-d^2 / (9
-/// (se_a^2 + se_b^2))), d the difference of luminance and se its standard errors, and less where
-/// these differ more than is tolerated, a few times over. Where a layer differs by more than its
+/// Replaces each point's light by the mean of it and its neighbours', weighted by
+/// exp(-d^2 / (t^2 (se_a^2 + se_b^2))), d the difference of luminance, se its standard errors and t
+/// those that are tolerated, and less where these differ more than is tolerated, a few times over. Where a layer differs by more than its
 /// own noise, that is its weight alone: the sun's border would leave the noise of lights in their
-/// layers. All others have that of their sum at `layer_powers`. All batches of a layer have the
-/// same weights, so that errors are known afterwards, too. Points of no error stay what they are,
-/// but for equal ones. Does not depend on threads.
+/// layers. All others have that of their sum at `layer_powers`. Where neighbours lie to one side,
+/// as where surface ends, those that are nearer weigh more, as far as light changes along it: their
+/// mean is then that of a plane through them, at the point (a regression of the first order, as
+/// Bitterli et al. 2016 have for pixels). All batches of a layer have the same weights, so that
+/// errors are known afterwards, too. Points of no error stay what they are, but for equal ones.
+/// Does not depend on threads.
 GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
                                      std::span<const double> layer_powers,
                                      const IrradianceFilterParameters& parameters = {});
