@@ -45,8 +45,9 @@ double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance
   return part * part;
 }
 
-/// What multiplies the weights of a point and of those around it, so that their mean is that of a
-/// plane through them, at the point. Where they lie around it evenly that is 1.
+/// What multiplies the weights of a point and of those around it, so that the mean of points that
+/// are all alike is that of a plane through them, at the point. Where they lie around it evenly
+/// that is 1. How alike they are does not count here: beyond an edge there is surface all the same.
 class PlaneThroughPoints {
  public:
   /// References are kept.
@@ -54,6 +55,7 @@ class PlaneThroughPoints {
                      std::span<const double> layer_powers)
       : points_(points), positions_(positions), layer_powers_(layer_powers) {}
 
+  /// For this point and those around it.
   void fit(std::size_t own, std::span<const std::uint32_t> others);
 
   double of_own() const { return 1 + slope_ * middle_; }
