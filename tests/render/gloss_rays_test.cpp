@@ -48,6 +48,7 @@ void check_room(const Material& floor, RenderParameters parameters, double delta
   const Camera camera = above(2.6, 2.2, 2.0, 0.4);
   std::vector<std::vector<double>> differences(4);
   parameters.photons.emitted_photons = 400'000;
+  parameters.light_map_rays = 128;
   parameters.neighbours = 200;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     parameters.seed = seed;
@@ -192,6 +193,36 @@ TEST_CASE("gloss by rays: one sample of rough metal shows what it reflects witho
   CAPTURE(relative_variance, sum / count);
   CHECK(sum > 0);
   CHECK(relative_variance < 0.3);
+}
+
+TEST_CASE("gloss by rays: a coated wall beside a lamp has no dark pixels") {
+  // A pane of light that stands on the edge of a plate. A light sample on it near a point of the
+  // plate has a weight of inverse squared distance, and a coat lets less through at grazing angles.
+  const float alpha = GENERATE(0.05f, 0.2f);
+  CAPTURE(alpha);
+  SceneBuilder builder;
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1,
+               builder.add(glossy(glm::vec3(0.75f), glm::vec3(0.04f), alpha)));
+  builder.grid({-1, 1, 0}, {2, 0, 0}, {0, 0, 1}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+               builder.add(area_light("pane")));
+  const Scene scene = builder.build();
+  RenderParameters parameters = with_rays();
+  parameters.light_map_rays = 64;
+  parameters.film.width = parameters.film.height = 64;
+  const Camera camera = Camera::look_at({0, 0.9, 1}, {0, 0.9, 0}, {0, 1, 0}, 0.2);
+  const LightLayers layers = render(scene, camera, device(), parameters).layers;
+  const auto width = static_cast<std::size_t>(layers.width);
+  const std::vector<glm::vec3>& radiance = layers.layers[0].radiance;
+  for (std::size_t y = 1; y + 1 < width; ++y) {
+    double row = 0;
+    for (std::size_t x = 0; x < width; ++x) row += radiance[y * width + x].g;
+    row /= static_cast<double>(width);
+    if (!(row > 0)) continue;
+    for (std::size_t x = 0; x < width; ++x) {
+      CAPTURE(x, y);
+      CHECK(radiance[y * width + x].g > 0.7 * row);
+    }
+  }
 }
 
 TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does") {

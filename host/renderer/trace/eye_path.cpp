@@ -161,7 +161,8 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
   // All samples of a pixel share their sequences.
   const RandomStream of_pixel(film.seed, pixel, 0);
   const auto index = static_cast<std::uint32_t>(sample);
-  const glm::dvec2 offset = sobol_point(index, of_pixel.block(Purpose::film_position, 0));
+  const RandomBlock scramble = of_pixel.block(Purpose::film_position, 0);
+  const glm::dvec2 offset = sobol_point(index, scramble);
   const auto sequence_position =
       static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
       pixel * static_cast<std::uint32_t>(film.runs);
@@ -180,10 +181,13 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
                               light_samples ? &*light_samples : nullptr, split);
     if (end) {
       const OpaqueBsdf bsdf(*setup.rays->scene, end->point, end->ray.direction);
-      const auto rays = static_cast<std::uint32_t>(bsdf.lobe_rays());
+      // Whole rays, in turn with the other samples where each has a part of one.
+      const double rays = bsdf.lobe_rays(), start = scramble.uniform(3);
+      const auto first_ray = static_cast<std::uint32_t>(index * rays + start);
+      const auto end_ray = static_cast<std::uint32_t>((index + 1) * rays + start);
       end->ray.throughput /= static_cast<float>(rays);
-      for (std::uint32_t i = 0; i < rays; ++i) {
-        follow_lobes(setup, *end, {of_pixel, index * rays + i, path, i}, reflected);
+      for (std::uint32_t i = first_ray; i < end_ray; ++i) {
+        follow_lobes(setup, *end, {of_pixel, i, path, i - first_ray}, reflected);
       }
     }
     if (!split || split->empty()) return;
@@ -193,6 +197,11 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
 }
 
 namespace {
+
+/// A light sample stands for no more of the base's deviation than light of its radiance from so
+/// many hemispheres. Beside a lamp one sample would take all light of its pixel away, for a
+/// difference of some percent.
+constexpr float most_received = 8;
 
 /// A light as the lobe reflects it; also by how much the base reflects more or less of it than of
 /// light from all sides, for hits say no more of the base.
@@ -205,7 +214,8 @@ void sample_light(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& wh
   glm::vec3 reflected =
       lobe.reflected(light->direction) * light->weight_beside(lobe.density(light->direction));
   // Light samples that give the base all of its direct light know where it comes from.
-  if (!setup.direct) reflected += whole.base_deviation(light->direction);
+  if (!setup.direct)
+    reflected += light->weight_below(most_received) * whole.base_deviation(light->direction);
   glm::vec3 radiance = reflected * light->received;
   if (radiance == glm::vec3(0.0f)) return;
   radiance *=

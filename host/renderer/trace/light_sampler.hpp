@@ -1,11 +1,13 @@
 // Next event estimation: a point of a light to sample from a surface.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
 
+#include "photile/device/bsdf.h"
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 #include "trace/distant_light.hpp"
@@ -35,6 +37,11 @@ struct LightSample {
   /// in full where no other technique can.
   float weight_beside(float other) const {
     return density > 0.0f ? power_heuristic(density, other) : 1.0f;
+  }
+  /// How it counts where a surface receives no more than light of its radiance from so many
+  /// hemispheres; lights without size in full.
+  float weight_below(float hemispheres) const {
+    return density > 0.0f ? std::min(1.0f, hemispheres * PHOTILE_PI * density) : 1.0f;
   }
 };
 

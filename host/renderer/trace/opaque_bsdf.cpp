@@ -15,8 +15,10 @@ namespace {
 /// narrow.
 constexpr float narrow_lobe_alpha = 0.3f, faint_lobe_albedo = 0.25f;
 
-/// Rays that follow the lobe of a metal; narrower lobes than this scatter so much less.
-constexpr float most_lobe_rays = 8, scattering_lobe_alpha = 0.04f;
+/// Rays of a sample that follow the lobe of a metal; narrower lobes than this scatter so much less.
+constexpr float most_lobe_rays = 16, scattering_lobe_alpha = 0.04f;
+/// Of a lobe that hardly reflects: every other sample has one.
+constexpr float least_lobe_rays = 0.5f;
 /// A lobe over a dark base is most of what is seen, however little it reflects: it has half as many
 /// as a metal whose whole reflection it is.
 constexpr float rays_of_share = 0.5f;
@@ -83,11 +85,11 @@ bool OpaqueBsdf::lobe_suits_rays() const {
   return surface_.alpha < narrow_lobe_alpha || lobe_->albedo < faint_lobe_albedo;
 }
 
-int OpaqueBsdf::lobe_rays() const {
-  if (!lobe_) return 0;
+double OpaqueBsdf::lobe_rays() const {
+  if (!lobe_) return 0.0;
   const float scatters = std::min(1.0f, surface_.alpha / scattering_lobe_alpha);
   const float part = std::max(lobe_->albedo, rays_of_share * lobe_->fraction);
-  return std::max(1, static_cast<int>(std::lround(most_lobe_rays * scatters * part)));
+  return double{std::max(least_lobe_rays, most_lobe_rays * scatters * part)};
 }
 
 glm::vec3 OpaqueBsdf::base_reflectance() const {

@@ -81,9 +81,10 @@ class OpaqueBsdf {
   /// little.
   bool lobe_suits_rays() const;
 
-  /// Rays by which to follow the lobe of one sample: one where it reflects little or hardly
-  /// scatters, more where all light of the surface is its, and comes from many directions.
-  int lobe_rays() const;
+  /// Rays by which to follow the lobe of one sample, in the mean over samples: less than one where
+  /// it reflects little or hardly scatters, more where all light of the surface is its, and comes
+  /// from many directions.
+  double lobe_rays() const;
 
   /// Fraction of the directions drawn that are the lobe's, in [0, 1]: about its part of what the
   /// surface reflects.
