@@ -94,8 +94,8 @@ inline constexpr float survival_of_reflectance = 1.5f;
 /// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
 inline constexpr float strong_lobe = 0.2f;
 /// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lights would
-/// be mottled.
-inline constexpr int least_rays = 16;
+/// be mottled, and the feet of things smudged.
+inline constexpr int least_rays = 32;
 /// Light samples for each ray of a node.
 inline constexpr int light_samples_per_ray = 2;
 /// Lamps and suns without size that a node samples once each, not by chance: no more than the
@@ -116,18 +116,14 @@ inline constexpr float most_inverse_cosine = 32;
 /// Points on each side that a point is averaged with, and so many times: fewer at finer levels,
 /// where light changes from one point to the next.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
-/// Standard errors by which points may differ, those by which what coarser nodes say of a point may,
-/// and how many times as large the standard errors of direct light may be.
-inline constexpr double tolerated_errors = 2.5, tolerated_parent_errors = 2;
-inline constexpr double tolerated_error_ratio = 2;
+/// Standard errors by which points may differ, and how many times as large the standard errors of
+/// direct light may be.
+inline constexpr double tolerated_errors = 2.5, tolerated_error_ratio = 2;
 /// A light is judged apart from the others where the square of its own difference exceeds so many
 /// tolerated ones: 4.3 standard errors, which scatter in eight batches seldom brings about.
 inline constexpr double parting_difference = 3;
 /// Errors above this fraction of the light that they are of are not known: few rays found any.
 inline constexpr double known_error = 0.5;
-/// What coarser nodes say of a point counts as much as so many nodes of its own few rays: it is a
-/// mean over many.
-inline constexpr double weight_of_parents = 3;
 /// Shadow rays between points of one surface run above it by this part of their length:
 /// roundings and what lies flat on it hide nothing. They end so much short of a node, by less than
 /// the node lies off the foot of a wall.

@@ -44,10 +44,6 @@ struct NodeBatch {
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its position alone, below 2^48
   std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
-  /// For each cache sample the numbers of those of coarser levels between which it lies, two or
-  /// four, one of two twice. All `no_parent` at the coarsest level.
-  std::vector<std::array<std::uint64_t, 4>> parents;
-  static constexpr std::uint64_t no_parent = ~std::uint64_t{0};
   /// Point i of the coarsest lattice, or node i, is linked to neighbour[first_neighbour[i] ..
   /// first_neighbour[i + 1]), others to none. Empty without surroundings.
   std::vector<std::uint32_t> first_neighbour, neighbour;
@@ -80,9 +76,6 @@ class NodeSource {
 
   virtual NodeValues value(const NodeBatch& batch, const Progress& progress) = 0;
 
-  /// Whether it has all that it needs of the node of this number to value those that lie between it
-  /// and others. Those that it does not know are given to `value` once more, the coarsest first.
-  virtual bool knows(std::uint64_t /*number*/) const { return true; }
   /// What it keeps of nodes; `forget` lets go of that.
   virtual std::uint64_t bytes() const { return 0; }
   virtual void forget() {}

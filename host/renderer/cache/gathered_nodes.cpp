@@ -103,14 +103,13 @@ GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse) {
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }
 
 std::uint64_t GatheredNodes::bytes() const {
-  const std::size_t rows = former_.row_of.size() + raw_.row_of.size() + row_of_.size();
+  const std::size_t rows = former_.row_of.size() + raw_.row_of.size();
   return former_.light.bytes() + raw_.light.bytes() + nodes_.bytes() + gather_.bytes() +
          rows * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 void GatheredNodes::forget() {
   raw_ = {};
-  row_of_.clear();
   nodes_ = {};
   gather_.forget();
 }
@@ -125,38 +124,30 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   gather_new(batch, fine, rays_.fine, progress);
   const GatheredParts smooth = smoothed(batch, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  const auto averaged_fine = [&](const GatheredIrradiance& raw, const GatheredIrradiance& known,
-                                 const NoiseTolerance& tolerated) {
-    return corrected(known, with_neighbours(raw, batch, fine, tolerated), batch, fine, tolerated);
-  };
   const GatheredIrradiance indirect =
-      averaged_fine(raw_.light.indirect, nodes_.indirect, of_indirect);
-  const GatheredIrradiance direct = averaged_fine(raw_.light.direct, nodes_.direct, of_direct);
+      with_neighbours(raw_.light.indirect, batch, fine, of_indirect);
+  const GatheredIrradiance direct = with_neighbours(raw_.light.direct, batch, fine, of_direct);
 
-  const std::size_t before = nodes_.distance.size();
+  GatheredParts own;
   std::size_t next_coarse = 0, next_fine = 0;
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
-    row_of_.insert_or_assign(batch.number[node],
-                             static_cast<std::uint32_t>(nodes_.distance.size()));
-    if (batch.parents[node][0] == NodeBatch::no_parent) {
-      append(smooth, next_coarse++, lights, nodes_);
+    if (batch.coarse[node]) {
+      append(smooth, next_coarse++, lights, own);
     } else {
-      nodes_.indirect.append(indirect, next_fine, lights);
-      nodes_.direct.append(direct, next_fine++, lights);
-      nodes_.distance.push_back(raw_.light.distance[raw_.row_of.at(batch.number[node])]);
+      own.indirect.append(indirect, next_fine, lights);
+      own.direct.append(direct, next_fine++, lights);
+      own.distance.push_back(raw_.light.distance[raw_.row_of.at(batch.number[node])]);
     }
-  }
-  GatheredParts own;
-  for (std::size_t row = before; row < nodes_.distance.size(); ++row) {
-    append(nodes_, row, lights, own);
   }
   GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
   NodeValues values;
   for (std::size_t node = 0; node < batch.nodes; ++node) {
     values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
-    values.distance.push_back(nodes_.distance[before + node]);
+    values.distance.push_back(own.distance[node]);
   }
   values.irradiance = std::move(all.mean);
+  nodes_.indirect.append(std::move(own.indirect));
+  nodes_.direct.append(std::move(own.direct));
   return values;
 }
 
@@ -236,28 +227,6 @@ GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
     for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
       mean.add_other(points, batch.neighbour[j], tolerated);
     }
-  });
-}
-
-/// Finer nodes averaged with what lies around them at coarser levels.
-///   known   of nodes valued before
-///   found   of the fine nodes
-GatheredIrradiance GatheredNodes::corrected(const GatheredIrradiance& known,
-                                            const GatheredIrradiance& found, const NodeBatch& batch,
-                                            std::span<const std::uint32_t> fine,
-                                            const NoiseTolerance& tolerated) const {
-  const GatheredIrradiance expected =
-      means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
-        for (const std::uint64_t parent : batch.parents[fine[i]]) {
-          mean.add(known, row_of_.at(parent));
-        }
-      });
-  const KnownPoints found_points(found, layer_powers_), expected_points(expected, layer_powers_);
-  NoiseTolerance of_parents = tolerated;
-  of_parents.errors = defaults::tolerated_parent_errors;
-  return means_of(found, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
-    mean.add_own(found_points, i);
-    mean.add_other(expected_points, i, of_parents, defaults::weight_of_parents);
   });
 }
 

@@ -34,9 +34,8 @@ struct GatheredPoints {
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
-/// finer ones with those next to them and with what coarser ones say of their position, as far as
-/// differences may be noise. Direct light and light of other surfaces are treated
-/// apart.
+/// finer ones with those next to them, as far as differences may be noise. Direct light and light
+/// of other surfaces are treated apart.
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. One LightMaps uses it.
@@ -49,7 +48,6 @@ class GatheredNodes : public NodeSource {
 
   Surroundings surroundings() const override;
   NodeValues value(const NodeBatch& batch, const Progress& progress) override;
-  bool knows(std::uint64_t number) const override { return row_of_.contains(number); }
   std::uint64_t bytes() const override;
   void forget() override;
 
@@ -67,17 +65,13 @@ class GatheredNodes : public NodeSource {
   GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
                                      std::span<const std::uint32_t> fine,
                                      const NoiseTolerance& tolerated) const;
-  GatheredIrradiance corrected(const GatheredIrradiance& known, const GatheredIrradiance& found,
-                               const NodeBatch& batch, std::span<const std::uint32_t> fine,
-                               const NoiseTolerance& tolerated) const;
 
   IrradianceGather& gather_;
   std::span<const double> layer_powers_;
   GatheredNodesParameters rays_;
   GatheredPoints former_;
   GatheredPoints raw_;
-  tsl::robin_map<std::uint64_t, std::uint32_t> row_of_;  ///< by number of a node, in `nodes_`
-  GatheredParts nodes_;
+  GatheredParts nodes_;  ///< valued so far, but for their distances
 };
 
 }  // namespace photile::cache

@@ -214,10 +214,6 @@ class MeanOfPoints {
         other_(layer_powers.size()),
         similarity_(layer_powers) {}
 
-  /// One that has the same light.
-  void add(const GatheredIrradiance& from, std::size_t row) {
-    sums_.add(from, row, 1.0, [](std::size_t) { return 1.0; });
-  }
   /// The point itself; as heavy as so many.
   void add_own(const KnownPoints& from, std::size_t point, double weight = 1) {
     own_.read(from, point);

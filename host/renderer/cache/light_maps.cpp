@@ -165,15 +165,8 @@ void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint3
 
 std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(
     std::span<const NodeCoordinates> nodes, NodeSource& source, const Progress& progress) {
-  const auto batch_of = [&](std::span<const NodeCoordinates> coordinates) {
-    return cache::node_batch(scene, charts, coordinates, {levels, skipped_levels}, needs.glossy,
-                             source.surroundings());
-  };
-  for (const auto& coordinates : cache::unknown_parents(nodes, {levels, skipped_levels}, source)) {
-    // For the source: they have their values here.
-    if (!coordinates.empty()) source.value(batch_of(coordinates), progress);
-  }
-  NodeBatch batch = batch_of(nodes);
+  NodeBatch batch = cache::node_batch(scene, charts, nodes, {levels, skipped_levels}, needs.glossy,
+                                      source.surroundings());
   NodeValues values = source.value(batch, progress);
   return {std::move(values), std::move(batch.points)};
 }

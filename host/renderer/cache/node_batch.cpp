@@ -3,9 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <optional>
 #include <vector>
 
 #include "trace/surface.hpp"
@@ -78,29 +75,6 @@ std::uint32_t step_of(const NodeCoordinates& node, const Levels& levels) {
   std::uint32_t step = 1;
   while (step < coarsest && (node.x | node.y) % (2 * step) == 0) step *= 2;
   return step;
-}
-
-/// The positions next to a node in the lattice of the next coarser level, or none at the coarsest.
-std::optional<std::array<NodeCoordinates, 4>> parents_of(const NodeCoordinates& node,
-                                                         const Levels& levels) {
-  const std::uint32_t step = step_of(node, levels);
-  if (step == coarsest_step(levels)) return std::nullopt;
-  const std::uint32_t dx = node.x % (2 * step), dy = node.y % (2 * step);
-  std::array<NodeCoordinates, 4> parents;
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    parents[i] = {node.chart, i & 1 ? node.x + dx : node.x - dx, i & 2 ? node.y + dy : node.y - dy};
-  }
-  return parents;
-}
-
-std::array<std::uint64_t, 4> parent_numbers(const NodeCoordinates& node, const Levels& levels) {
-  std::array<std::uint64_t, 4> numbers;
-  numbers.fill(NodeBatch::no_parent);
-  if (const auto parents = parents_of(node, levels)) {
-    std::transform(parents->begin(), parents->end(), numbers.begin(),
-                   [&](const NodeCoordinates& parent) { return number_of(parent, levels); });
-  }
-  return numbers;
 }
 
 /// The positions around nodes, each in the coarsest lattice that has the node.
@@ -196,32 +170,11 @@ std::size_t NodeCoordinatesHash::operator()(const NodeCoordinates& node) const {
   return static_cast<std::size_t>(hash_of(node));
 }
 
-std::vector<std::vector<NodeCoordinates>> unknown_parents(std::span<const NodeCoordinates> nodes,
-                                                          const Levels& levels,
-                                                          const NodeSource& source) {
-  std::vector<std::vector<NodeCoordinates>> by_level(static_cast<std::size_t>(levels.all));
-  NodeIndex found;
-  std::vector<NodeCoordinates> open(nodes.begin(), nodes.end());
-  while (!open.empty()) {
-    const auto parents = parents_of(open.back(), levels);
-    open.pop_back();
-    if (!parents) continue;
-    for (const NodeCoordinates& parent : *parents) {
-      if (source.knows(number_of(parent, levels)) || !found.insert({parent, 0}).second) continue;
-      const int level = levels.all - 1 - std::countr_zero(step_of(parent, levels));
-      by_level[static_cast<std::size_t>(level)].push_back(parent);
-      open.push_back(parent);
-    }
-  }
-  return by_level;
-}
-
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodeCoordinates> nodes,
                      const Levels& levels, bool glossy,
                      const NodeSource::Surroundings& surroundings) {
   NodeBatch batch;
   batch.nodes = nodes.size();
-  for (const NodeCoordinates& node : nodes) batch.parents.push_back(parent_numbers(node, levels));
   std::vector<NodeCoordinates> coordinates(nodes.begin(), nodes.end());
   const Lattices lattices(charts, levels);
   NodeIndex index;

@@ -1,4 +1,4 @@
-// Nodes that are valued together: their points, the nodes between which they lie and those around.
+// Nodes that are valued together: their points, and those around.
 #pragma once
 
 #include <tsl/robin_map.h>
@@ -31,17 +31,11 @@ struct NodeCoordinatesHash {
 /// Numbers of nodes.
 using NodeIndex = tsl::robin_map<NodeCoordinates, std::uint32_t, NodeCoordinatesHash>;
 
-/// Their points, the numbers of these, parents and links.
+/// Their points, the numbers of these, and links.
 ///   glossy         whether hits of the scene have lobes
 ///   surroundings   positions that values depend on
 NodeBatch node_batch(const Scene& scene, Charts& charts, std::span<const NodeCoordinates> nodes,
                      const Levels& levels, bool glossy,
                      const NodeSource::Surroundings& surroundings);
-
-/// The positions between which nodes lie, and those between which these do, as far as a source does
-/// not know them: by level, the coarsest first.
-std::vector<std::vector<NodeCoordinates>> unknown_parents(std::span<const NodeCoordinates> nodes,
-                                                          const Levels& levels,
-                                                          const NodeSource& source);
 
 }  // namespace photile::cache
