@@ -95,7 +95,7 @@ inline constexpr float survival_of_reflectance = 1.5f;
 inline constexpr float strong_lobe = 0.2f;
 /// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lights would
 /// be mottled, and the feet of things smudged.
-inline constexpr int least_rays = 32;
+inline constexpr int least_rays = 24;
 /// Light samples for each ray of a node.
 inline constexpr int light_samples_per_ray = 2;
 /// Lamps and suns without size that a node samples once each, not by chance: no more than the
