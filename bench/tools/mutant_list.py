@@ -91,6 +91,11 @@ MUTANTS = (
     Mutant("a filter that tolerates all differences", "host/renderer/cache/irradiance_filter.cpp",
            "(tolerated.errors * tolerated.errors * variance)", "(1e6 * variance)",
            (("cache", "filter: steps*"),)),
+    Mutant("a filter that believes small errors", "host/renderer/cache/irradiance_filter.hpp",
+           "similarity_.compare(own_, other_, tolerated);",
+           "similarity_.compare(own_, other_, tolerated); weight *= other_.all().error > 0 ? "
+           "std::min(1.0, own_.all().error / other_.all().error) : 1.0;",
+           (("cache", "gathered nodes: the filter of finer*"),)),
     Mutant("a filter that flattens slopes where surface ends", "host/renderer/cache/irradiance_filter.cpp",
            "std::min(share_of_slope(own, others, spread) * middle_ / spread, 1 / farthest)", "0",
            (("cache", "filter: slopes go on*"),)),
@@ -169,6 +174,9 @@ MUTANTS = (
            "2.0 / (1.0 + std::cos(0.5 * angular_diameter))", "1.0", (("loading", "[sun]"),)),
     Mutant("photons of textured lamps without their density", "host/renderer/trace/light_emitter.cpp",
            "* sides / area_->density(point.where)", "* sides", (("loading", "[emission]"),)),
+    Mutant("light samples of coats without bound", "host/renderer/trace/eye_path.cpp",
+           "constexpr float most_received = 8;", "constexpr float most_received = 1e9f;",
+           (("render", "gloss by rays: a coated wall*"),)),
     # Measuring
     Mutant("lamps met by sensors' rays counted in full", "host/renderer/trace/eye_path.cpp",
            "return ray.unscattered ? power_heuristic(other->density, found) : 1.0f;", "return 1.0f;",

@@ -425,11 +425,15 @@ TEST_CASE("an address space that is too small for a device's compiler is told be
   CHECK_THAT(last_error(run_photile(run), no_device), Contains("ulimit -v"));
 }
 
+/// glibc reserves 64 MiB for each thread that happens to allocate while another does, else.
+constexpr const char* one_arena = "1";
+
 /// The least bytes of address space with which photile asks a device for anything, on this machine:
 /// what its libraries take differs from one to the next, and the refusal of less says it.
 std::uint64_t least_address_space(const FileFolder& folder) {
   constexpr std::uint64_t refused = 800, requested = 1'024, margin = 8;  // MiB
   Run run = small_render(folder);
+  run.environment["MALLOC_ARENA_MAX"] = one_arena;
   run.address_limit = refused << 20;
   const std::string line = last_error(run_photile(run), no_device);
   CAPTURE(line);
@@ -444,6 +448,7 @@ Outcome render_in_least_address_space(const FileFolder& folder, const std::strin
   Run run;
   run.arguments = typed("render", write_box(folder), "-q -o", folder / "out.png",
                         "--size 16x12 --set light_map_rays=0 --photons", photons);
+  run.environment["MALLOC_ARENA_MAX"] = one_arena;
   run.address_limit = least_address_space(folder);
   return run_photile(run);
 }
