@@ -1,8 +1,6 @@
-// Runs that are watched, held to few threads, stopped or killed.
-#include <stdlib.h>
+// Runs that are watched, stopped or killed.
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -382,123 +380,6 @@ TEST_CASE("an error is coloured on a terminal, but not where NO_COLOR is set") {
   CHECK_THAT(run_photile(run).errors, Contains("\033[1;31merror:"));
   run.environment.emplace("NO_COLOR", "1");
   CHECK_THAT(run_photile(run).errors, !Contains("\033"));
-}
-
-// --threads: how many threads work on the host.
-
-std::size_t allowed() {
-  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-}
-
-TEST_CASE("where threads cannot be made, every command says so in one line") {
-  const FileFolder folder;
-  std::filesystem::permissions(folder / "", std::filesystem::perms::all);
-  write_box(folder);
-  const auto [limit, words] = GENERATE(
-      table<int, std::string>({{1, "trace SCENE -o NOWHERE.maps --photons 5k"},
-                               {3, "trace SCENE -o NOWHERE.maps --photons 5k"},
-                               {1, "render SCENE -o NOWHERE.png -q --photons 5k --size 4x4"},
-                               {4, "render SCENE -o NOWHERE.png -q --photons 5k --size 4x4"},
-                               {1, "devices"},
-                               {2, "devices --test"}}));
-  CAPTURE(words, limit);
-  Run run;
-  run.arguments = typed(filled(words, folder).c_str());
-  run.thread_limit = limit;
-  CHECK_THAT(only_error(run_photile(run), failure), Contains("threads can be made"));
-}
-
-TEST_CASE("numbers of threads that PoCL cannot have are bounded before it is asked") {
-  const FileFolder folder;
-  Run run = small_render(folder);
-  run.arguments.emplace_back("-q");
-  run.environment["POCL_MAX_PTHREAD_COUNT"] = GENERATE("-1", "0", "100000", "many");
-  succeed(run);
-}
-
-TEST_CASE("an address space that is too small for a device's compiler is told before it is asked") {
-  const FileFolder folder;
-  Run run = small_render(folder);
-  run.environment["XDG_CACHE_HOME"] = folder / "cache";  // kernels are to be compiled
-  const std::uint64_t megabytes = GENERATE(600, 650, 700, 1'000);
-  run.address_limit = megabytes << 20;
-  CHECK_THAT(last_error(run_photile(run), no_device), Contains("ulimit -v"));
-}
-
-/// glibc reserves 64 MiB for each thread that happens to allocate while another does, else.
-constexpr const char* one_arena = "1";
-
-/// The least bytes of address space with which photile asks a device for anything, on this machine:
-/// what its libraries take differs from one to the next, and the refusal of less says it.
-std::uint64_t least_address_space(const FileFolder& folder) {
-  constexpr std::uint64_t refused = 800, requested = 1'024, margin = 8;  // MiB
-  Run run = small_render(folder);
-  run.environment["MALLOC_ARENA_MAX"] = one_arena;
-  run.address_limit = refused << 20;
-  const std::string line = last_error(run_photile(run), no_device);
-  CAPTURE(line);
-  const std::size_t number = line.find_first_of("0123456789");
-  REQUIRE(number != std::string::npos);
-  REQUIRE_THAT(line, Contains(" MiB of address space are left") && Contains(" up to 1024;"));
-  return (refused - std::stoull(line.substr(number)) + requested + margin) << 20;
-}
-
-/// A render of photons in that address space, to out.png.
-Outcome render_in_least_address_space(const FileFolder& folder, const std::string& photons) {
-  Run run;
-  run.arguments = typed("render", write_box(folder), "-q -o", folder / "out.png",
-                        "--size 16x12 --set light_map_rays=0 --photons", photons);
-  run.environment["MALLOC_ARENA_MAX"] = one_arena;
-  run.address_limit = least_address_space(folder);
-  return run_photile(run);
-}
-
-TEST_CASE("photons for which the address space is too small end in one line, and not in PoCL") {
-  // A photon takes 28 bytes on the host alone, and each path leaves one at least.
-  const FileFolder folder;
-  CHECK_THAT(only_error(render_in_least_address_space(folder, "50M"), failure),
-             Contains("out of memory"));
-  CHECK_FALSE(std::filesystem::exists(folder / "out.png"));
-}
-
-TEST_CASE("at the border of an address space there is a line or the picture that there is without",
-          "[slow]") {
-  // Somewhere here the host's photons fit, and those of the device do not.
-  const FileFolder folder;
-  int failed = 0, rendered = 0;
-  for (const char* photons : {"250k", "1M", "2M", "3M", "3500k", "4M", "4500k", "5M", "6M", "8M"}) {
-    CAPTURE(photons);
-    const Outcome outcome = render_in_least_address_space(folder, photons);
-    CAPTURE(outcome.errors);
-    if (outcome.exit_code != 0) {
-      ++failed;
-      CHECK((outcome.exit_code == failure || outcome.exit_code == no_device));
-      CHECK_THAT(only_error(outcome, outcome.exit_code),
-                 Contains("out of memory") || Contains("ulimit -v") || Contains("may use"));
-      continue;
-    }
-    ++rendered;
-    const std::string bounded = folder.read("out.png");
-    succeed(typed("render", write_box(folder), "-q -o", folder / "out.png",
-                  "--size 16x12 --set light_map_rays=0 --photons", photons));
-    CHECK(folder.read("out.png") == bounded);
-  }
-  CHECK(failed > 0);
-  CHECK(rendered > 0);
-}
-
-TEST_CASE("while a limit of threads lives, TBB keeps to it") {
-  const std::size_t before = allowed();
-  for (const int count : {1, 2, 3}) {
-    const app::ThreadLimit limit(count);
-    CHECK(allowed() == static_cast<std::size_t>(count));
-  }
-  CHECK(allowed() == before);
-  const app::ThreadLimit none(0);
-  CHECK(allowed() == before);
-  for (const char* variable : {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"}) {
-    ::unsetenv(variable);  // those of the tests that follow
-  }
 }
 
 }  // namespace
