@@ -292,13 +292,16 @@ def version(package):
 
 
 def merged(known, rows):
-    """Rows known before with these in place of their own, by view, tool and time."""
+    """Rows known before with these in place of their own, by view, tool and time. That a tool could not run
+    is left out where there are figures of it."""
     def key(row):
         return row["view"], row["tool"], row.get("setting")
 
     tools = list(TOOLS)
     new = {key(row) for row in rows}
-    return sorted([row for row in known if row["view"] in VIEWS and key(row) not in new] + rows,
+    all_rows = [row for row in known if row["view"] in VIEWS and key(row) not in new] + rows
+    measured = {(row["view"], row["tool"]) for row in all_rows if "missing" not in row}
+    return sorted([row for row in all_rows if "missing" not in row or (row["view"], row["tool"]) not in measured],
                   key=lambda row: (VIEWS.index(row["view"]), tools.index(row["tool"]),
                                    row["first"]["processor"] if "first" in row else 0))
 

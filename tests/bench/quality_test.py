@@ -122,6 +122,14 @@ class Results(unittest.TestCase):
                          [(kitchen, "draft", 5), (kitchen, "good", 18), (kitchen, "1 spp", 1),
                           (classroom, "good", 15)])
 
+    def test_a_tool_that_could_not_run_once_is_not_missing_beside_its_figures(self):
+        view = quality.VIEWS[0]
+        failed = {"view": view, "tool": "Mitsuba", "missing": "it ended"}
+        figures = {"view": view, "setting": "1 spp", **row("Mitsuba", 1, 0.1)}
+        self.assertEqual(quality.merged([failed], [figures]), [figures])
+        self.assertEqual(quality.merged([figures], [failed]), [figures])
+        self.assertEqual(quality.merged([], [failed]), [failed])
+
 
 class Meshes(unittest.TestCase):
     def test_the_cornell_box_has_its_triangles_colours_lamp_and_camera(self):

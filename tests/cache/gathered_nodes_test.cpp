@@ -156,7 +156,7 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
 }
 
 TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few rays find") {
-  // A lit plate above a floor, which one ray of six meets: a node that few rays of its own brought
+  // A lit plate above a floor, which one ray of eight meets: a node that few rays of its own brought
   // light to states a small error, and must not be believed more than one that many did.
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
