@@ -1,5 +1,8 @@
 #include "box_scene.hpp"
 
+#include <utility>
+#include <vector>
+
 namespace photile::test {
 
 std::string box_mtl() {
@@ -31,6 +34,32 @@ std::string open_box_obj() {
 std::string write_box(const FileFolder& folder) {
   folder.write("box.mtl", box_mtl());
   return folder.write("box.obj", box_obj());
+}
+
+Run small_render(const FileFolder& folder) {
+  Run run;
+  run.arguments = {"render", write_box(folder), "-o",    folder / "out.png", "--photons",
+                   "20k",    "--size",          "16x12", "--quality",        "draft"};
+  return run;
+}
+
+std::string filled(std::string command, const FileFolder& folder) {
+  const std::vector<std::pair<std::string, std::string>> words{
+      {"DISK", folder / "disk"},
+      {"SCENE", folder / "box.obj"},
+      {"LARGE", folder / "large.exr"},
+      {"MANY", folder / "many.pts"},
+      {"PATH", folder / "path.json"},
+      {"NOWHERE", folder / "other"},
+      {"DRAFT", "--quality draft -q --photons 5k"},
+      {"POINTS", "-q --photons 5k --rays 1 --repeats 2 --points"}};
+  for (const auto& [word, meaning] : words) {
+    for (std::size_t at = 0; (at = command.find(word, at)) != std::string::npos;
+         at += meaning.size()) {
+      command.replace(at, word.size(), meaning);
+    }
+  }
+  return command;
 }
 
 }  // namespace photile::test

@@ -1,8 +1,9 @@
-// Tiny scenes, written to a folder.
+// Tiny scenes, written to a folder, and commands that read them.
 #pragma once
 
 #include <string>
 
+#include "child_process.hpp"
 #include "file_folder.hpp"
 
 namespace photile::test {
@@ -19,5 +20,12 @@ std::string open_box_obj();
 
 /// The text of box.mtl.
 std::string box_mtl();
+
+/// A draft of the box, 16 x 12 pixels, to out.png.
+Run small_render(const FileFolder& folder);
+
+/// A command, by its words: DISK stands for a folder in this one, SCENE, LARGE and MANY for files
+/// of it, NOWHERE for a picture that nobody looks at.
+std::string filled(std::string command, const FileFolder& folder);
 
 }  // namespace photile::test

@@ -239,27 +239,6 @@ TEST_CASE("killed a hundred times at any moment, a render leaves the old picture
   CHECK(folder.file_count() == 4);  // the scene's, and the pictures: nothing of killed runs
 }
 
-/// A command, by its words: FOLDER and DISK stand for folders, SCENE, LARGE and MANY for files of
-/// the former, NOWHERE for a picture that nobody looks at.
-std::string filled(std::string command, const FileFolder& folder) {
-  const std::vector<std::pair<std::string, std::string>> words{
-      {"DISK", folder / "disk"},
-      {"SCENE", folder / "box.obj"},
-      {"LARGE", folder / "large.exr"},
-      {"MANY", folder / "many.pts"},
-      {"PATH", folder / "path.json"},
-      {"NOWHERE", folder / "other"},
-      {"DRAFT", "--quality draft -q --photons 5k"},
-      {"POINTS", "-q --photons 5k --rays 1 --repeats 2 --points"}};
-  for (const auto& [word, meaning] : words) {
-    for (std::size_t at = 0; (at = command.find(word, at)) != std::string::npos;
-         at += meaning.size()) {
-      command.replace(at, word.size(), meaning);
-    }
-  }
-  return command;
-}
-
 TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name and leaves nothing",
           "[slow]") {
   const FileFolder folder;
@@ -306,13 +285,6 @@ TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name a
 }
 
 // Progress: the bar's text, the bar on a terminal, plain lines elsewhere.
-
-Run small_render(const FileFolder& folder) {
-  Run run;
-  run.arguments = {"render", write_box(folder), "-o",    folder / "out.png", "--photons",
-                   "20k",    "--size",          "16x12", "--quality",        "draft"};
-  return run;
-}
 
 const StageProgress half_done{"trace photons", 50, 100, "paths", 2.0};
 
