@@ -98,11 +98,17 @@ inline constexpr float strong_lobe = 0.2f;
 inline constexpr int least_rays = 24;
 /// Light samples for each ray of a node.
 inline constexpr int light_samples_per_ray = 2;
-/// Lamps and suns without size that a node samples once each, not by chance: no more than the
+/// Lamps without size and suns that a node samples each for itself, not by chance: no more than the
 /// light samples that these take the place of.
-inline constexpr std::size_t most_sampled_once = 32;
+inline constexpr std::size_t most_sampled_apart = 32;
+/// Radians: a sun, whose disc is so small that the same directions serve all points. The real one
+/// has 0.0093.
+inline constexpr float largest_sun = 0.02f;
+/// Directions on the rim of a sun, and on its disc, that tell whether a part of it is hidden: an
+/// edge is noticed that leaves out 0.2%. Where a part is, so many on its disc.
+inline constexpr int sun_rim_samples = 16, sun_samples = 16, hidden_sun_samples = 256;
 /// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window,
-/// varies more. Of light samples one for each ray is enough there.
+/// varies more.
 inline constexpr int times_in_the_open = 4;
 /// Where light samples leave an error of more than this fraction of all light, as in penumbrae, a
 /// point takes so many times as many, but at most `most_light_samples_again` times: 2% shows as

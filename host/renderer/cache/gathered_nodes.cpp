@@ -86,18 +86,17 @@ void GatheredPoints::append(std::span<const std::uint64_t> numbers, NodeRays of_
 
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse) {
   // Shadow borders stand at the finer levels: there light samples matter more than rays.
-  // Nine of these are averaged. In the open a shadow has a hundredth of the light of the sun beside
-  // it, and few light samples find the sky through a window: what single ones find would show.
+  // Nine of these are averaged. In the open few light samples find the sky through a window: what
+  // single ones find would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
   const int rays =
       std::min((open ? defaults::times_in_the_open : 1) * coarse, limits::max_gathering_rays);
   const int fine = std::max((rays + 3) / 4, std::min(rays, defaults::least_rays));
-  const auto light_samples_of = [&](int of_rays) {
-    return std::min((open ? 1 : defaults::light_samples_per_ray) * of_rays,
-                    limits::max_direct_rays);
+  const auto light_samples_of = [](int of_rays) {
+    return std::min(defaults::light_samples_per_ray * of_rays, limits::max_direct_rays);
   };
-  return {{rays, light_samples_of(rays)}, {fine, light_samples_of(open ? rays : fine)}};
+  return {{rays, light_samples_of(coarse)}, {fine, light_samples_of(open ? coarse : fine)}};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }

@@ -20,7 +20,7 @@ struct GatheredNodesParameters {
 };
 
 /// So many rays at the coarsest level and a quarter at others, and defaults::light_samples_per_ray;
-/// where the sun or a sky shines more light samples, and as many at all levels.
+/// where a sun or a sky shines more rays, and as many light samples at all levels.
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse);
 
 /// Points at which rays gathered, and what they found.

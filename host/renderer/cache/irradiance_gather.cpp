@@ -100,8 +100,8 @@ struct RunLight {
                                        first_light_sample);
     };
     if (traced) {
-      const double exact = add_sampled_once(where, sums);
-      if (light_sampler.samples_all_once()) return;
+      const double exact = add_sampled_apart(where, sums);
+      if (light_sampler.samples_all_apart()) return;
       thread_local trace::SelectionProbabilities probabilities;
       thread_local trace::ShadowRays first, more;
       light_sampler.weigh(where.position, where.normal, probabilities);
@@ -147,21 +147,27 @@ struct RunLight {
       }
     }
   }
-  /// Adds to all batches what lights without size bring. Returns its luminance.
-  double add_sampled_once(const trace::SurfacePoint& where, BatchSums& sums) const {
+  /// Adds to all batches what lights bring that need no chance. Returns its luminance.
+  double add_sampled_apart(const trace::SurfacePoint& where, BatchSums& sums) const {
     thread_local trace::ShadowRays shadow_rays;
-    shadow_rays.clear();
-    for (const std::uint32_t light : light_sampler.sampled_once()) {
-      shadow_rays.add(where, light_sampler.towards(light, where.position), glm::vec3(1.0f), 0.0f,
-                      0);
-    }
     double exact = 0;
-    for (const trace::ShadowRays::Found& light : shadow_rays.found(rays)) {
+    const auto add = [&](const trace::ShadowRays::Found& light) {
       exact += layer_powers[light.layer] * luminance(glm::dvec3(light.irradiance));
       for (int batch = 0; batch < parameters.batches; ++batch) {
         sums.add_light(light.layer, static_cast<std::uint32_t>(batch), light.irradiance,
                        light.direction);
       }
+    };
+    shadow_rays.clear();
+    for (const std::uint32_t light : light_sampler.sampled_apart()) {
+      if (rays.scene().lights[light].has_size()) continue;
+      shadow_rays.add(where, light_sampler.towards(light, where.position), glm::vec3(1.0f), 0.0f,
+                      0);
+    }
+    for (const trace::ShadowRays::Found& light : shadow_rays.found(rays)) add(light);
+    for (const std::uint32_t light : light_sampler.sampled_apart()) {
+      if (!rays.scene().lights[light].has_size()) continue;
+      if (const auto sun = shadow_rays.light_of_sun(light, rays, light_sampler, where)) add(*sun);
     }
     return exact;
   }

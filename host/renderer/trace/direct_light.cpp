@@ -1,7 +1,9 @@
 #include "trace/direct_light.hpp"
 
+#include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "photile/defaults.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
@@ -14,6 +16,10 @@ namespace {
 
 /// Panes and cutouts that a ray may pass on its way to a light: each takes it on, but for rounding.
 constexpr int most_passed = 4096;
+
+/// The light from one part of a sun that nothing hides is no less than this part of that from
+/// another.
+constexpr double least_of_whole = 0.9;
 
 class DirectLight {
  public:
@@ -166,6 +172,56 @@ std::span<const ShadowRays::Found> ShadowRays::found(const RayScene& rays) {
     found_[left++] = light;
   }
   return std::span(found_).first(left);
+}
+
+std::optional<ShadowRays::Found> ShadowRays::light_of_sun(std::uint32_t light, const RayScene& rays,
+                                                          const LightSampler& light_sampler,
+                                                          const SurfacePoint& point) {
+  constexpr std::uint32_t of_rim = 0, of_disc = 1;
+  const auto look = [&](const glm::dvec2& on_disc, std::uint32_t tag) {
+    add(point, light_sampler.towards(light, point.position, on_disc), glm::vec3(1.0f), 0.0f, tag);
+  };
+  const auto look_at_disc = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      look(sobol_point(static_cast<std::uint32_t>(i), RandomBlock({})), of_disc);
+    }
+  };
+  clear();
+  for (int i = 0; i < defaults::sun_rim_samples; ++i) {
+    look({0x1.fffffep-1, (i + 0.5) / defaults::sun_rim_samples}, of_rim);
+  }
+  look_at_disc(0, defaults::sun_samples);
+  Found sum{};
+  const auto add_to_sum = [&](std::span<const Found> samples) {
+    for (const Found& sample : samples) {
+      if (sample.tag == of_rim) continue;
+      sum.irradiance += sample.irradiance;
+      sum.direction +=
+          static_cast<float>(luminance(glm::dvec3(sample.irradiance))) * sample.direction;
+      sum.layer = sample.layer;
+    }
+  };
+  const std::span<const Found> all = found(rays);
+  if (all.empty()) return std::nullopt;
+  const auto [least, most] =
+      std::minmax_element(all.begin(), all.end(), [](const Found& a, const Found& b) {
+        return luminance(glm::dvec3(a.irradiance)) < luminance(glm::dvec3(b.irradiance));
+      });
+  const bool whole = all.size() == defaults::sun_rim_samples + defaults::sun_samples &&
+                     luminance(glm::dvec3(least->irradiance)) >
+                         least_of_whole * luminance(glm::dvec3(most->irradiance));
+  add_to_sum(all);
+  int count = defaults::sun_samples;
+  if (!whole) {
+    clear();
+    look_at_disc(count, defaults::hidden_sun_samples);
+    add_to_sum(found(rays));
+    count = defaults::hidden_sun_samples;
+  }
+  if (sum.irradiance == glm::vec3(0.0f)) return std::nullopt;
+  sum.irradiance /= static_cast<float>(count);
+  sum.direction = glm::normalize(sum.direction);
+  return sum;
 }
 
 }  // namespace photile::trace

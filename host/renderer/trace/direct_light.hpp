@@ -99,6 +99,13 @@ class ShadowRays {
   /// The light samples that nothing occludes, in their order.
   std::span<const Found> found(const RayScene& rays);
 
+  /// The light of a sun that is sampled apart, without weights; none where all of it is hidden. It
+  /// is looked at in the same directions from all points, more of them where a part of it is
+  /// hidden: neighbours do not differ by chance, and the dark beside the border of its light stays
+  /// dark. Clears all samples.
+  std::optional<Found> light_of_sun(std::uint32_t light, const RayScene& rays,
+                                    const LightSampler& light_sampler, const SurfacePoint& point);
+
  private:
   std::vector<LineOfSight> lines_;
   std::vector<Found> found_;  ///< one for each line

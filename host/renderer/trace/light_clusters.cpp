@@ -17,8 +17,6 @@ namespace {
 
 /// Clusters that a point weighs; so many cost less than two rays.
 constexpr std::size_t most_clusters = 64;
-/// Beyond so many lights to weigh each would cost more than it saves.
-constexpr std::size_t most_lights = 1024;
 /// The fraction of light samples that are chosen by power alone.
 constexpr double everywhere = 0.5;
 /// Up to so many clusters have probabilities that are multiples of 1 / `strata`: of so many Sobol

@@ -19,6 +19,7 @@ namespace photile::trace {
 struct SelectionProbabilities {
   std::vector<double> up_to;  ///< of the clusters up to and with this one; the last is their sum
   PortalSizes portals;        ///< empty where there are none, and where it is not known
+  bool but_apart = false;     ///< without LightSampler::sampled_apart
 
   double of(std::size_t cluster) const {
     return (up_to[cluster] - (cluster == 0 ? 0.0 : up_to[cluster - 1])) / up_to.back();
@@ -35,6 +36,9 @@ inline const SelectionProbabilities by_power_alone;
 /// Clusters are few enough to weigh them all.
 class LightClusters {
  public:
+  /// Beyond so many lights to weigh each would cost more than it saves.
+  static constexpr std::size_t most_lights = 1024;
+
   /// Errors: none; there are no clusters where there are too many lights to weigh each.
   ///   fractions   of the lights, summing to 1: how light samples are chosen wherever the point is
   ///   left_out    lights of no cluster, ascending

@@ -16,12 +16,19 @@ namespace photile::trace {
 
 namespace {
 
-std::vector<std::uint32_t> lights_sampled_once(const Scene& scene) {
+bool is_sun(const Light& light) {
+  return light.kind == LightKind::directional && light.angular_diameter > 0.0f &&
+         light.angular_diameter <= defaults::largest_sun && !light.is_sky_patch();
+}
+
+std::vector<std::uint32_t> lights_sampled_apart(const Scene& scene) {
   std::vector<std::uint32_t> lights;
+  // Where lights are not weighed, all are chosen from.
+  if (scene.lights.size() > LightClusters::most_lights) return lights;
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
-    if (!scene.lights[light].has_size()) lights.push_back(light);
+    if (!scene.lights[light].has_size() || is_sun(scene.lights[light])) lights.push_back(light);
   }
-  if (lights.size() > defaults::most_sampled_once) lights.clear();
+  if (lights.size() > defaults::most_sampled_apart) lights.clear();
   return lights;
 }
 
@@ -32,8 +39,8 @@ LightSampler::LightSampler(const Scene& scene)
       groups_(light_groups_of(scene)),
       bounds_(bounding_sphere(scene)),
       fraction_(light_fractions(scene.lights, PhotonQuota::balanced)),
-      sampled_once_(lights_sampled_once(scene)),
-      clusters_(scene, fraction_, bounds_, sampled_once_),
+      sampled_apart_(lights_sampled_apart(scene)),
+      clusters_(scene, fraction_, bounds_, sampled_apart_),
       radiance_(emitted_radiance_at_unit_power(scene)),
       distant_(scene),
       portals_(scene),
@@ -143,6 +150,20 @@ std::optional<LightSample> LightSampler::towards_light_without_size(std::uint32_
                      glm::vec3(color * intensity / (squared_distance * probability)), 0.0f};
 }
 
+std::optional<LightSample> LightSampler::towards(std::uint32_t light, const glm::vec3& position,
+                                                 const glm::dvec2& on_disc) const {
+  if (!is_sun(scene_->lights[light])) return towards_light_without_size(light, position, 1.0);
+  const DistantSampler::Sample chosen =
+      distant_samplers_[distant_of_[light]].sample(RandomBlock::of(on_disc.x).with(2, on_disc.y));
+  const double disc = glm::pi<double>() * bounds_.radius * bounds_.radius;
+  return LightSample{groups_.group_of[light],
+                     chosen.direction,
+                     beyond(position, chosen.direction),
+                     glm::vec3(glm::dvec3(chosen.color) * groups_.fraction[light] / disc),
+                     chosen.density,
+                     true};
+}
+
 glm::vec3 LightSampler::beyond(const glm::vec3& position, const glm::vec3& direction) const {
   const double reach = glm::distance(glm::dvec3(position), bounds_.center) + 1.5 * bounds_.radius;
   return position + static_cast<float>(std::max(2.5 * bounds_.radius, reach)) * direction;
@@ -206,6 +227,10 @@ std::optional<LightSample> LightSampler::through_portal(
 float LightSampler::density(const DistantLight& light, const glm::vec3& position,
                             const glm::vec3& direction,
                             const SelectionProbabilities& probabilities) const {
+  if (probabilities.but_apart &&
+      std::binary_search(sampled_apart_.begin(), sampled_apart_.end(), light.light())) {
+    return std::numeric_limits<float>::infinity();
+  }
   const float alone = probability(light.light(), probabilities) *
                       distant_samplers_[distant_of_[light.light()]].density(direction);
   if (!(portal_fraction_ > 0)) return alone;

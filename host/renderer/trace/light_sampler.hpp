@@ -55,10 +55,11 @@ class LightSampler {
   explicit LightSampler(const Scene& scene);
 
   /// Selection probabilities of lights at a point of a surface, which take as long as two rays to
-  /// find: for several samples. Lights that are sampled once each are not among them.
+  /// find: for several samples. Lights that are sampled apart are not among them.
   ///   normal   unit, to the side from which is looked
   void weigh(const glm::vec3& position, const glm::vec3& normal,
              SelectionProbabilities& probabilities) const {
+    probabilities.but_apart = true;
     clusters_.weigh(position, normal, probabilities);
     portals_.measure(glm::dvec3(position), probabilities.portals);
   }
@@ -69,14 +70,16 @@ class LightSampler {
       const glm::vec3& position, const RandomBlock& choice, const RandomBlock& on_light,
       const SelectionProbabilities& probabilities = by_power_alone) const;
 
-  /// Lights without size, of which one sample is exact; none where they are too many. Where they
-  /// are all lights, nothing is left to choose by weighed probabilities.
-  const std::vector<std::uint32_t>& sampled_once() const { return sampled_once_; }
-  bool samples_all_once() const { return sampled_once_.size() == fraction_.size(); }
+  /// Lights that need no chance: those without size, of which one sample is exact, and suns
+  /// (defaults::largest_sun); none where they are too many. Where they are all lights, nothing is
+  /// left to choose by weighed probabilities.
+  const std::vector<std::uint32_t>& sampled_apart() const { return sampled_apart_; }
+  bool samples_all_apart() const { return sampled_apart_.size() == fraction_.size(); }
   /// One of these as seen from `position`. Nothing where it shines elsewhere.
-  std::optional<LightSample> towards(std::uint32_t light, const glm::vec3& position) const {
-    return towards_light_without_size(light, position, 1.0);
-  }
+  ///   on_disc   of a sun: its distance from the middle, squared, and the angle around it, both in
+  ///             [0, 1)
+  std::optional<LightSample> towards(std::uint32_t light, const glm::vec3& position,
+                                     const glm::dvec2& on_disc = {}) const;
 
   /// Density per steradian with which `sample` would have chosen a point that emits, seen from
   /// `position`.
@@ -84,7 +87,8 @@ class LightSampler {
                 const SelectionProbabilities& probabilities = by_power_alone) const;
 
   /// Lights beyond the scene that rays can meet, and the density per steradian with which `sample`
-  /// would have chosen a direction towards one of them.
+  /// would have chosen a direction towards one of them; infinite for those that are sampled apart,
+  /// by probabilities without them: nothing else is to find their light.
   const DistantLights& distant() const { return distant_; }
   float density(const DistantLight& light, const glm::vec3& position, const glm::vec3& direction,
                 const SelectionProbabilities& probabilities = by_power_alone) const;
@@ -122,7 +126,7 @@ class LightSampler {
   LightGroups groups_;
   BoundingSphere bounds_;
   std::vector<double> fraction_;  ///< of the light samples of any point, per light
-  std::vector<std::uint32_t> sampled_once_;
+  std::vector<std::uint32_t> sampled_apart_;
   LightClusters clusters_;
   std::vector<double> cumulative_fraction_;  ///< of the lights up to and with this one
   std::vector<glm::vec3> radiance_;          ///< per light, of white texels; black without area

@@ -1,0 +1,100 @@
+// The border of a sun's light at points that gather, in closed form.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "gathering.hpp"
+#include "photile/defaults.hpp"
+#include "photile/scene.hpp"
+#include "test_scenes.hpp"
+#include "trace/light_sampler.hpp"
+
+namespace photile::test {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double sun_diameter = 0.0093, lux = 40'000;
+
+Light overhead_sun() {
+  Light sun = point_light("sun", {});
+  sun.kind = LightKind::directional;
+  sun.direction = {0, 0, -1};
+  sun.angular_diameter = static_cast<float>(sun_diameter);
+  return sun;
+}
+
+/// A black floor in z = 0 under a sky and a sun overhead, and a plate 1 m above that leaves y > 0.
+Scene floor_half_in_shadow() {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, black);
+  builder.grid({-1, -1, 1}, {2, 0, 0}, {0, 1, 0}, 1, black);
+  builder.add_distant(overhead_sun(), lux);
+  builder.add_surroundings("sky", EnvironmentMap("sky", 1, 1, {glm::vec3(100.0f)}));
+  return builder.build();
+}
+
+/// The part of the disc of the sun that is seen from the floor at this y.
+double seen_of_sun(double y) {
+  const double t = std::clamp(-y / std::tan(sun_diameter / 2), -1.0, 1.0);
+  return (std::acos(t) - t * std::sqrt(1 - t * t)) / pi;
+}
+
+}  // namespace
+
+TEST_CASE("gathering: the border of a sun's light is its closed form without noise") {
+  GatheringScene place(floor_half_in_shadow(), looked_up(50'000));
+  const std::vector<double> powers = estimate::layer_powers(place.scene);
+  std::vector<Sensor> sensors;
+  for (int i = -20; i <= 20; ++i) sensors.push_back({{0.1, 0.0005 * i, 0}, {0, 0, 1}});
+  const cache::GatheredParts light = place.gather({}).gather(
+      trace::sensor_hits(place.rays, sensors), numbers(sensors.size()), 64, 128);
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::size_t of_sun = 2 * i;
+    const double seen = seen_of_sun(sensors[i].position.y);
+    const double found = powers[0] * luminance(glm::dvec3(light.direct.mean.irradiance[of_sun]));
+    CAPTURE(sensors[i].position.y, seen);
+    // To two of the samples that the edge parts.
+    CHECK(found ==
+          Approx(lux * seen).epsilon(1e-4).margin(2.0 / defaults::hidden_sun_samples * lux));
+    if (seen == 0) CHECK(found == 0);
+    CHECK(light.direct.error(of_sun) <= 1e-6 * found);
+  }
+}
+
+TEST_CASE("gathering: rays leave a sun to its samples") {
+  const Scene scene = floor_half_in_shadow();
+  const trace::LightSampler sampler(scene);
+  REQUIRE(sampler.sampled_apart() == std::vector<std::uint32_t>{0});
+  const glm::vec3 point(0, 0.5f, 0), up(0, 0, 1);
+  trace::SelectionProbabilities but_apart;
+  sampler.weigh(point, up, but_apart);
+  for (const trace::DistantLight& light : sampler.distant()) {
+    CHECK(std::isinf(sampler.density(light, point, up, but_apart)) == (light.light() == 0));
+    CHECK(std::isfinite(sampler.density(light, point, up)));
+  }
+}
+
+TEST_CASE("gathering: lamps of many are chosen by chance, a sun among them, and count once") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, black);
+  builder.add_distant(overhead_sun(), lux);
+  for (std::size_t i = 0; i < trace::LightClusters::most_lights; ++i) {
+    const auto x = static_cast<float>(i) / trace::LightClusters::most_lights;
+    builder.grid({x, 0.9f, 1}, {0, 1e-3f, 0}, {1e-4f, 0, 0}, 1, black,
+                 builder.add(area_light("lamp " + std::to_string(i), 1e-6)));
+  }
+  GatheringScene place(builder.build(), looked_up(50'000));
+  CHECK(trace::LightSampler(place.scene).sampled_apart().empty());
+  const std::vector<double> powers = estimate::layer_powers(place.scene);
+  const cache::GatheredIrradiance light = place.at({{{0.1, 0.2, 0}, {0, 0, 1}}});
+  const cache::GatheredIrradiance::Total total = light.total(0, powers);
+  CHECK(total.luminance == Approx(lux).margin(5 * total.error + 1e-3 * lux));
+  CHECK(total.error < 0.1 * lux);
+}
+
+}  // namespace photile::test
