@@ -178,43 +178,41 @@ std::optional<ShadowRays::Found> ShadowRays::light_of_sun(std::uint32_t light, c
                                                           const LightSampler& light_sampler,
                                                           const SurfacePoint& point) {
   constexpr std::uint32_t of_rim = 0, of_disc = 1;
-  const auto look = [&](const glm::dvec2& on_disc, std::uint32_t tag) {
+  const auto sample = [&](const glm::dvec2& on_disc, std::uint32_t tag) {
     add(point, light_sampler.towards(light, point.position, on_disc), glm::vec3(1.0f), 0.0f, tag);
   };
-  const auto look_at_disc = [&](int begin, int end) {
+  const auto sample_disc = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      look(sobol_point(static_cast<std::uint32_t>(i), RandomBlock({})), of_disc);
+      sample(sobol_point(static_cast<std::uint32_t>(i), RandomBlock({})), of_disc);
     }
   };
+  const auto brightness = [](const Found& part) { return luminance(glm::dvec3(part.irradiance)); };
   clear();
   for (int i = 0; i < defaults::sun_rim_samples; ++i) {
-    look({0x1.fffffep-1, (i + 0.5) / defaults::sun_rim_samples}, of_rim);
+    sample({0x1.fffffep-1, (i + 0.5) / defaults::sun_rim_samples}, of_rim);
   }
-  look_at_disc(0, defaults::sun_samples);
+  sample_disc(0, defaults::sun_samples);
   Found sum{};
   const auto add_to_sum = [&](std::span<const Found> samples) {
-    for (const Found& sample : samples) {
-      if (sample.tag == of_rim) continue;
-      sum.irradiance += sample.irradiance;
-      sum.direction +=
-          static_cast<float>(luminance(glm::dvec3(sample.irradiance))) * sample.direction;
-      sum.layer = sample.layer;
+    for (const Found& part : samples) {
+      if (part.tag == of_rim) continue;
+      sum.irradiance += part.irradiance;
+      sum.direction += static_cast<float>(brightness(part)) * part.direction;
+      sum.layer = part.layer;
     }
   };
   const std::span<const Found> all = found(rays);
   if (all.empty()) return std::nullopt;
-  const auto [least, most] =
-      std::minmax_element(all.begin(), all.end(), [](const Found& a, const Found& b) {
-        return luminance(glm::dvec3(a.irradiance)) < luminance(glm::dvec3(b.irradiance));
-      });
+  const auto [least, most] = std::minmax_element(
+      all.begin(), all.end(),
+      [&](const Found& a, const Found& b) { return brightness(a) < brightness(b); });
   const bool whole = all.size() == defaults::sun_rim_samples + defaults::sun_samples &&
-                     luminance(glm::dvec3(least->irradiance)) >
-                         least_of_whole * luminance(glm::dvec3(most->irradiance));
+                     brightness(*least) > least_of_whole * brightness(*most);
   add_to_sum(all);
   int count = defaults::sun_samples;
   if (!whole) {
     clear();
-    look_at_disc(count, defaults::hidden_sun_samples);
+    sample_disc(count, defaults::hidden_sun_samples);
     add_to_sum(found(rays));
     count = defaults::hidden_sun_samples;
   }
