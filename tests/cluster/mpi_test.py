@@ -296,7 +296,7 @@ def stopped():
             folder = pathlib.Path(name)
             picture = folder / "old.exr"
             picture.write_text("old")
-            paths = "3M" if all_of_them else "100M"
+            paths = "1M" if all_of_them else "100M"
             job = subprocess.Popen(command(3, ["render", BOX, "-o", picture, "--photons", paths, "--set", "passes=1",
                                                "--quality", "draft", "-q"]),
                                    env=os.environ | SETTINGS | patience, text=True, stdout=subprocess.PIPE,
