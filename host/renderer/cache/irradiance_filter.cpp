@@ -133,6 +133,7 @@ KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::
   layers_.resize(estimates);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), known_points_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
+                      const trace::FlushDenormals flush_denormals;
                       for (std::size_t point = range.begin(); point < range.end(); ++point) {
                         all_[point] = irradiance.total(rows_[point], layer_powers);
                         std::size_t next = first_[point];

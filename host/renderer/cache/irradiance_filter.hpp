@@ -17,6 +17,7 @@
 #include "cache/gathered_irradiance.hpp"
 #include "estimate/light_at_points.hpp"
 #include "photile/defaults.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::cache {
 
@@ -243,6 +244,8 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
   constexpr std::size_t per_task = 256;
   std::vector<GatheredIrradiance> parts((count + per_task - 1) / per_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    // Light of 1e-40 would count for points in the dark, which know that they are, or not.
+    const trace::FlushDenormals flush_denormals;
     MeanOfPoints mean(layer_powers, like, parts[part]);
     const std::size_t last = std::min(count, (part + 1) * per_task);
     for (std::size_t i = part * per_task; i < last; ++i) {
@@ -276,14 +279,15 @@ struct IrradianceFilterParameters {
 
 /// Replaces each point's light by the mean of it and its neighbours', weighted by
 /// exp(-d^2 / (t^2 (se_a^2 + se_b^2))), d the difference of luminance, se its standard errors and t
-/// those that are tolerated, and less where these differ more than is tolerated, a few times over. Where a layer differs by more than its
-/// own noise, that is its weight alone: the sun's border would leave the noise of lights in their
-/// layers. All others have that of their sum at `layer_powers`. Where neighbours lie to one side,
-/// as where surface ends, those that are nearer weigh more, as far as light changes along it: their
-/// mean is then that of a plane through them, at the point (a regression of the first order, as
-/// Bitterli et al. 2016 have for pixels). All batches of a layer have the same weights, so that
-/// errors are known afterwards, too. Points of no error stay what they are, but for equal ones.
-/// Does not depend on threads.
+/// those that are tolerated, and less where these differ more than is tolerated, a few times over.
+/// Where a layer differs by more than its own noise, that is its weight alone: the sun's border
+/// would leave the noise of lights in their layers. All others have that of their sum at
+/// `layer_powers`. Where neighbours lie to one side, as where surface ends, those that are nearer
+/// weigh more, as far as light changes along it: their mean is then that of a plane through them,
+/// at the point (a regression of the first order, as Bitterli et al. 2016 have for pixels). All
+/// batches of a layer have the same weights, so that errors are known afterwards, too. Points of no
+/// error stay what they are, but for equal ones. Does not depend on threads, nor on whether they
+/// flush denormal numbers.
 GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
                                      std::span<const double> layer_powers,
                                      const IrradianceFilterParameters& parameters = {});
