@@ -156,8 +156,8 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
 }
 
 TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few rays find") {
-  // A lit plate above a floor, which one ray of eight meets: a node that few rays of its own brought
-  // light to states a small error, and must not be believed more than one that many did.
+  // A lit plate above a floor, which one ray of eight meets: a node that few rays of its own
+  // brought light to states a small error, and must not be believed more than one that many did.
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   builder.grid({-0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.8f))));
@@ -361,6 +361,23 @@ TEST_CASE("gathered nodes: rays that go on from those before are those of both a
     squares += std::pow(lux(before.light.indirect, before.row_of.at(number)) / found - 1, 2);
   }
   CHECK(squares / static_cast<double>(both.row_of.size()) > 1e-4);  // fewer rays tell it less well
+}
+
+TEST_CASE("gathered nodes: rays go by the room that a scene has for nodes, and by what shines") {
+  Scene room = closed_box(diffuse(glm::vec3(0.5f)));  // a cube of 6 m2
+  room.lights = {point_light("lamp", {0.5f, 0.5f, 0.5f})};
+  const auto rays_at = [&](double spacing) {
+    const cache::GatheredNodesParameters rays = cache::rays_of_nodes(room, 64, spacing);
+    return std::array<int, 4>{rays.coarse.rays, rays.coarse.light_samples, rays.fine.rays,
+                              rays.fine.light_samples};
+  };
+  CHECK(rays_at(0.008) == std::array{64, 128, 24, 48});  // 93,750 nodes
+  CHECK(rays_at(0) == std::array{64, 128, 24, 48});
+  CHECK(rays_at(std::sqrt(6.0 / 40'000)) == std::array{128, 256, 32, 64});
+  CHECK(rays_at(0.1) == std::array{256, 512, 64, 128});
+  add_environment(room, EnvironmentMap("sky", 1, 1, {glm::vec3(1.0f)}));
+  CHECK(rays_at(0.008) == std::array{256, 128, 64, 128});
+  CHECK(rays_at(0.1) == std::array{256, 512, 64, 512});
 }
 
 }  // namespace photile::test

@@ -74,14 +74,14 @@ TEST_CASE("pictures are made until one states the requested error, which its set
   };
   const Outcome outcome =
       photile({"-o", folder / "box.exr", "--set", "light_map_rays=8", "--photons", "20k",
-               "--samples", "2", "--target-error", "0.9%", "--stats", folder / "box.json"});
+               "--samples", "2", "--target-error", "0.4%", "--stats", folder / "box.json"});
   CHECK_THAT(outcome.errors, Contains("picture 1: standard error") && Contains("picture 2: "));
   const auto record = nlohmann::json::parse(text_of(folder / "box.json"));
   const auto maps = std::find_if(record["stages"].begin(), record["stages"].end(),
                                  [](const auto& s) { return s["stage"] == "light maps"; });
   REQUIRE(maps != record["stages"].end());
-  CHECK((*maps)["figures"]["standard error percent"] <= 0.9);
-  CHECK(record["asked"]["target_error"].get<double>() == Approx(0.009));
+  CHECK((*maps)["figures"]["standard error percent"] <= 0.4);
+  CHECK(record["asked"]["target_error"].get<double>() == Approx(0.004));
 
   const auto& used = record["parameters"];
   CHECK(used["light_map_rays"] > 8);

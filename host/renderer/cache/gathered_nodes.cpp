@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -47,6 +48,17 @@ PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> 
   return links;
 }
 
+/// By defaults::few_nodes.
+double times_where_few(const Scene& scene, double spacing) {
+  double area = 0;
+  for (std::uint32_t triangle = 0; triangle < scene.triangle_count(); ++triangle) {
+    area += triangle_area(scene, triangle);
+  }
+  if (!(area > 0)) return 1;
+  return std::clamp(defaults::few_nodes * spacing * spacing / area, 1.0,
+                    defaults::most_times_where_few);
+}
+
 void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
   to.indirect.append(from.indirect, point, lights);
   to.direct.append(from.direct, point, lights);
@@ -84,19 +96,20 @@ void GatheredPoints::append(std::span<const std::uint64_t> numbers, NodeRays of_
   light.distance.insert(light.distance.end(), found.distance.begin(), found.distance.end());
 }
 
-GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse) {
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double spacing) {
   // Shadow borders stand at the finer levels: there light samples matter more than rays.
   // Nine of these are averaged. In the open few light samples find the sky through a window: what
   // single ones find would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
-  const int rays =
-      std::min((open ? defaults::times_in_the_open : 1) * coarse, limits::max_gathering_rays);
+  const int of_few = static_cast<int>(std::lround(times_where_few(scene, spacing) * coarse));
+  const int rays = std::min(std::max(of_few, open ? defaults::times_in_the_open * coarse : 0),
+                            limits::max_gathering_rays);
   const int fine = std::max((rays + 3) / 4, std::min(rays, defaults::least_rays));
   const auto light_samples_of = [](int of_rays) {
     return std::min(defaults::light_samples_per_ray * of_rays, limits::max_direct_rays);
   };
-  return {{rays, light_samples_of(coarse)}, {fine, light_samples_of(open ? coarse : fine)}};
+  return {{rays, light_samples_of(of_few)}, {fine, light_samples_of(open ? of_few : fine)}};
 }
 
 NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; }

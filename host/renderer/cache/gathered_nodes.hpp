@@ -21,7 +21,9 @@ struct GatheredNodesParameters {
 
 /// So many rays at the coarsest level and a quarter at others, and defaults::light_samples_per_ray;
 /// where a sun or a sky shines more rays, and as many light samples at all levels.
-GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse);
+/// Where few nodes have room, each has more of both (defaults::few_nodes).
+///   spacing   of the coarsest nodes, metres; 0 = whatever room there is
+GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double spacing);
 
 /// Points at which rays gathered, and what they found.
 struct GatheredPoints {

@@ -74,7 +74,8 @@ void PassLight::read_light_maps(Growth growth) {
   if (gather_) {
     gathered_.emplace(
         *gather_, layer_powers_,
-        cache::rays_of_nodes(rays_.scene(), growth.parts * plan_.used().light_map_rays),
+        cache::rays_of_nodes(rays_.scene(), growth.parts * plan_.used().light_map_rays,
+                             plan_.used().light_map_spacing > 0 ? 0.0 : photons_.maps.spacing),
         std::move(growth.points));
   }
   cache_.emplace(rays_, photons_.maps, *photons_.all.of_points, nodes(),
