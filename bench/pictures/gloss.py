@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Pictures of glossy scenes beside converged paths: the table in docs/gloss.md.
+"""Pictures of glossy scenes beside converged paths, the bundled office by day among them: the table in
+docs/gloss.md.
 
     bench/pictures/gloss.py SCENE.gltf... --references FOLDER [--paths N] [--photile COMMAND]
                    [--options "--quality good"]
@@ -16,29 +17,33 @@ import pathlib
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parent)]
 from tools import packages, scene_arguments
 from tools.processes import timed
 
 packages.require("numpy", "OpenImageIO")
 
+import details
 from tools import path_references, picture_error
 
 SIZE = "256x192"
 
 
-def measured(given, scene, folder):
-    """A row of the table."""
+def measured(given, name, picture, folder):
+    """A row of the table.
+
+    picture   a details.Picture
+    """
     reference, noise = path_references.mean_and_noise(
-        path_references.pictures(given.photile, scene, SIZE, given.paths, given.references))
-    _, seconds, _ = timed([given.photile, "render", scene, "--size", SIZE, *given.options.split(),
-                           "--quiet", "-o", folder / "picture.exr", "--stats",
+        path_references.pictures(given.photile, picture.scene, SIZE, given.paths, given.references,
+                                 picture.options))
+    _, seconds, _ = timed([given.photile, "render", picture.scene, *picture.options, "--size", SIZE,
+                           *given.options.split(), "--quiet", "-o", folder / "picture.exr", "--stats",
                            folder / "stats.json"])
-    picture = picture_error.read_picture(folder / "picture.exr")
-    figures = picture_error.measure(picture, reference)
+    figures = picture_error.measure(picture_error.read_picture(folder / "picture.exr"), reference)
     stages = json.loads((folder / "stats.json").read_text())["stages"]
     maps = next(stage["figures"] for stage in stages if stage["stage"] == "light maps")
-    return (f"| {scene.stem} | {picture_error.rel_mse_text(figures)} | "
+    return (f"| {name} | {picture_error.rel_mse_text(figures)} | "
             f"{noise:.4f} | {figures['mean_ratio']:.3f} | "
             f"{maps['new nodes']:,.0f} | {seconds:.1f} |")
 
@@ -55,8 +60,9 @@ def main():
     print("| | relMSE | of it the reference's noise | mean | nodes | processor s |")
     print("|---|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as name:
-        for scene in given.scenes:
-            print(measured(given, scene, pathlib.Path(name)), flush=True)
+        rows = {scene.stem: details.Picture(scene) for scene in given.scenes} | {"office by day": details.PICTURES["day"]}
+        for row, picture in rows.items():
+            print(measured(given, row, picture, pathlib.Path(name)), flush=True)
 
 
 if __name__ == "__main__":
