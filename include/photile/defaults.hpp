@@ -111,8 +111,8 @@ inline constexpr int sun_rim_samples = 16, sun_samples = 16, hidden_sun_samples 
 /// varies more.
 inline constexpr int times_in_the_open = 4;
 /// Where the surface of a scene has room for fewer nodes of the coarsest level than this, each has
-/// as many times the rays, up to `most_times_where_few`: a node then covers much of the picture, and
-/// so does its noise.
+/// as many times the rays, up to `most_times_where_few`: a node then covers much of the picture,
+/// and so does its noise.
 inline constexpr double few_nodes = 80'000, most_times_where_few = 4;
 /// Where light samples leave an error of more than this fraction of all light, as in penumbrae, a
 /// point takes so many times as many, but at most `most_light_samples_again` times: 2% shows as
