@@ -60,7 +60,8 @@ def main():
     print("| | relMSE | of it the reference's noise | mean | nodes | processor s |")
     print("|---|--:|--:|--:|--:|--:|")
     with tempfile.TemporaryDirectory() as name:
-        rows = {scene.stem: details.Picture(scene) for scene in given.scenes} | {"office by day": details.PICTURES["day"]}
+        rows = {scene.stem: details.Picture(scene) for scene in given.scenes}
+        rows["office by day"] = details.PICTURES["day"]
         for row, picture in rows.items():
             print(measured(given, row, picture, pathlib.Path(name)), flush=True)
 

@@ -264,11 +264,11 @@ TEST_CASE("filter: the same bits whether the calling thread flushes denormal num
   };
   const cache::GatheredIrradiance as_it_is = filtered();
   cache::GatheredIrradiance flushed;
-  std::thread([&] {  // TBB goes by what a thread does when it first shares work
+  std::thread flushing([&] {  // TBB goes by what a thread does when it first shares work
     const trace::FlushDenormals flush_denormals;
     flushed = filtered();
-  })
-      .join();
+  });
+  flushing.join();
   CHECK(as_it_is.mean.irradiance == flushed.mean.irradiance);
   CHECK(as_it_is.batch == flushed.batch);
 }

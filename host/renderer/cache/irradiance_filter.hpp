@@ -244,7 +244,8 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
   constexpr std::size_t per_task = 256;
   std::vector<GatheredIrradiance> parts((count + per_task - 1) / per_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    // Light of 1e-40 would count for points in the dark, which know that they are, or not.
+    // A point with 1e-40 of light is compared otherwise than one with none, and a library that the
+    // program loads may have changed what threads make of such numbers.
     const trace::FlushDenormals flush_denormals;
     MeanOfPoints mean(layer_powers, like, parts[part]);
     const std::size_t last = std::min(count, (part + 1) * per_task);
