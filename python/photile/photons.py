@@ -235,17 +235,16 @@ class PhotonMaps:
         device: str = "",
         progress: _photile.Callback = None,
     ) -> None:
-        self._origin: Optional[NDArray[np.float64]] = None
         if isinstance(photons, Photons):
             positions = photons.position
             flux = photons.flux if flux is None else flux
             normals = photons.normal if normals is None else normals
             if lights is None and len(photons.layer_names) > 1:
                 lights = photons.light
-            if any(photons.scene.origin):
-                self._origin = np.array(photons.scene.origin)
+            self._origin = np.array(photons.scene.origin)
         else:
-            positions = _rows(photons, "positions")
+            self._origin = _origin(photons)
+            positions = _rows_from(self._origin, photons, "positions")
         of_photons = None if lights is None else _lights(lights)
         self._has_normals = normals is not None
         self._core = _photile.PhotonMaps(
@@ -262,6 +261,8 @@ class PhotonMaps:
             },
             progress,
         )
+        if not isinstance(photons, Photons):
+            _check_rounding(photons, self._origin, positions, self.radius)
 
     def __len__(self) -> int:
         return len(self._core)
@@ -288,7 +289,8 @@ class PhotonMaps:
         Parameters
         ----------
         points : (m, 3) array
-            Metres, in the file's world where the photons are those of a scene.
+            Metres, in the file's world where the photons are those of a scene, else where the
+            photons are.
         normals : (m, 3) array, optional
             Unit; needed where the photons have normals.
         k : int
@@ -357,9 +359,7 @@ class PhotonMaps:
     def _queries(
         self, points: ArrayLike, normals: Optional[ArrayLike]
     ) -> tuple[NDArray[np.float32], Optional[NDArray[np.float32]]]:
-        if self._origin is not None:
-            points = floats(points, "points", np.float64) - self._origin
-        where = _rows(points, "points")
+        where = _rows_from(self._origin, points, "points")
         if normals is None and self._has_normals:
             raise InputError("normals: the photons have some, so points need theirs")
         return where, None if normals is None else _rows(normals, "normals")
@@ -385,6 +385,52 @@ def _rows(values: ArrayLike, name: str) -> NDArray[np.float32]:
     if array.ndim != 2 or array.shape[1] != 3:
         raise InputError(f"{name}: the array has shape {array.shape}, and has to have (n, 3)")
     return array
+
+
+def _rows_from(origin: NDArray[np.float64], values: ArrayLike, name: str) -> NDArray[np.float32]:
+    """Positions that count from ``origin``: the array of `_rows` where that is zero."""
+    if not origin.any():
+        return _rows(values, name)
+    return _rows(floats(values, name, np.float64) - origin, name)
+
+
+_FARTHER = 16  # times what they are from the middle of their box, as for the origins of scenes
+
+
+def _origin(values: ArrayLike) -> NDArray[np.float64]:
+    """What positions count from before they become floats, whose steps grow with the distance.
+
+    Zero, unless they lie much nearer to the middle of their box.
+    """
+    positions = np.asarray(values)
+    if positions.dtype.kind not in "fiu" or positions.size == 0 or positions.shape[-1] != 3:
+        return np.zeros(3)
+    rows = positions.reshape(-1, 3)
+    low, high = rows.min(axis=0).astype(np.float64), rows.max(axis=0).astype(np.float64)
+    with np.errstate(over="ignore", invalid="ignore"):
+        middle = (low + (high - low) / 2).astype(np.float32).astype(np.float64)
+    nearest = np.abs([low - middle, high - middle]).max()
+    far = np.isfinite(nearest) and np.abs([low, high]).max() > _FARTHER * nearest
+    return middle if far else np.zeros(3)
+
+
+_LARGEST_ROUNDING = 1 / 64  # of the radius: a tenth of the distance between 50 photons within it
+
+
+def _check_rounding(
+    values: ArrayLike, origin: NDArray[np.float64], rows: NDArray[np.float32], radius: float
+) -> None:
+    """Refuses positions that are so far apart that floats would tell other neighbours."""
+    if np.asarray(values).dtype == np.float32 and not origin.any() or len(rows) == 0:
+        return
+    moved = np.abs(floats(values, "positions", np.float64).reshape(-1, 3) - origin - rows)
+    most = np.unravel_index(np.argmax(moved), moved.shape)
+    if moved[most] > _LARGEST_ROUNDING * radius:
+        raise InputError(
+            f"positions: photon {most[0]} is so far from others that its float lies"
+            f" {moved[most]:.2g} m off, which is too much for a radius of {radius:.4g} m;"
+            " make photon maps of each part of the photons alone"
+        )
 
 
 def _lights(values: ArrayLike) -> NDArray[np.uint16]:

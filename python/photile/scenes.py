@@ -264,7 +264,7 @@ class Scene:
         name: str = "scene in memory",
     ) -> None:
         if vertices is None:
-            corners = floats(triangles, "triangles")
+            corners = floats(triangles, "triangles", np.float64)
             if corners.ndim != 3 or corners.shape[1:] != (3, 3):
                 raise InputError(
                     f"triangles: the array has shape {corners.shape}, and has to have (n, 3, 3)"
@@ -273,7 +273,7 @@ class Scene:
             points = np.ascontiguousarray(corners.reshape(-1, 3))
             faces = np.arange(len(points), dtype=np.uint32).reshape(-1, 3)
         else:
-            points = floats(vertices, "vertices")
+            points = floats(vertices, "vertices", np.float64)
             if points.ndim != 2 or points.shape[1] != 3:
                 raise InputError(
                     f"vertices: the array has shape {points.shape}, and has to have (v, 3)"
@@ -322,7 +322,7 @@ class Scene:
     def origin(self) -> Vector:
         """Where (0, 0, 0) of `vertices` and photons lies in the file's world, metres.
 
-        It is (0, 0, 0) but for scenes more than a kilometre from there.
+        It is (0, 0, 0) but for scenes that are far from there, measured by their size.
         """
         return self._core.origin
 

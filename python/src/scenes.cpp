@@ -13,6 +13,7 @@
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
+#include "reading/triangles.hpp"
 #include "work.hpp"
 
 namespace photile::python {
@@ -96,8 +97,8 @@ EnvironmentMap surroundings_of(const std::string& name, const Array<float>& texe
           {rows, rows + pixels}};
 }
 
-/// By the fields of photile.Light. Returns its number.
-std::uint32_t add_light(SceneBuilder& builder, const py::dict& fields) {
+/// By the fields of photile.Light; positions count from `origin`. Returns its number.
+std::uint32_t add_light(SceneBuilder& builder, const py::dict& fields, const glm::dvec3& origin) {
   Light light;
   light.name = field<std::string>(fields, "name", "light: ");
   const std::string of = "light '" + light.name + "': ";
@@ -105,7 +106,7 @@ std::uint32_t add_light(SceneBuilder& builder, const py::dict& fields) {
   light.kind = word<LightKind>(light_kinds, field<std::string>(fields, "kind", of), of + "kind");
   light.power = field<double>(fields, "power", of);
   light.color = vec(field<Vector3>(fields, "color", of));
-  light.position = vec(field<Vector3>(fields, "position", of));
+  light.position = vec(field<Vector3>(fields, "position", of)) - origin;
   light.direction = vec(field<Vector3>(fields, "direction", of));
   light.two_sided = field<bool>(fields, "two_sided", of);
   light.inner_cone_angle = glm::radians(field<float>(fields, "inner_angle", of));
@@ -161,8 +162,18 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
   });
 }
 
+/// Where the scene's coordinates count from, as those of files do.
+glm::dvec3 origin_of(std::span<const glm::dvec3> vertices, std::span<const glm::uvec3> triangles) {
+  reading::SceneOrigin origin;
+  for (const glm::uvec3& corner : triangles) {
+    origin.add({vertices[corner[0]], vertices[corner[1]], vertices[corner[2]]});
+  }
+  return origin.best();
+}
+
 struct Arrays {
-  Array<float> vertices, normals, uv;
+  Array<double> vertices;
+  Array<float> normals, uv;
   Array<std::uint32_t> triangles, materials, lights;
 };
 
@@ -173,20 +184,30 @@ SharedScene build(const std::string& name, const std::string& unit, const Arrays
   for (const py::handle& fields : materials) {
     builder.add(material_of(builder, fields.cast<py::dict>()));
   }
-  for (const py::handle& fields : lights) add_light(builder, fields.cast<py::dict>());
-  for (const py::handle& parts : cameras) {
-    Scene at_origin;
-    builder.add(camera_of(at_origin, parts.cast<py::tuple>()));
+  const auto vertices = rows_of<glm::dvec3>(arrays.vertices, "vertices");
+  const auto triangles = rows_of<glm::uvec3>(arrays.triangles, "triangles");
+  Scene around;
+  around.origin = origin_of(vertices, triangles);
+  for (const py::handle& fields : lights) {
+    add_light(builder, fields.cast<py::dict>(), around.origin);
   }
-  const MeshArrays mesh{.vertices = rows_of<glm::vec3>(arrays.vertices, "vertices"),
-                        .triangles = rows_of<glm::uvec3>(arrays.triangles, "triangles"),
+  for (const py::handle& parts : cameras) {
+    builder.add(camera_of(around, parts.cast<py::tuple>()));
+  }
+  std::vector<glm::vec3> near;
+  near.reserve(vertices.size());
+  for (const glm::dvec3& vertex : vertices) near.emplace_back(vertex - around.origin);
+  const MeshArrays mesh{.vertices = near,
+                        .triangles = triangles,
                         .normals = rows_of<glm::vec3>(arrays.normals, "normals"),
                         .uv = rows_of<glm::vec2>(arrays.uv, "uv"),
                         .materials = values_of(arrays.materials, "triangle_materials"),
                         .lights = values_of(arrays.lights, "triangles of lights")};
   const Unlocked unlocked;
   builder.add(mesh);
-  return std::make_shared<Scene>(std::move(builder).build());
+  auto scene = std::make_shared<Scene>(std::move(builder).build());
+  scene->origin = around.origin;
+  return scene;
 }
 
 py::list lights_of_scene(const Scene& scene) {
@@ -318,7 +339,7 @@ void define_scenes(py::module_& module) {
       });
   module.def("load", &load);
   module.def(
-      "build", [](const py::object& name, const py::object& unit, Array<float> vertices,
+      "build", [](const py::object& name, const py::object& unit, Array<double> vertices,
                   Array<std::uint32_t> triangles, Array<float> normals, Array<float> uv,
                   Array<std::uint32_t> triangle_materials, Array<std::uint32_t> triangle_lights,
                   const py::list& materials, const py::list& lights, const py::list& cameras) {

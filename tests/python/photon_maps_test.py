@@ -60,6 +60,54 @@ def test_nearest_is_that_of_all_pairs(photons_per_cell):
     assert np.all(found.photons[~near] == photile.NONE)
 
 
+# A national grid, in metres: floats lie half a metre apart there.
+FAR = np.array([560_000.0, 5_600_000.0, 0.0])
+
+
+@pytest.mark.parametrize("layout", [np.asarray, lambda places: places.tolist()], ids=["array", "list"])
+def test_photons_far_from_the_origin_have_the_neighbours_that_they_have_near_it(layout):
+    random = np.random.default_rng(1)
+    positions, points = random.random((5_000, 3)), random.random((20, 3))
+    near = photile.PhotonMaps(positions, radius=1.0).nearest(points, k=10)
+    maps = photile.PhotonMaps(layout(positions + FAR), radius=1.0)
+    found = maps.nearest(layout(points + FAR), k=10)
+    squares = ((points[:, None] - positions[None]) ** 2).sum(axis=2)
+    assert np.array_equal(found.photons, np.argsort(squares, axis=1)[:, :10])
+    assert np.array_equal(found.photons, near.photons)
+    assert np.allclose(found.squared_distance, np.sort(squares, axis=1)[:, :10], rtol=1e-4)
+
+
+def test_the_density_of_photons_far_from_the_origin_is_theirs():
+    random = np.random.default_rng(2)
+    positions = random.uniform(-1, 1, (50_000, 3)) * [1, 1, 0]
+    flux = np.full((50_000, 3), 400 / 50_000)
+    points = random.uniform(-0.8, 0.8, (50, 3)) * [1, 1, 0]
+    maps = photile.PhotonMaps(positions + FAR, flux, neighbours=K)
+    lux = maps.irradiance(points + FAR, k=K)[:, 0, 0]
+    squares = np.sort(((points[:, None] - positions[None]) ** 2).sum(axis=2), axis=1)
+    expected = (K - 1) * flux[0, 0] / (np.pi * squares[:, K - 1])
+    assert np.allclose(lux, expected, rtol=1e-3)
+
+
+def test_photons_too_far_apart_for_floats_are_refused():
+    here, there = np.random.default_rng(3).random((2, 500, 3))
+    positions = np.concatenate([here, there + FAR])
+    with pytest.raises(photile.InputError, match="positions: photon"):
+        photile.PhotonMaps(positions, radius=0.5)
+    photile.PhotonMaps(positions, radius=100.0)
+    photile.PhotonMaps(np.float32(positions), radius=0.5)  # floats are what they are
+
+
+def test_no_photons_are_no_neighbours():
+    maps = photile.PhotonMaps(np.empty((0, 3)), radius=1.0)
+    found = maps.nearest([[0, 0, 0]], k=3)
+    assert np.all(found.photons == photile.NONE) and np.all(np.isinf(found.squared_distance))
+    assert not maps.irradiance([[0, 0, 0]]).any()
+    assert len(maps) == 0
+    with pytest.raises(photile.Error, match="radius"):
+        photile.PhotonMaps(np.empty((0, 3)))
+
+
 def test_irradiance_is_flux_over_the_disc_through_the_kth():
     positions, normals, flux, lights = cloud()
     points, facing = queries()

@@ -67,6 +67,33 @@ def test_what_was_given_is_what_there_is():
     assert np.allclose(np.subtract(camera.target, camera.position), (0, 0, -1))
 
 
+def test_a_scene_of_arrays_far_from_the_origin_is_the_same_scene_there():
+    far = np.array([560_000.25, 5_600_000.125, 3.0])  # floats lie half a metre apart there
+    eye, aim = np.array([1.0, 1.0, 1.2]), np.array([4.0, 3.0, 1.0])
+
+    def scene(offset):
+        return photile.Scene(
+            box(5, 4, 2.5) + offset,
+            lights=[photile.Light("lamp", 1000, position=tuple(np.array([2.0, 1.5, 2.0]) + offset))],
+            cameras=[photile.Camera(tuple(eye + offset), tuple(aim + offset), (0, 0, 1))],
+        )
+
+    near, there = scene(0 * far), scene(far)
+    assert np.any(there.origin)
+    corners = there.vertices[there.triangles].astype(float) + there.origin
+    assert np.allclose(corners - far, near.vertices[near.triangles], atol=1e-6)
+    assert np.allclose(there.lights[0].position, np.array([2.0, 1.5, 2.0]) + far, atol=1e-6, rtol=0)
+    assert np.allclose(there.cameras[0].position, eye + far, atol=1e-6, rtol=0)
+    photons = photile.trace(there, 10_000)
+    assert np.all(photons.position + there.origin > far - 1e-3)
+    assert np.all(photons.position + there.origin < far + [5.001, 4.001, 2.501])
+    # Lux below the lamp: I / d^2, and what the walls reflect alike in both.
+    points = np.array([[2.0, 1.5, 0.5], [1.0, 1.0, 0.5]])
+    lux = [photile.measure(one, points + one_offset, (0, 0, 1), integrator="path", rays=64).lux
+           for one, one_offset in ((near, 0 * far), (there, far))]
+    assert np.allclose(*lux, rtol=0.05)
+
+
 def test_a_texture_is_what_photons_see():
     # Half of the floor is black: photons of the lamp above it are absorbed there.
     texels = np.zeros((1, 2, 3), np.uint8)
