@@ -22,9 +22,10 @@ function(photile_add_module name)
   endif()
 endfunction()
 
-# What is built here finds the modules in the build folder; what is installed, beside the libraries.
+# What is built here finds the modules in the build folder, and Open Image Denoise where cmake/fetch.sh has
+# put it; what is installed, beside the libraries.
 set(PHOTILE_MODULE_FOLDER ${CMAKE_INSTALL_LIBDIR}/photile)
-set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR})
+set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/build/denoiser/lib)
 
 # photile_find_modules(<target> <folder>): where the target that is installed in this folder, below the
 # prefix, finds them.

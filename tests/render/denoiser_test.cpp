@@ -2,6 +2,8 @@
 // are tested with a denoiser of means, which is known in closed form.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <random>
 #include <string>
 
 #include "photile/defaults.hpp"
@@ -9,6 +11,8 @@
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 #include "pictures.hpp"
+#include "skipped.hpp"
+#include "source_folder.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -39,6 +43,34 @@ TEST_CASE("a library that is not there, or is another, is named") {
   CHECK_THROWS_WITH(Denoiser("/nowhere/libOpenImageDenoise.so.2"),
                     Contains("--denoise") && Contains("/nowhere/libOpenImageDenoise.so.2"));
   CHECK_THROWS_WITH(Denoiser("libm.so.6"), Contains("libm.so.6 has no oidnNewDevice"));
+}
+
+TEST_CASE("a library that is not there is brought by one command") {
+  CHECK_THROWS_WITH(Denoiser("libOpenImageDenoise.so.none"), Contains("cmake/fetch.sh denoiser"));
+}
+
+TEST_CASE("Open Image Denoise takes the noise of even light, and keeps its mean") {
+  if (!std::filesystem::exists(source_folder() / "build/denoiser/complete")) {
+    skip("no Open Image Denoise; cmake/fetch.sh denoiser brings it");
+    return;
+  }
+  constexpr int width = 64;
+  constexpr double mean = 5;
+  LightLayers layers(width, width, std::vector<std::string>{"lamp"});
+  std::mt19937_64 random(1);
+  std::exponential_distribution<float> radiance(1 / static_cast<float>(mean));
+  for (glm::vec3& pixel : layers.layers[0].radiance) pixel = glm::vec3(radiance(random));
+  const DenoisingGuides guides{std::vector<glm::vec3>(width * width, glm::vec3(0.5f)),
+                               std::vector<glm::vec3>(width * width, glm::vec3(0, 0, 1))};
+  const auto denoised = Denoiser(defaults::denoising_library).denoised(layers, guides, nullptr);
+  double sum = 0, squares = 0;
+  for (const glm::vec3& pixel : denoised.layers[0].radiance) {
+    sum += pixel.y / double{width * width};
+    squares += std::pow(pixel.y - mean, 2) / double{width * width};
+  }
+  // The mean of 4,096 values scatters by 1.6%, and each of them by 100%.
+  CHECK(sum == Approx(mean).epsilon(0.08));
+  CHECK(std::sqrt(squares) < 0.2 * mean);
 }
 
 TEST_CASE("radiance is denoised in proportion, illuminance stays") {

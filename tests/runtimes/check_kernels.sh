@@ -10,7 +10,7 @@
 # it loses track of comparisons of vectors, so it runs the kernels' scalar variant, that of GPUs.
 set -euo pipefail
 check=$1 fingerprint=$2 log=$3 layer=$4
-[ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || exit 77
+[ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || { echo "skipped: no Oclgrind; apt-get install oclgrind"; exit 77; }
 cache=$(mktemp -d)
 trap 'rm -rf "$cache"' EXIT
 export XDG_CACHE_HOME=$cache OCL_ICD_VENDORS=$PHOTILE_OCLGRIND_ICD

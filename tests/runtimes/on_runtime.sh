@@ -4,13 +4,16 @@
 #   on_runtime.sh CACHE RUNTIME[,VARIABLE=VALUE]... [COMMAND [ARGUMENT]...]
 #
 # RUNTIME is pocl, oclgrind, or other: each folder of .icd files in PHOTILE_TEST_RUNTIMES (separated
-# by colons), by default the one that cmake/setup-intel-runtime.sh makes. pocl+other is PoCL together
+# by colons), by default the one that cmake/fetch.sh intel-runtime makes. pocl+other is PoCL together
 # with each of those, as two platforms. The variables are set for the command, which has to load the
 # layer where OPENCL_LAYERS is one of them. CACHE is the folder below which compiled kernels are kept
 # between runs. Without a command nothing is run. Exit code 77 says that the runtime is not installed:
 # ctest counts the test as skipped.
 set -euo pipefail
-readonly skipped=77
+skip() {
+  echo "skipped: $*"
+  exit 77
+}
 cache=$1
 IFS=, read -ra setting <<<"$2"
 shift 2
@@ -51,11 +54,11 @@ run() {
 
 case $runtime in
   pocl)
-    [ -e /etc/OpenCL/vendors/pocl.icd ] || exit $skipped
+    [ -e /etc/OpenCL/vendors/pocl.icd ] || skip "no PoCL; apt-get install pocl-opencl-icd"
     run /etc/OpenCL/vendors/pocl.icd '' "$@"
     ;;
   oclgrind)
-    [ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || exit $skipped
+    [ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || skip "no Oclgrind; apt-get install oclgrind"
     run "$PHOTILE_OCLGRIND_ICD" '' "$@"
     ;;
   other)
@@ -66,10 +69,10 @@ case $runtime in
       found=1
       run "$folder" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
     done
-    [ $found = 1 ] || exit $skipped
+    [ $found = 1 ] || skip "no OpenCL runtime but Debian's; cmake/fetch.sh intel-runtime brings one"
     ;;
   pocl+other)
-    [ -e /etc/OpenCL/vendors/pocl.icd ] || exit $skipped
+    [ -e /etc/OpenCL/vendors/pocl.icd ] || skip "no PoCL; apt-get install pocl-opencl-icd"
     found=0
     IFS=: read -ra folders <<<"${PHOTILE_TEST_RUNTIMES:-$PHOTILE_INTEL_RUNTIME}"
     for folder in "${folders[@]}"; do
@@ -80,7 +83,7 @@ case $runtime in
       cp /etc/OpenCL/vendors/pocl.icd "$folder"/*.icd "$both"
       run "$both" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
     done
-    [ $found = 1 ] || exit $skipped
+    [ $found = 1 ] || skip "no OpenCL runtime but Debian's; cmake/fetch.sh intel-runtime brings one"
     ;;
   *)
     echo "on_runtime.sh: error: unknown runtime '$runtime'" >&2

@@ -77,8 +77,8 @@ struct Denoiser::Library {
   Library(const std::filesystem::path& file, int threads) : module(file) {
     if (!module.error().empty()) {
       throw UsageError(fmt::format(
-          "--denoise: {}; give the library's path, as --denoise FOLDER/libOpenImageDenoise.so.2 "
-          "(PyPI's package pyoidn has one)",
+          "--denoise: {}; the command 'cmake/fetch.sh denoiser' in photile's folder brings the "
+          "library, or give its path, as --denoise FOLDER/libOpenImageDenoise.so.2",
           module.error()));
     }
     find(new_device, "oidnNewDevice", file);
