@@ -115,8 +115,8 @@ MUTANTS = (
            "random(setup.parameters->seed, path, setup.light)",
            "random(setup.parameters->seed, path, 0)",
            (("trace", "Another seed*"),)),
-    Mutant("wrong unit: 683 lm/W for those asked for", "host/renderer/image/layered_picture.cpp",
-           "? 1.0 : lumen_per_watt", "? 1.0 : 683.0", (("image", "~[slow]"),)),
+    Mutant("wrong unit: 683 lm/W for those asked for", "host/renderer/image/light_layers.cpp",
+           "power * lumen_per_watt", "power * 683.0", (("image", "~[slow]"),)),
     # Scenes and pictures
     Mutant("a picture's width for its height", "host/renderer/scene/camera.cpp",
            "half_height * width / height * camera.right", "half_height * height / width * camera.right",
@@ -163,7 +163,7 @@ MUTANTS = (
            (("estimate", "extremes: needles*"),)),
     # Lights
     Mutant("ballast-lamp factor in files of any year", "host/formats/photometry/ies_reader.cpp",
-           "has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0", "next > 0.0",
+           "if (edition < 1995 && next > 0.0) {", "if (next > 0.0) {",
            (("loading", "[ies]"),)),
     Mutant("azimuth of measured lamps mirrored for photons", "host/renderer/scene/intensity_distribution.cpp",
            "+ std::sin(azimuth) * axes_.quarter", "- std::sin(azimuth) * axes_.quarter",

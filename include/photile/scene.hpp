@@ -2,6 +2,7 @@
 // metres and linear RGB with Rec.709 primaries.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -65,18 +66,22 @@ struct PhotometricAxes {
   glm::dvec3 quarter{0.0, 1.0, 0.0};  ///< unit; polar angle 90 degrees, azimuth 90 degrees
 };
 
-/// The part of a luminaire that shines, as its photometric file gives it: a box, or an upright
-/// cylinder on a circle or an ellipse, around the luminaire's axis. All zero where the file says
-/// nothing.
+/// The part of a luminaire that shines, as its photometric file gives it, in the luminaire's own
+/// space around its origin. All zero where the file says nothing.
 struct LuminousOpening {
-  double along_zero = 0;     ///< metres along PhotometricAxes::zero; of a round one a diameter
-  double along_quarter = 0;  ///< metres along PhotometricAxes::quarter
-  double height = 0;         ///< metres along the pole, of sides that shine too
-  bool round = false;
+  /// Which of the three extents are diameters. A cylinder or an ellipsoid of which one extent is 0
+  /// is a disc; they are elliptic where their diameters differ.
+  enum class Shape { box, upright_cylinder, cylinder_along_x, cylinder_along_y, ellipsoid };
 
+  double x = 0, y = 0;              ///< metres along the axes; of a file of type C, C0 and C90
+  std::array<double, 4> heights{};  ///< metres along z, as seen from +x, +y, -x and -y
+  Shape shape = Shape::box;
+
+  double height() const { return *std::max_element(heights.begin(), heights.end()); }
+  bool stated() const { return x > 0 || y > 0 || height() > 0; }
   /// m2 of its projection onto a plane that faces `direction`.
   ///   direction   unit, in the luminaire's space, away from it
-  double projected_area(const PhotometricAxes& axes, const glm::dvec3& direction) const;
+  double projected_area(const glm::dvec3& direction) const;
 };
 
 /// What a photometric file says of its luminaire beside the intensities; "" and 0 = nothing.
@@ -84,6 +89,7 @@ struct LuminaireData {
   std::string maker, article, luminaire, source;  ///< UTF-8; `source`: the lamps in it
   double watts = 0;                               ///< that the luminaire takes
   double kelvin = 0;                              ///< correlated colour temperature
+  double highest_kelvin = 0;                      ///< where it is tunable from `kelvin` on
   double rendering = 0;                           ///< Ra, at least
 };
 
@@ -112,6 +118,8 @@ class IntensityDistribution {
   void set_opening(const LuminousOpening& opening) { opening_ = opening; }
   const LuminaireData& data() const { return data_; }
   void set_data(LuminaireData data) { data_ = std::move(data); }
+  /// That the luminaire takes for so many lumens, in proportion; 0 where its file does not say.
+  double electrical_watts(double lumens) const { return data_.watts * lumens / flux_; }
 
   // Cells of the grid: column of azimuths x row of polar angles.
   std::size_t columns() const { return azimuth_.size() - 1; }
@@ -156,6 +164,7 @@ enum class PowerUnit {
   lumen,  ///< photometric (glTF): powers in lm, picture in cd/m2
   watt    ///< radiometric (OBJ): powers in W, picture in W/(m2 sr)
 };
+inline const char* symbol_of(PowerUnit unit) { return unit == PowerUnit::lumen ? "lm" : "W"; }
 
 /// A picture used as a texture: four bytes a texel, which are sRGB where they are a colour.
 class Texture {

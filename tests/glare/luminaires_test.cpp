@@ -108,7 +108,7 @@ TEST_CASE("a photometric lamp is as bright as its intensity over its opening") {
   builder.add(lamp);
   Scene scene = builder.build();
   IntensityDistribution even("even", {}, {0, 90}, {0, 360}, {500, 500, 500, 500});
-  even.set_opening({.along_zero = 1.2, .along_quarter = 0.3, .height = 0});
+  even.set_opening({.x = 1.2, .y = 0.3});
   scene.lights[0].distribution = 0;
   scene.lights[0].power = even.flux();
   scene.distributions.push_back(even);
@@ -119,6 +119,90 @@ TEST_CASE("a photometric lamp is as bright as its intensity over its opening") {
   CHECK(seen[0].luminance == Approx(500 / area).epsilon(1e-5));
   CHECK(seen[0].solid_angle == Approx(area / 25).epsilon(1e-5));
   CHECK(seen[0].illuminance == Approx(500.0 / 25 * 0.8).epsilon(1e-5));
+}
+
+namespace {
+
+/// An even lamp of 500 cd at (0, 4, 3) over a dark floor; a surface of `side` metres squared that
+/// faces down, or a point.
+Scene even_lamp(const LuminousOpening& opening, const glm::dvec3& aim, const glm::dvec3& x_axis,
+                double side = 0) {
+  SceneBuilder builder("lamp");
+  const auto black = builder.add(diffuse(glm::vec3(0)));
+  builder.grid({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, 1, black);
+  if (side > 0) {
+    const auto light = builder.add(area_light("lamp", 1));
+    const auto h = static_cast<float>(side / 2);
+    builder.grid({-h, 4 - h, 3}, {0, 2 * h, 0}, {2 * h, 0, 0}, 1, black, light);
+  } else {
+    builder.add(point_light("lamp", {0, 4, 3}));
+  }
+  Scene scene = builder.build();
+  IntensityDistribution even("even", {}, {0, 180}, {0, 360}, {500, 500, 500, 500});
+  even.set_opening(opening);
+  scene.lights[0].direction = glm::vec3(aim);
+  scene.lights[0].x_axis = glm::vec3(x_axis);
+  scene.lights[0].two_sided = side > 0;
+  scene.lights[0].distribution = 0;
+  scene.lights[0].power = even.flux();
+  scene.distributions.push_back(even);
+  return scene;
+}
+
+VisibleLuminaire seen_of(const Scene& scene, const Observer& observer) {
+  const RayScene rays(scene);
+  const auto seen = Luminaires(rays, 256).seen_by(observer, mix_of(scene));
+  REQUIRE(seen.size() == 1);
+  return seen[0];
+}
+
+const Observer level{"level", {0, 0, 3}, {0, 1, 0}, {0, 0, 1}};
+
+}  // namespace
+
+TEST_CASE("a tube that is turned and tilted shows its length and ends as they lie in the room") {
+  constexpr double length = 1.2, d = 0.1;
+  const LuminousOpening tube{.x = length,
+                             .y = d,
+                             .heights = {d, d, d, d},
+                             .shape = LuminousOpening::Shape::cylinder_along_x};
+  for (const glm::dvec3& along : {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0.8, 0.6),
+                                  glm::normalize(glm::dvec3(1, 2, -2))}) {
+    const glm::dvec3 aim = glm::normalize(glm::cross(along, glm::dvec3(0.3, 0.1, 1)));
+    const Scene scene = even_lamp(tube, aim, along);
+    for (const Observer& observer : {eye, level}) {
+      const glm::dvec3 way = glm::dvec3(0, 4, 3) - observer.position;
+      const double end = std::abs(glm::dot(along, way)) / glm::length(way);
+      const double area =
+          length * d * std::sqrt(1 - end * end) + 0.25 * glm::pi<double>() * d * d * end;
+      CAPTURE(along.x, along.y, along.z, observer.name);
+      CHECK(seen_of(scene, observer).projected_area == Approx(area).epsilon(1e-5));
+      CHECK(seen_of(scene, observer).luminance == Approx(500 / area).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("a placed lamp has the opening of its file, also edge-on, unless its size is another") {
+  constexpr double d = 0.3;
+  const LuminousOpening globe{
+      .x = d, .y = d, .heights = {d, d, d, d}, .shape = LuminousOpening::Shape::ellipsoid};
+  const double disc = 0.25 * glm::pi<double>() * d * d;
+  const Scene as_in_file = even_lamp(globe, {0, 0, -1}, {1, 0, 0}, std::sqrt(disc));
+  for (const Observer& observer : {eye, level}) {
+    CAPTURE(observer.name);
+    CHECK(seen_of(as_in_file, observer).projected_area == Approx(disc).epsilon(1e-3));
+    CHECK(seen_of(as_in_file, observer).luminance == Approx(500 / disc).epsilon(1e-3));
+  }
+  const Scene larger = even_lamp(globe, {0, 0, -1}, {1, 0, 0}, 0.5);
+  CHECK(seen_of(larger, eye).projected_area == Approx(0.25 * 3 / 5).epsilon(0.01));
+}
+
+TEST_CASE("openings of photometric files count for the coverage of the ceiling") {
+  const LuminousOpening panel{.x = 2, .y = 1};
+  const Scene down = even_lamp(panel, {0, 0, -1}, {1, 0, 0});
+  CHECK(Luminaires(RayScene(down), 1).large_area({0, 0, 1}) == Approx(2));
+  const Scene upright = even_lamp(panel, {0, 1, 0}, {1, 0, 0});
+  CHECK(Luminaires(RayScene(upright), 1).large_area({0, 0, 1}) == Approx(0).margin(1e-6));
 }
 
 TEST_CASE("a small lamp before an even background has UGR and DGP in closed form") {

@@ -25,7 +25,7 @@ IntensityDistribution lambertian(double lumens, double diameter) {
   }
   IntensityDistribution distribution("disc", {}, polar, {0, 360}, candela);
   distribution.set_opening(
-      {.along_zero = diameter, .along_quarter = diameter, .height = 0, .round = true});
+      {.x = diameter, .y = diameter, .shape = LuminousOpening::Shape::upright_cylinder});
   return distribution;
 }
 
@@ -107,8 +107,7 @@ TEST_CASE("a long lamp that shines to its sides alone glares crosswise, not endw
   candela[9] = candela[10] = candela[11] = 20.f;  // 270
   const auto of_length = [&](bool along_zero) {
     IntensityDistribution lamp("lamp", {}, polar, azimuth, candela);
-    lamp.set_opening(
-        {.along_zero = along_zero ? 1.2 : 0.1, .along_quarter = along_zero ? 0.1 : 1.2});
+    lamp.set_opening({.x = along_zero ? 1.2 : 0.1, .y = along_zero ? 0.1 : 1.2});
     return ugr_table(lamp);
   };
   // C0 is across the length, as in EULUMDAT: seen crosswise it is bright.
@@ -122,7 +121,7 @@ TEST_CASE("a long lamp that shines to its sides alone glares crosswise, not endw
 TEST_CASE("luminaires seen beyond 85 degrees from below do not count") {
   const std::vector<float> candela{0, 0, 1000, 1000, 0, 0, 1000, 1000};
   IntensityDistribution lamp("lamp", {}, {0, 85, 85.05, 90}, {0, 360}, candela);
-  lamp.set_opening({.along_zero = 0.3, .along_quarter = 0.3, .height = 0, .round = true});
+  lamp.set_opening({.x = 0.3, .y = 0.3, .shape = LuminousOpening::Shape::upright_cylinder});
   const UgrTable table = ugr_table(lamp);
   for (const auto* rows : {&table.crosswise, &table.endwise}) {
     for (const UgrTable::Row& row : *rows) CHECK(std::isnan(row[0]));

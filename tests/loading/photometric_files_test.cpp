@@ -2,6 +2,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "files/scene_files.hpp"
 #include "message_of.hpp"
@@ -141,21 +144,6 @@ TEST_CASE("the multiplier and the ballast factor multiply, the lumens and the si
   CHECK(read_ies(file.str()).intensity({0, 0, -1}) == Approx(200));
 }
 
-TEST_CASE("the ballast-lamp factor counts in files before 1995; later it means other things",
-          "[ies]") {
-  IesText file;
-  file.ballast = "1 1.10000 60";  // in 2019: made by simulation
-  const auto& [first_line, factor] = GENERATE(table<std::string, double>({
-      {"", 1.1},
-      {"IESNA91\n", 1.1},
-      {"IESNA:LM-63-1995\n", 1},
-      {"IESNA:LM-63-2002\n", 1},
-      {"IES:LM-63-2019\n", 1},
-  }));
-  file.first_line = first_line;
-  CHECK(read_ies(file.str()).intensity({0, 0, -1}) == Approx(100 * factor));
-}
-
 TEST_CASE("numbers may be wrapped, separated by commas and ended in any way", "[ies]") {
   IesText file;
   file.vertical = angles(0, 180, 18);
@@ -179,6 +167,7 @@ TEST_CASE("tilt is read over, with a warning where it says something", "[ies]") 
   const auto& [tilt, warned] = GENERATE(table<std::string, bool>({
       {"TILT=NONE\n", false},
       {"  TILT = NONE \r\n", false},
+      {"Tilt=none\n", false},
       {"TILT=INCLUDE\n1\n3\n0 45 90\n1 1 1\n", false},
       {"TILT=INCLUDE\n2 3 0 45\n90 1 0.95 0.9\n", true},
       {"TILT=other.tlt\n", true},
@@ -225,34 +214,6 @@ TEST_CASE("what is wrong with a file is told with its line", "[ies]") {
   CHECK_THAT(ies_refusal(odd.str()), holds("from 0 to 270"));
 }
 
-TEST_CASE("openings are rectangles, circles in the way of 1995 or of 2019, or ellipses", "[ies]") {
-  struct Opening {
-    const char* text;
-    double along_zero, along_quarter, below, aside;  ///< the last two m2, seen from there
-  };
-  const double c = pi / 4;
-  for (const Opening& o :
-       {Opening{"0.3 1.2 0", 1.2, 0.3, 0.36, 0}, Opening{"0.3 1.2 0.1", 1.2, 0.3, 0.36, 0.03},
-        Opening{"-0.2 -0.2 0", 0.2, 0.2, c * 0.04, 0}, Opening{"-0.2 0 0", 0.2, 0.2, c * 0.04, 0},
-        Opening{"0 -0.2 0", 0.2, 0.2, c * 0.04, 0},
-        Opening{"-0.2 -0.2 0.5", 0.2, 0.2, c * 0.04, 0.1},
-        Opening{"-0.2 -0.6 0", 0.6, 0.2, c * 0.12, 0}}) {
-    for (const auto& [units, metres] : {std::pair(1, 0.3048), std::pair(2, 1.0)}) {
-      CAPTURE(o.text, units);
-      IesText file;
-      file.opening = o.text;
-      file.units = units;
-      const IntensityDistribution lamp = read_ies(file.str());
-      CHECK(lamp.opening().along_zero == Approx(metres * o.along_zero));
-      CHECK(lamp.opening().along_quarter == Approx(metres * o.along_quarter));
-      CHECK(lamp.opening().projected_area(lamp.axes(), {0, 0, -1}) ==
-            Approx(metres * metres * o.below));
-      CHECK(lamp.opening().projected_area(lamp.axes(), lamp.axes().zero) ==
-            Approx(metres * metres * o.aside).margin(1e-12));
-    }
-  }
-}
-
 TEST_CASE("keywords and input watts describe the luminaire", "[ies]") {
   IesText file;
   file.first_line =
@@ -271,6 +232,11 @@ TEST_CASE("keywords and input watts describe the luminaire", "[ies]") {
   data = read_ies(file.str()).data();
   CHECK(data.kelvin == 2700);  // and no lumens
   CHECK(data.rendering == 95);
+  // A description holds the letters of CRI, and that of red is not Ra.
+  file.first_line = "IESNA:LM-63-2002\n[_DESCRIPTION] 60 W\n[_CRI] 92\n[_CRI_R9] 50\n";
+  CHECK(read_ies(file.str()).data().rendering == 92);
+  file.first_line = "IESNA:LM-63-2002\n[_DESCRIPTION] 60 W\n";
+  CHECK(read_ies(file.str()).data().rendering == 0);
   file.first_line = "IESNA:LM-63-2002\n";
   data = read_ies(file.str()).data();
   CHECK(data.maker.empty());
@@ -278,21 +244,54 @@ TEST_CASE("keywords and input watts describe the luminaire", "[ies]") {
 }
 
 TEST_CASE("colours of lamps are found in the words for them", "[ies]") {
-  using photometry::kelvin_in, photometry::rendering_in;
-  CHECK(kelvin_in("4000") == 4000);
-  CHECK(kelvin_in("warm white / 2700 K") == 2700);
-  CHECK(kelvin_in("840") == 4000);
-  CHECK(kelvin_in("warm") == 0);
-  CHECK(kelvin_in("12") == 0);
-  CHECK(kelvin_in("999999") == 0);
-  CHECK(rendering_in("80") == 80);
-  CHECK(rendering_in("Ra > 90") == 90);
-  CHECK(rendering_in("1B") == 80);
-  CHECK(rendering_in("1A") == 90);
-  CHECK(rendering_in("3") == 40);
-  CHECK(rendering_in("930") == 90);
-  CHECK(rendering_in("5") == 0);
-  CHECK(rendering_in("") == 0);
+  using photometry::kelvin_in, photometry::highest_kelvin_in, photometry::rendering_in;
+  for (const auto& [text, lowest, highest] :
+       std::vector<std::tuple<const char*, int, int>>{{"4000", 4000, 0},
+                                                      {"3000K", 3000, 0},
+                                                      {"warm white / 2700 K", 2700, 0},
+                                                      {"ww/3000", 3000, 0},
+                                                      {"4000 K/840", 4000, 0},
+                                                      {"840", 4000, 0},
+                                                      {"tw 2700-6500", 2700, 6500},
+                                                      {"927-965", 2700, 6500},
+                                                      {"warm", 0, 0},
+                                                      {"12", 0, 0},
+                                                      {"999999", 0, 0}}) {
+    CAPTURE(text);
+    CHECK(kelvin_in(text) == lowest);
+    CHECK(highest_kelvin_in(text) == highest);
+  }
+  for (const auto& [text, ra] : std::vector<std::pair<const char*, int>>{{"80", 80},
+                                                                         {"85", 85},
+                                                                         {"Ra 90", 90},
+                                                                         {"Ra > 90", 90},
+                                                                         {">80", 80},
+                                                                         {"80-89", 80},
+                                                                         {"90+", 90},
+                                                                         {"1B/86", 86},
+                                                                         {"86 (1B)", 86},
+                                                                         {"1B", 80},
+                                                                         {"1b", 80},
+                                                                         {"1 B", 80},
+                                                                         {"1A", 90},
+                                                                         {"2A", 70},
+                                                                         {"2B", 60},
+                                                                         {"1", 80},
+                                                                         {"3", 40},
+                                                                         {"4", 20},
+                                                                         {"930", 90},
+                                                                         {"CRI 80", 80},
+                                                                         {"100", 100},
+                                                                         {"1A/90-100", 90},
+                                                                         {"R9 50, Ra 92", 92},
+                                                                         {"83,5", 83},
+                                                                         {"5", 0},
+                                                                         {"", 0},
+                                                                         {"-", 0},
+                                                                         {"n/a", 0}}) {
+    CAPTURE(text);
+    CHECK(rendering_in(text) == ra);
+  }
 }
 
 TEST_CASE("a file cut before its last number is refused", "[ies]") {
@@ -341,6 +340,15 @@ TEST_CASE("a EULUMDAT file describes its luminaire") {
   CHECK(data.watts == 20);
   CHECK(data.kelvin == 3000);
   CHECK(data.rendering == 80);
+  EulumdatText tunable;
+  tunable.colour = "tw 2700-6500";
+  tunable.rendering = "1A/93";
+  CHECK(read_eulumdat(tunable.str()).data().kelvin == 2700);
+  CHECK(read_eulumdat(tunable.str()).data().highest_kelvin == 6500);
+  CHECK(read_eulumdat(tunable.str()).data().rendering == 93);
+  tunable.colour = "4000 K/840";  // the field of the rendering is empty
+  tunable.rendering = "";
+  CHECK(read_eulumdat(tunable.str()).data().rendering == 80);
 }
 
 TEST_CASE("decimal commas are points") {
@@ -410,20 +418,6 @@ TEST_CASE("what is wrong with a EULUMDAT file is told with its line") {
   std::string text = EulumdatText().str();
   text.replace(text.find("\n1\n0\r\n4\r\n"), 9, "\n1\n0\r\n4e9\r");
   CHECK_THAT(eulumdat_refusal(text), Catch::Contains("4000000000"));
-}
-
-TEST_CASE("openings are millimetres: length along C90, width 0 of round ones") {
-  EulumdatText file;
-  file.sizes = {1300, 400, 80, 1200, 300, 40, 40, 40, 40};
-  const LuminousOpening linear = read_eulumdat(file.str()).opening();
-  CHECK(linear.along_quarter == Approx(1.2));
-  CHECK(linear.along_zero == Approx(0.3));
-  CHECK(linear.height == Approx(0.04));
-  CHECK_FALSE(linear.round);
-  file.sizes = {250, 0, 80, 200, 0, 0, 0, 0, 0};
-  const IntensityDistribution round = read_eulumdat(file.str());
-  CHECK(round.opening().round);
-  CHECK(round.opening().projected_area(round.axes(), {0, 0, -1}) == Approx(pi * 0.01));
 }
 
 TEST_CASE("a EULUMDAT file cut anywhere is refused") {

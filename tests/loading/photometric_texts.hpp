@@ -54,6 +54,7 @@ struct EulumdatText {
   double lamp_flux = 2000, conversion = 1;
   int sets = 1;
   bool commas = false;
+  std::string colour = "3000", rendering = "80";
   std::function<double(double, double)> intensity = [](double, double) { return 50.0; };
   /// mm: length, width and height of the luminaire, length and width of its opening, heights of its
   /// sides.
@@ -77,7 +78,7 @@ struct EulumdatText {
     for (int set = 0; set < sets; ++set) {
       text += "1\nlamp\n";
       number(lamp_flux * (1 + set));
-      text += "3000\n80\n";
+      text += colour + "\n" + rendering + "\n";
       number(20);
     }
     for (int i = 0; i < 10; ++i) number(0.5);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -30,21 +32,56 @@ struct IesOptions {
   std::vector<std::string> outputs;  ///< .csv, .json
 };
 
-void print_lamp(const IntensityDistribution& lamp) {
-  const LuminousOpening& opening = lamp.opening();
-  std::cout << fmt::format("lamp: {}: {:.5g} lm\n", lamp.name(), lamp.flux());
-  if (opening.round) {
-    const std::string across =
-        opening.along_zero == opening.along_quarter
-            ? fmt::format("{:.4g}", opening.along_zero)
-            : fmt::format("{:.4g} x {:.4g}", opening.along_zero, opening.along_quarter);
-    std::cout << fmt::format("luminous opening: round, {} m across, {:.4g} m high\n", across,
-                             opening.height);
-  } else {
-    std::cout << fmt::format(
-        "luminous opening: {:.4g} m along azimuth 0 x {:.4g} m along 90, {:.4g} m high\n",
-        opening.along_zero, opening.along_quarter, opening.height);
+/// "0.1", or those of the sides towards C0, C90, C180 and C270 where they differ.
+std::string heights_text(const LuminousOpening& opening) {
+  const auto& heights = opening.heights;
+  if (std::all_of(heights.begin(), heights.end(), [&](double h) { return h == heights[0]; })) {
+    return fmt::format("{:.4g}", heights[0]);
   }
+  return fmt::format("{:.4g}", fmt::join(heights, "/"));
+}
+
+/// "0.2", or "0.2 x 0.3" where two diameters differ.
+std::string across_text(double first, double second) {
+  return first == second ? fmt::format("{:.4g}", first)
+                         : fmt::format("{:.4g} x {:.4g}", first, second);
+}
+
+/// A cylinder that lies along x (azimuth 0 of type C) or y, or, without length, a disc.
+std::string lying_text(int azimuth, double length, double diameter, double height) {
+  const std::string across = across_text(diameter, height);
+  if (length > 0) {
+    return fmt::format("cylinder along azimuth {}, {:.4g} m long, {} m across", azimuth, length,
+                       across);
+  }
+  return fmt::format("disc that faces azimuth {}, {} m across", azimuth, across);
+}
+
+std::string opening_text(const LuminousOpening& opening) {
+  if (!opening.stated()) return "none stated";
+  using Shape = LuminousOpening::Shape;
+  const double x = opening.x, y = opening.y, height = opening.height();
+  switch (opening.shape) {
+    case Shape::box:
+      break;
+    case Shape::upright_cylinder:
+      return fmt::format("round, {} m across, {} m high", across_text(x, y), heights_text(opening));
+    case Shape::cylinder_along_x:
+      return lying_text(0, x, y, height);
+    case Shape::cylinder_along_y:
+      return lying_text(90, y, x, height);
+    case Shape::ellipsoid:
+      return x == y && y == height
+                 ? fmt::format("sphere, {:.4g} m across", x)
+                 : fmt::format("ellipsoid, {} m across, {:.4g} m high", across_text(x, y), height);
+  }
+  return fmt::format("{:.4g} m along azimuth 0 x {:.4g} m along 90, {} m high", x, y,
+                     heights_text(opening));
+}
+
+void print_lamp(const IntensityDistribution& lamp) {
+  std::cout << fmt::format("lamp: {}: {:.5g} lm\n", lamp.name(), lamp.flux());
+  std::cout << fmt::format("luminous opening: {}\n", opening_text(lamp.opening()));
   for (const auto& [name, value] : report::data_rows(lamp)) {
     std::cout << fmt::format("{}: {}\n", name, value);
   }
@@ -68,7 +105,7 @@ void run_ies(const IesOptions& options) {
   print_lamp(lamp);
   for (const auto& line : warnings.lines()) std::cerr << "warning: " << line << '\n';
   if (!options.ugr_table) return;
-  if (!(lamp.opening().along_zero > 0)) {
+  if (!(lamp.opening().projected_area(glm::normalize(glm::dvec3(1, 1, -1))) > 0)) {
     throw InputError(fmt::format(
         "{}: states no luminous opening, so no luminance is known; get it again from the maker",
         options.file));
@@ -78,7 +115,8 @@ void run_ies(const IesOptions& options) {
   write_results(options.outputs,
                 {.csv = [&] { return report::ugr_table_csv(table); },
                  .json = [&] { return json_text(report::ugr_table_json(table)); }});
-  for (const auto& line : report::ugr_table_lines(table)) std::cout << line << '\n';
+  for (const auto& line : report::ugr_table_lines(table, !options.per_thousand_lumens))
+    std::cout << line << '\n';
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "gltf/panels.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
 #include "scene/light_names.hpp"
@@ -148,9 +149,9 @@ glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene&
 /// Along x and across, of the flat opening that is seen from below; of a round one a rectangle of
 /// the same area. Nothing where the file states none.
 std::optional<glm::dvec2> size_of(const LuminousOpening& opening) {
-  if (!(opening.along_zero > 0 && opening.along_quarter > 0)) return std::nullopt;
-  const double squared = opening.round ? std::sqrt(std::numbers::pi) / 2 : 1;
-  return glm::dvec2(squared * opening.along_zero, squared * opening.along_quarter);
+  const double area = opening.projected_area({0, 0, -1});
+  if (!(area > 0)) return std::nullopt;
+  return std::sqrt(area / (opening.x * opening.y)) * glm::dvec2(opening.x, opening.y);
 }
 
 LuminaireArray array_of(const json& entry, const JsonObject& object, files::SceneFolder& folder,
@@ -186,7 +187,8 @@ LuminaireArray array_of(const json& entry, const JsonObject& object, files::Scen
   }
   if (!size) {
     object.refuse(
-        "'size' is missing, and the file states no luminous opening; give two numbers of metres");
+        "'size' is missing, and the file states no luminous opening that is seen from below; give "
+        "two numbers of metres");
   }
   placed.opening = *size;
   return lamps;
@@ -204,7 +206,7 @@ void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t
   const PlacedLuminaires& placed = lamps.placed;
   Light light;
   light.kind = LightKind::area;
-  light.power = scene.unit == PowerUnit::lumen ? placed.lumens : placed.lumens / lumen_per_watt;
+  light.power = in_unit(placed.lumens, PowerUnit::lumen, scene.unit, lumen_per_watt);
   light.direction = glm::vec3(-placed.axes[2]);
   light.x_axis = glm::vec3(placed.axes[0]);
   light.two_sided = lamps.kind.uplight;
@@ -237,8 +239,7 @@ void add_work_light(double lumen_per_watt, Scene& scene) {
   Light light;
   light.name = "work_light";
   light.kind = LightKind::point;
-  light.power =
-      scene.unit == PowerUnit::lumen ? defaults::work_light : defaults::work_light / lumen_per_watt;
+  light.power = in_unit(defaults::work_light, PowerUnit::lumen, scene.unit, lumen_per_watt);
   const Camera camera = scene.cameras.empty() ? trace::place_camera(scene) : scene.cameras.front();
   light.position = glm::vec3(camera.position);
   scene.lights.push_back(std::move(light));

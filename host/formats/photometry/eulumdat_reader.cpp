@@ -74,18 +74,18 @@ class Lines {
   std::vector<std::string_view> lines_;
 };
 
-/// Length (along C90), width (0 = round) and the heights towards C0, C90, C180 and C270, of which
-/// the mean counts; millimetres in the file. A line that holds no number says nothing of it.
+/// Length (along C90), width (0 = round) and the heights of the sides as seen from C0, C90, C180
+/// and C270; millimetres in the file. A line that holds no number says nothing of it.
 LuminousOpening opening_of(const Lines& lines) {
   const auto metres = [&](std::size_t line) {
     return std::abs(lines.number_or_0(opening_line + line)) / 1000.0;
   };
   const double length = metres(0), width = metres(1);
-  const double height = 0.25 * (metres(2) + metres(3) + metres(4) + metres(5));
-  return {.along_zero = width > 0 ? width : length,
-          .along_quarter = length,
-          .height = height,
-          .round = !(width > 0)};
+  return {
+      .x = width > 0 ? width : length,
+      .y = length,
+      .heights = {metres(2), metres(3), metres(4), metres(5)},
+      .shape = width > 0 ? LuminousOpening::Shape::box : LuminousOpening::Shape::upright_cylinder};
 }
 
 /// The first set of lamps counts.
@@ -94,8 +94,9 @@ LuminaireData data_of(const Lines& lines) {
                      lines.text(set_count_line + type_in_set)};
   const std::string colour = lines.text(set_count_line + colour_in_set);
   data.kelvin = kelvin_in(colour);
+  data.highest_kelvin = highest_kelvin_in(colour);
   data.rendering = rendering_in(lines.text(set_count_line + rendering_in_set));
-  if (data.rendering == 0 && colour.size() == 3) data.rendering = rendering_in(colour);
+  if (data.rendering == 0) data.rendering = coded_rendering_in(colour);
   data.watts = std::max(0.0, lines.number_or_0(set_count_line + watts_in_set));
   return data;
 }

@@ -20,16 +20,16 @@ enum class Photometry { type_c = 1, type_b = 2, type_a = 3 };
 
 /// What the TILT= line says; `next` is the line after it.
 struct Tilt {
-  std::string_view value;
+  std::string value;  ///< in lower case
   std::size_t next;
 };
 
 Tilt find_tilt(const std::vector<std::string_view>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     std::string_view line = trimmed(lines[i]);
-    if (!line.starts_with("TILT")) continue;
+    if (lower(line.substr(0, 4)) != "tilt") continue;
     line = trimmed(line.substr(4));
-    if (line.starts_with('=')) return {trimmed(line.substr(1)), i + 1};
+    if (line.starts_with('=')) return {lower(trimmed(line.substr(1))), i + 1};
   }
   throw files::ResourceError("no line starts with TILT=: this is no LM-63 file");
 }
@@ -55,8 +55,12 @@ LuminaireData data_of(const std::vector<std::string_view>& lines, std::size_t en
                      values["lamp"].empty() ? values["lampcat"] : values["lamp"]};
   for (const auto& [name, value] : values) {
     const auto names = [&](std::string_view word) { return name.find(word) != std::string::npos; };
-    if (names("cct") || names("colortemp") || names("color temp")) data.kelvin = kelvin_in(value);
-    if (names("cri") || name == "ra" || name == "_ra") data.rendering = rendering_in(value);
+    if (names("cct") || names("colortemp") || names("color temp")) {
+      data.kelvin = kelvin_in(value);
+      data.highest_kelvin = highest_kelvin_in(value);
+    }
+    const bool of_rendering = names("cri") && !names("descri") && !names("r9");
+    if (of_rendering || name == "ra" || name == "_ra") data.rendering = rendering_in(value);
   }
   const std::string& lamp = data.source;
   const auto said = [&](std::string_view word) {
@@ -78,8 +82,8 @@ LuminaireData data_of(const std::vector<std::string_view>& lines, std::size_t en
 
 void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
                files::Warnings& warnings) {
-  if (tilt.value == "NONE") return;
-  if (tilt.value != "INCLUDE") {
+  if (tilt.value == "none") return;
+  if (tilt.value != "include") {
     warnings.add("photometric file", name, "its tilt file is not read: the lamp is not tilted");
     return;
   }
@@ -190,24 +194,74 @@ IntensityDistribution type_a_or_b(const std::string& name, const Web& web, Photo
   return {name, axes, polar, azimuth, std::move(intensity)};
 }
 
-/// Width (across the plane of azimuth 0), length (along it) and height; of round openings the
-/// diameter has a minus, in both places (LM-63-2019, table 1) or, until 1995, in one beside a 0.
-LuminousOpening opening_of(const std::vector<double>& size, bool feet) {
+/// Width (across the photometric horizontal), length (along it) and height, as the edition of the
+/// file marks shapes by minus signs. From 2002 on two of them mark the plane of a round section,
+/// whose third extent is a cylinder's or 0, and three an ellipsoid. In 1995 a minus of width or
+/// length makes the plan round, one of the height beside it an ellipsoid, and one of the height
+/// alone a tube. In 1986 and 1991 a minus of the width makes the plan round, and is that of an
+/// ellipsoid where width, length and height differ from 0. Until 1995 a diameter stands once, and
+/// is 0 in the other place. What an edition does not define is read as another one does.
+LuminousOpening opening_of(const std::vector<double>& size, bool feet, Photometry type,
+                           int edition) {
+  using Shape = LuminousOpening::Shape;
   const double metres = feet ? 0.3048 : 1.0;
-  const bool round = size[0] < 0 || size[1] < 0;
-  double width = metres * std::abs(size[0]), length = metres * std::abs(size[1]);
-  if (round && width == 0) width = length;
-  if (round && length == 0) length = width;
-  return {.along_zero = length,
-          .along_quarter = width,
-          .height = metres * std::abs(size[2]),
-          .round = round};
+  const bool round_width = size[0] < 0, round_length = size[1] < 0, round_height = size[2] < 0;
+  double width = metres * std::abs(size[0]), length = metres * std::abs(size[1]),
+         height = metres * std::abs(size[2]);
+  Shape shape = Shape::box;
+  const int minus_signs = int{round_width} + int{round_length} + int{round_height};
+  const bool in_new_way = edition >= 2002 || (round_width && round_length);
+  if (minus_signs == 3) {
+    shape = Shape::ellipsoid;
+  } else if (minus_signs == 2 && in_new_way) {
+    shape = !round_height ? Shape::upright_cylinder
+            : round_width ? Shape::cylinder_along_x
+                          : Shape::cylinder_along_y;
+  } else if (round_width || round_length) {
+    const bool ellipsoid_of_1986 = edition < 1995 && width > 0 && length > 0 && height > 0;
+    shape = round_height || ellipsoid_of_1986 ? Shape::ellipsoid : Shape::upright_cylinder;
+    if (width == 0) width = length;
+    if (length == 0) length = width;
+  } else if (round_height && width == 0 && length > 0) {
+    shape = Shape::cylinder_along_x;
+    width = height;
+  } else if (round_height && length == 0 && width > 0) {
+    shape = Shape::cylinder_along_y;
+    length = height;
+  }
+  // The photometric horizontal of type A is where the luminaire is aimed, and its height is
+  // vertical. A flat opening of one would lie edge-on in its own beam: it faces it.
+  if (type == Photometry::type_a && height > 0) {
+    std::swap(length, height);
+    if (shape == Shape::upright_cylinder) {
+      shape = Shape::cylinder_along_x;
+    } else if (shape == Shape::cylinder_along_x) {
+      shape = Shape::upright_cylinder;
+    }
+  }
+  return {.x = length, .y = width, .heights = {height, height, height, height}, .shape = shape};
 }
 
-/// Whether the number after the ballast factor is a factor, too. From 1995 on it is reserved, and
-/// in 2019 it tells how the file was made.
-bool has_ballast_lamp_factor(std::string_view first_line) {
-  return !first_line.starts_with("IESNA:LM-63") && !first_line.starts_with("IES:LM-63");
+constexpr int first_edition = 1986;
+
+/// The edition of LM-63 that a line before TILT= names, however it is spelt: "IESNA91",
+/// "IESNA:LM-63-2002", "IES: lm-63-19". Without one, the first.
+int edition_of(const std::vector<std::string_view>& lines, std::size_t end) {
+  constexpr int unnamed = 9999;  // "LM-63" alone is none of the first, which named nothing
+  for (std::size_t i = 0; i < end; ++i) {
+    std::string line = lower(trimmed(lines[i]));
+    if (line.starts_with('[')) continue;
+    std::erase_if(line,
+                  [](char c) { return std::string_view(" \t:-_/").find(c) < std::string::npos; });
+    const std::size_t number = line.find("lm63");
+    const bool named = number != std::string::npos;
+    std::string_view rest = line;
+    rest.remove_prefix(named ? number + 4 : rest.starts_with("iesna") ? 5 : rest.size());
+    const auto year = parse_number<int>(rest.substr(0, rest.find_first_not_of("0123456789")));
+    if (year) return *year >= 100 ? *year : *year + (*year < first_edition % 100 ? 2000 : 1900);
+    if (named) return unnamed;
+  }
+  return first_edition;
 }
 
 }  // namespace
@@ -227,11 +281,21 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text,
       reader.count("number of horizontal angles", 1, limits::max_photometric_angles);
   const auto type = static_cast<Photometry>(reader.count("photometric type", 1, 3));
   const bool feet = reader.count("type of units", 1, 2) == 1;
+  const int edition = edition_of(lines, tilt.next - 1);
   const LuminousOpening opening =
-      opening_of(reader.numbers("size of the luminous opening", 3), feet);
+      opening_of(reader.numbers("size of the luminous opening", 3), feet, type, edition);
   factor *= positive("ballast factor", reader);
+  // From 1995 on the place is reserved, and in 2019 it tells how the file was made.
   const double next = reader.number("ballast-lamp photometric factor");
-  if (has_ballast_lamp_factor(trimmed(lines.front())) && next > 0.0) factor *= next;
+  if (edition < 1995 && next > 0.0) {
+    factor *= next;
+    if (edition == first_edition && next != 1.0) {
+      warnings.add("photometric file", name,
+                   fmt::format("its ballast-lamp photometric factor of {:g} counts, since no line "
+                               "before TILT= names LM-63 of 1995 or later",
+                               next));
+    }
+  }
   LuminaireData data = data_of(lines, tilt.next - 1);
   data.watts = reader.number("input watts");
   if (vertical * horizontal > limits::max_photometric_values) {
@@ -246,7 +310,7 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text,
   const Web web = read_web(vertical, horizontal, type, factor, reader);
   IntensityDistribution distribution =
       type == Photometry::type_c ? type_c(name, web) : type_a_or_b(name, web, type);
-  if (type == Photometry::type_c) distribution.set_opening(opening);
+  distribution.set_opening(opening);
   distribution.set_data(std::move(data));
   return distribution;
 }

@@ -53,35 +53,62 @@ std::vector<Digits> digits_in(std::string_view text) {
 }
 
 /// Groups of colour rendering by DIN 5035, as EULUMDAT has them, and the least Ra of each.
-constexpr std::array<std::pair<std::string_view, int>, 6> rendering_groups{
-    {{"1a", 90}, {"1b", 80}, {"2a", 70}, {"2b", 60}, {"3", 40}, {"4", 20}}};
+constexpr std::array<std::pair<std::string_view, int>, 8> rendering_groups{
+    {{"1a", 90}, {"1b", 80}, {"2a", 70}, {"2b", 60}, {"1", 80}, {"2", 60}, {"3", 40}, {"4", 20}}};
 
 /// "840": Ra from 80, 4000 K; as lamps are named worldwide.
 bool is_colour_code(std::string_view run) {
   return run.size() == 3 && run[0] >= '7' && run[1] >= '1' && run[1] <= '8';
 }
 
+/// The temperatures that a text states, or else those of its colour codes.
+std::vector<double> kelvins_in(std::string_view text) {
+  std::vector<double> stated, coded;
+  for (const Digits& digits : digits_in(text)) {
+    const double value = parse_number<double>(digits.run).value_or(0);
+    if (digits.run.size() >= 4 && value >= 1000 && value <= 25'000) stated.push_back(value);
+    if (is_colour_code(digits.run)) coded.push_back(100 * *parse_number<int>(digits.run.substr(1)));
+  }
+  return stated.empty() ? coded : stated;
+}
+
 }  // namespace
 
 double kelvin_in(std::string_view text) {
+  const std::vector<double> all = kelvins_in(text);
+  return all.empty() ? 0 : *std::min_element(all.begin(), all.end());
+}
+
+double highest_kelvin_in(std::string_view text) {
+  const std::vector<double> all = kelvins_in(text);
+  const double highest = all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+  return highest > kelvin_in(text) ? highest : 0;
+}
+
+double coded_rendering_in(std::string_view text) {
   for (const Digits& digits : digits_in(text)) {
-    const double value = parse_number<double>(digits.run).value_or(0);
-    if (digits.run.size() >= 4 && value >= 1000 && value <= 25'000) return value;
-    if (is_colour_code(digits.run)) return 100 * *parse_number<int>(digits.run.substr(1));
+    if (is_colour_code(digits.run)) return 10 * (digits.run[0] - '0');
   }
   return 0;
 }
 
 double rendering_in(std::string_view text) {
-  for (const Digits& digits : digits_in(text)) {
+  constexpr double least_value = 20;
+  const std::vector<Digits> all = digits_in(text);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Digits& digits = all[i];
     const double value = parse_number<double>(digits.run).value_or(0);
-    if (digits.run.size() == 2 || value == 100) return value <= 100 ? value : 0;
-    if (is_colour_code(digits.run)) return 10 * (digits.run[0] - '0');
-    if (digits.run.size() > 1) continue;
-    const std::string_view group = text.substr(digits.begin, 2);
-    for (const auto& [name, least] : rendering_groups) {
-      if (lower(group) == name) return least;
-    }
+    if (digits.run.size() >= 2 && value >= least_value && value <= 100) return value;
+    const bool other_index =  // "R9 50" is none of Ra
+        digits.run.size() == 1 && digits.begin > 0 &&
+        lower(text.substr(digits.begin - 1, 1)) == "r";
+    if (other_index) ++i;
+  }
+  if (const double coded = coded_rendering_in(text); coded > 0) return coded;
+  std::string words = lower(text);
+  std::erase_if(words, [](char c) { return c == ' ' || c == '.' || c == '-'; });
+  for (const auto& [name, least] : rendering_groups) {
+    if (words.starts_with(name) && all.front().run.size() == 1) return least;
   }
   return 0;
 }

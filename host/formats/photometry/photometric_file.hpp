@@ -58,12 +58,16 @@ struct MeasuredPlane {
 /// of which the last may be missing. Azimuths ascend. Errors: ResourceError for any other range.
 std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths);
 
-/// A colour temperature, 1000 to 25000 K, that a text states: "4000", "LED 3000 K", or the last two
-/// digits of "840". 0 = none.
+/// The colour temperature, 1000 to 25000 K, that a text states: "4000", "ww/3000 K", or the last
+/// two digits of "840"; of a range, "tw 2700-6500", the lowest. 0 = none.
 double kelvin_in(std::string_view text);
-/// Ra that a text states: "80", "CRI 90", "Ra > 80", "1B" (EULUMDAT's groups of DIN 5035), or the
-/// first digit of "840". 0 = none.
+/// The end of a range of them; 0 = none.
+double highest_kelvin_in(std::string_view text);
+/// Ra that a text states, or the least: "85", "CRI 90", "80-89", "1B/86". Without a value that of
+/// EULUMDAT's group of DIN 5035, "1B", or the first digit of "840". 0 = none.
 double rendering_in(std::string_view text);
+/// The last of these alone.
+double coded_rendering_in(std::string_view text);
 
 /// Reads an LM-63 file of photometric type A, B or C. Intensities are the candela values times the
 /// multiplier and the ballast factor, and in files of 1986 and 1991 times the ballast-lamp factor:

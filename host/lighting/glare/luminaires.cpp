@@ -49,8 +49,16 @@ glm::vec2 place_in_triangle(int i) {
 /// cd/m2 (or lm for lux) of a layer's radiance at its power in the mix.
 glm::dvec3 power_of(const LightMix& mix, std::uint32_t layer) {
   const MixedLight& light = mix.lights[layer];
-  const double lumens = light.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
-  return light.power * lumens * glm::dvec3(light.tint);
+  return mix.lumens_of(light) * glm::dvec3(light.tint);
+}
+
+/// The opening of an area light by a photometric file: the file's, which the flat surface stands
+/// for where it is as large as that is from below, or the surface.
+LuminousOpening opening_of_surface(const IntensityDistribution& distribution, double area) {
+  const LuminousOpening& in_file = distribution.opening();
+  const double below = in_file.projected_area({0, 0, -1});
+  if (std::abs(below - area) <= 0.01 * area) return in_file;
+  return {.x = area, .y = 1};
 }
 
 }  // namespace
@@ -64,7 +72,11 @@ Luminaires::Luminaires(const RayScene& rays, int samples)
     if (kind == LightKind::area) {
       add_area_light(light, radiance[light], samples);
     } else if (kind == LightKind::point || kind == LightKind::spot) {
-      luminaires_.push_back({scene.lights[light].name, light, glm::vec3(0.0f), {}});
+      const std::uint32_t file = scene.lights[light].distribution;
+      Luminaire luminaire{scene.lights[light].name, light, glm::vec3(0.0f), {{{}, 1.0f}}, {}};
+      luminaire.patches.front().point.position = scene.lights[light].position;
+      luminaire.opening = file == none ? LuminousOpening{} : scene.distributions[file].opening();
+      luminaires_.push_back(std::move(luminaire));
     }
   }
 }
@@ -73,10 +85,12 @@ void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, 
   const Scene& scene = rays_.scene();
   const auto parts = connected_parts(scene, scene.lights[light].triangles);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    Luminaire luminaire{scene.lights[light].name, light, radiance, {}};
+    Luminaire luminaire{scene.lights[light].name, light, radiance, {}, {}};
     if (parts.size() > 1) luminaire.name += fmt::format(" {}", i + 1);
     double whole = 0;
     for (const std::uint32_t triangle : parts[i]) whole += triangle_area(scene, triangle);
+    const std::uint32_t file = scene.lights[light].distribution;
+    if (file != none) luminaire.opening = opening_of_surface(scene.distributions[file], whole);
     for (const std::uint32_t triangle : parts[i]) {
       const double area = triangle_area(scene, triangle);
       const int count = std::max(1, static_cast<int>(std::ceil(samples * area / whole)));
@@ -87,6 +101,7 @@ void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, 
               trace::surface_point(scene, {triangle, uv.x, uv.y}, side);
           if (!trace::emits(scene, point)) continue;
           luminaire.patches.push_back({point, static_cast<float>(area / count)});
+          if (luminaire.opening) break;  // its intensities know the sides
         }
       }
     }
@@ -134,29 +149,41 @@ VisibleLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observe
   VisibleLuminaire seen{luminaire.name};
   const Scene& scene = rays_.scene();
   const Light& lamp = scene.lights[luminaire.light];
-  const glm::dvec3 way = glm::dvec3(lamp.position) - eye;
-  const double distance = glm::length(way);
-  const glm::dvec3 direction = way / distance;
-  const double ahead = glm::dot(direction, observer.forward);
-  if (!(distance > 0) || !(ahead > 0)) return seen;
-  const double share = groups_.fraction[luminaire.light];
-  const double candela =
-      share * trace::candela_per_lumen(scene, lamp, -direction) *
-      luminance(power * glm::dvec3(lamp.color) *
-                glm::dvec3(trace::transmittance(rays_, glm::vec3(eye), lamp.position)));
-  if (!(candela > 0)) return seen;
-  double area = 0;
-  if (lamp.distribution != none) {
-    const IntensityDistribution& distribution = scene.distributions[lamp.distribution];
-    area = distribution.opening().projected_area(distribution.axes(),
-                                                 trace::LightAxes(lamp).to_light(-direction));
+  const trace::LightAxes axes(lamp);
+  double whole = 0, light = 0, weighed = 0;
+  for (const Patch& patch : luminaire.patches) whole += static_cast<double>(patch.area);
+  for (const Patch& patch : luminaire.patches) {
+    const glm::dvec3 way = glm::dvec3(patch.point.position) - eye;
+    const double distance = glm::length(way);
+    const glm::dvec3 direction = way / distance;
+    const double ahead = glm::dot(direction, observer.forward);
+    if (!(distance > 0) || !(ahead > 0)) continue;
+    const glm::vec3 place = lamp.kind == LightKind::area
+                                ? patch.point.origin_towards(glm::vec3(-direction))
+                                : lamp.position;
+    const double share = static_cast<double>(patch.area) / whole;
+    const double candela =
+        share * groups_.fraction[luminaire.light] *
+        trace::candela_per_lumen(scene, lamp, -direction) *
+        luminance(power * glm::dvec3(lamp.color) *
+                  glm::dvec3(trace::transmittance(rays_, glm::vec3(eye), place)));
+    if (!(candela > 0)) continue;
+    const double area =
+        share * std::max(luminaire.opening->projected_area(axes.to_light(-direction)),
+                         defaults::small_source_area);
+    const double solid_angle = area / (distance * distance);
+    const double p = position_index(observer, direction);
+    seen.projected_area += area;
+    seen.solid_angle += solid_angle;
+    seen.illuminance += ahead * candela / (distance * distance);
+    seen.direction += solid_angle * direction;
+    light += candela / (distance * distance);
+    weighed += solid_angle / (p * p);
   }
-  seen.projected_area = std::max(area, defaults::small_source_area);
-  seen.luminance = candela / seen.projected_area;
-  seen.solid_angle = seen.projected_area / (distance * distance);
-  seen.position_index = position_index(observer, direction);
-  seen.illuminance = ahead * candela / (distance * distance);
-  seen.direction = direction;
+  if (!(light > 0)) return seen;
+  seen.luminance = light / seen.solid_angle;
+  seen.position_index = std::sqrt(seen.solid_angle / weighed);
+  seen.direction = glm::normalize(seen.direction);
   return seen;
 }
 
@@ -169,9 +196,8 @@ std::vector<VisibleLuminaire> Luminaires::seen_by(const Observer& in_file,
   for (const Luminaire& luminaire : luminaires_) {
     const glm::dvec3 power = power_of(mix, groups_.group_of[luminaire.light]);
     if (!(luminance(power) > 0)) continue;
-    VisibleLuminaire seen = luminaire.patches.empty()
-                                ? lamp_seen(luminaire, observer, eye, power)
-                                : surface_seen(luminaire, observer, eye, power);
+    VisibleLuminaire seen = luminaire.opening ? lamp_seen(luminaire, observer, eye, power)
+                                              : surface_seen(luminaire, observer, eye, power);
     if (!(seen.luminance > 0)) continue;
     seen.direction = direction_in_world(rays_.scene(), seen.direction);
     all.push_back(std::move(seen));
@@ -183,10 +209,15 @@ double Luminaires::large_area(const glm::dvec3& up) const {
   double sum = 0;
   for (const Luminaire& luminaire : luminaires_) {
     double area = 0, downwards = 0;
-    for (const Patch& patch : luminaire.patches) {
-      area += static_cast<double>(patch.area);
-      downwards += static_cast<double>(patch.area) *
-                   std::max(0.0, -glm::dot(glm::dvec3(patch.point.normal), up));
+    if (luminaire.opening) {
+      const trace::LightAxes axes(rays_.scene().lights[luminaire.light]);
+      area = downwards = luminaire.opening->projected_area(axes.to_light(-up));
+    } else {
+      for (const Patch& patch : luminaire.patches) {
+        area += static_cast<double>(patch.area);
+        downwards += static_cast<double>(patch.area) *
+                     std::max(0.0, -glm::dot(glm::dvec3(patch.point.normal), up));
+      }
     }
     if (area > defaults::large_source_area) sum += downwards;
   }

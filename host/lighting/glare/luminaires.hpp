@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct VisibleLuminaire {
 class Luminaires {
  public:
   /// Each connected part of an area light is a luminaire of its own, and each lamp of a photometric
-  /// file, spot or point light, whose opening is the file's (a lamp without any counts as the least
-  /// source). Light from beyond the scene comes from no luminaire. The rays are kept.
+  /// file, spot or point light. Where a file gives intensities, it gives the opening, too, unless
+  /// the area light has another size: then that is its opening, flat. A lamp without any counts as
+  /// the least source. Light from beyond the scene comes from no luminaire. The rays are kept.
   ///   samples   of a luminaire, spread over its area
   Luminaires(const RayScene& rays, int samples);
 
@@ -50,13 +52,15 @@ class Luminaires {
   /// A small part of an opening.
   struct Patch {
     trace::SurfacePoint point;  ///< on the side that shines
-    float area;                 ///< m2
+    float area;                 ///< m2; of a lamp without surface, 1
   };
   struct Luminaire {
     std::string name;
     std::uint32_t light;
-    glm::vec3 radiance;          ///< of white texels, its layer at power 1
-    std::vector<Patch> patches;  ///< empty of a lamp without surface
+    glm::vec3 radiance;  ///< of white texels, its layer at power 1
+    std::vector<Patch> patches;
+    /// Of a lamp, which has intensities in place of radiance.
+    std::optional<LuminousOpening> opening;
   };
 
   void add_area_light(std::uint32_t light, const glm::vec3& radiance, int samples);

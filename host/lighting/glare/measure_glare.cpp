@@ -59,8 +59,7 @@ LuminancePicture luminance_of(const LightLayers& layers, const LightMix& mix) {
   std::vector<glm::vec3> rgb(static_cast<std::size_t>(layers.width) *
                              static_cast<std::size_t>(layers.height));
   combine_layers(layers, mix, rgb);
-  const bool watts = !mix.lights.empty() && mix.lights.front().unit == PowerUnit::watt;
-  const double candela = watts ? mix.lumen_per_watt : 1.0;
+  const double candela = mix.unit() == PowerUnit::watt ? mix.lumen_per_watt : 1.0;
   LuminancePicture picture{layers.width, {}};
   for (const glm::vec3& pixel : rgb) {
     picture.luminance.push_back(static_cast<float>(candela * luminance(glm::dvec3(pixel))));

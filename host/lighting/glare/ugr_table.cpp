@@ -26,18 +26,16 @@ double facing_factor(double a, double b) {
 
 /// How a luminaire hangs in the room, whose axes are: to the right, ahead, up.
 struct Mounting {
-  bool zero_is_ahead;
+  bool x_is_ahead;
 
-  /// The length of an opening is its longer side; of a square one it is at a right angle to azimuth
-  /// 0, as EULUMDAT has it.
+  /// The length of an opening is its longer side; of a square one it lies along y, as EULUMDAT has
+  /// it.
   Mounting(const LuminousOpening& opening, bool endwise)
-      : zero_is_ahead(endwise == (opening.along_zero > opening.along_quarter)) {}
+      : x_is_ahead(endwise == (opening.x > opening.y)) {}
 
   /// A direction of the room in the lamp's space.
-  glm::dvec3 in_lamp(const PhotometricAxes& axes, const glm::dvec3& direction) const {
-    const double zero = zero_is_ahead ? direction.y : direction.x;
-    const double quarter = zero_is_ahead ? direction.x : direction.y;
-    return zero * axes.zero + quarter * axes.quarter - direction.z * axes.pole;
+  glm::dvec3 in_lamp(const glm::dvec3& direction) const {
+    return x_is_ahead ? glm::dvec3(direction.y, direction.x, direction.z) : direction;
   }
 };
 
@@ -63,8 +61,7 @@ class DownwardLight {
         const glm::dvec3 direction(std::sin(gamma) * std::sin(azimuth),
                                    std::sin(gamma) * std::cos(azimuth), -std::cos(gamma));
         const double share = std::sin(gamma) * gamma_step * azimuth_step *
-                             luminaire.intensity(mounting.in_lamp(luminaire.axes(), direction)) /
-                             luminaire.flux();
+                             luminaire.intensity(mounting.in_lamp(direction)) / luminaire.flux();
         const double scale = height / -direction.z;
         rays_.push_back({scale * direction.x, scale * direction.y, share});
         whole_ += share;
@@ -118,8 +115,8 @@ std::vector<Source> seen_sources(const IntensityDistribution& luminaire, const M
       const double distance = glm::length(way);
       const glm::dvec3 direction = way / distance;
       if (std::abs(x) > farthest_aside * y || direction.z < lowest_cosine) continue;
-      const glm::dvec3 in_lamp = mounting.in_lamp(luminaire.axes(), -direction);
-      const double area = luminaire.opening().projected_area(luminaire.axes(), in_lamp);
+      const glm::dvec3 in_lamp = mounting.in_lamp(-direction);
+      const double area = luminaire.opening().projected_area(in_lamp);
       if (!(area > 0)) continue;
       sources.push_back({luminaire.intensity(in_lamp) / area, area / (distance * distance),
                          position_index(eye, direction)});

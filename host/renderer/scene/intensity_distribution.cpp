@@ -31,16 +31,27 @@ std::size_t interval_of(const std::vector<double>& angles, double angle) {
 
 }  // namespace
 
-double LuminousOpening::projected_area(const PhotometricAxes& axes,
-                                       const glm::dvec3& direction) const {
-  const double down = std::abs(glm::dot(direction, axes.pole));
-  if (round) {
-    return 0.25 * pi * along_zero * along_quarter * down +
-           std::sqrt(along_zero * along_quarter * std::max(0.0, 1.0 - down * down)) * height;
+double LuminousOpening::projected_area(const glm::dvec3& direction) const {
+  // Faces of the box around it, in projection.
+  const glm::dvec3 d = glm::abs(direction);
+  const double across_x = y * heights[direction.x < 0 ? 2 : 0] * d.x;
+  const double across_y = x * heights[direction.y < 0 ? 3 : 1] * d.y;
+  const double across_z = x * y * d.z;
+  // An ellipse covers pi / 4 of its rectangle, and the outline of a cylinder's side is as wide as
+  // its ellipse is in that direction.
+  switch (shape) {
+    case Shape::box:
+      return across_x + across_y + across_z;
+    case Shape::upright_cylinder:
+      return 0.25 * pi * across_z + std::hypot(across_x, across_y);
+    case Shape::cylinder_along_x:
+      return 0.25 * pi * across_x + std::hypot(across_y, across_z);
+    case Shape::cylinder_along_y:
+      return 0.25 * pi * across_y + std::hypot(across_x, across_z);
+    case Shape::ellipsoid:
+      return 0.25 * pi * std::hypot(across_x, across_y, across_z);
   }
-  return along_zero * along_quarter * down +
-         height * (along_quarter * std::abs(glm::dot(direction, axes.zero)) +
-                   along_zero * std::abs(glm::dot(direction, axes.quarter)));
+  return 0;
 }
 
 IntensityDistribution::IntensityDistribution(std::string name, const PhotometricAxes& axes,
