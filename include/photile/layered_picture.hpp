@@ -32,12 +32,26 @@ struct MixedLight {
   glm::vec3 tint{1.0f};
 };
 
+/// A power in another unit.
+double in_unit(double power, PowerUnit from, PowerUnit to, double lumen_per_watt);
+
 struct LightMix {
   std::vector<MixedLight> lights;
   double lumen_per_watt = 683;
 
-  /// The scene's own powers.
+  /// The scene's own powers. Luminaires with a photometric file have lumens in every scene, as
+  /// their files do.
   static LightMix of(const Scene& scene, double lumen_per_watt);
+
+  /// Of the picture: watts where all lights have watts, else lumens.
+  PowerUnit unit() const;
+  /// A light's power in the unit of the picture: what its layer is multiplied by.
+  double power_in_picture(const MixedLight& light) const {
+    return in_unit(light.power, light.unit, unit(), lumen_per_watt);
+  }
+  double lumens_of(const MixedLight& light) const {
+    return in_unit(light.power, light.unit, PowerUnit::lumen, lumen_per_watt);
+  }
 };
 
 /// A change asked for on the command line: NAME=POWER[lm|W] | NAME=xFACTOR | NAME=#RRGGBB |

@@ -31,7 +31,7 @@ class LightState(NamedTuple):
     power: float
     """In `unit`."""
     unit: str
-    """"lumen" or "watt"."""
+    """"lumen" or "watt"; luminaires with a photometric file have lumens in every scene."""
     color: tuple[float, float, float]
     """Linear RGB of the light itself; luminance 1."""
     tint: tuple[float, float, float]
@@ -44,8 +44,8 @@ class Picture(Mapping[str, NDArray[np.float32]]):
     """Layers by the names of their lights, each at the light's power.
 
     ``picture["desk_lamp"]`` is a new array of shape (height, width, 3): linear RGB with Rec.709
-    primaries, cd/m2 (or W/(m2 sr) in scenes of watts), row 0 at the top. `unit_layer` is a view at
-    a power of 1. Layers add up to `mix`.
+    primaries, cd/m2 (or W/(m2 sr) where all lights have watts), row 0 at the top. `unit_layer` is a
+    view at a power of 1. Layers add up to `mix`.
 
     Changes of lights are a mapping of names to a factor of the power (``2``, ``0.5``, ``0``), or to
     text as `photile relight` has it: ``"1500lm"``, ``"x2"``, ``"2700K"``, ``"#ffb070"``, ``"off"``.
@@ -82,9 +82,11 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         return self._core.statistics
 
     def __getitem__(self, light: str) -> NDArray[np.float32]:
-        layer = self._core.unit_layer(light)
-        state = self.lights[light]
-        return layer * (state.power * np.array(state.tint)).astype(np.float32)
+        for row in self._core.lights(self._changes):
+            if row["name"] == light:
+                scale = row["power_in_picture"] * np.array(row["tint"])
+                return self._core.unit_layer(light) * scale.astype(np.float32)
+        raise KeyError(light)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.lights)

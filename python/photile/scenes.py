@@ -315,7 +315,7 @@ class Scene:
 
     @property
     def unit(self) -> str:
-        """"lumen" or "watt": what powers are in."""
+        """"lumen" or "watt": what the powers of `lights` and `layers` are in."""
         return self._core.unit
 
     @property

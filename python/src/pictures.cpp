@@ -205,6 +205,7 @@ py::list lights_of_picture(const Picture& picture, const Changes& changes) {
     row["name"] = light.name;
     row["power"] = light.power;
     row["unit"] = light.unit == PowerUnit::lumen ? "lumen" : "watt";
+    row["power_in_picture"] = mix.power_in_picture(light);
     row["color"] = py::make_tuple(light.color.x, light.color.y, light.color.z);
     row["tint"] = py::make_tuple(light.tint.x, light.tint.y, light.tint.z);
     row["members"] = light.members;

@@ -333,6 +333,15 @@ TEST_CASE("a list of parts totals the power where every file states it") {
   CHECK_THAT(total("0"), Contains(" lm<") && !Contains(" W<") && !Contains("lm/W"));
 }
 
+TEST_CASE("daylight factors are not judged as lux") {
+  const FileFolder folder;
+  CHECK_THAT(only_error(run_photile(measure(write_box(folder),
+                                            {"--plane", "floor+0.75", "--daylight-factor",
+                                             "--target", "office-desk"})),
+                        2),
+             Contains("--target judges lux") && Contains("EN 17037"));
+}
+
 TEST_CASE("a mood that names an unknown light is refused before anything is measured") {
   const FileFolder folder;
   const std::string scene = write_box(folder);

@@ -1,5 +1,8 @@
 // Pictures mixed of the layers of their lights, and what their attributes say of the mix.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "picture_support.hpp"
 
@@ -111,6 +114,67 @@ TEST_CASE("a scene's own mix has its lights' names, powers, unit and colours") {
   CHECK(mix.lights[0].unit == PowerUnit::watt);
   CHECK(mix.lights[1].color == glm::vec3(2.0f, 0.5f, 1.0f));
   CHECK(mix.lights[1].tint == glm::vec3(1.0f));
+}
+
+TEST_CASE("a luminaire with a photometric file has lumens in a scene of watts, others watts") {
+  constexpr double efficacy = 179;
+  Scene scene;
+  scene.unit = PowerUnit::watt;
+  scene.distributions.push_back({"even", {}, {0, 180}, {0, 360}, {100, 100, 100, 100}});
+  scene.lights.resize(2);
+  scene.lights[0].name = "fire";
+  scene.lights[0].power = 3;
+  scene.lights[1].name = "lamp";
+  scene.lights[1].power = 10;  // W, as all powers of the scene
+  scene.lights[1].distribution = 0;
+  LightMix mix = LightMix::of(scene, efficacy);
+  CHECK(mix.lights[0].unit == PowerUnit::watt);
+  CHECK(mix.lights[0].power == 3);
+  CHECK(mix.lights[1].unit == PowerUnit::lumen);
+  CHECK(mix.lights[1].power == Approx(10 * efficacy));
+  CHECK(mix.unit() == PowerUnit::lumen);
+
+  // A layer of 1 W (lm) is W/(m2 sr) for each watt and cd/m2 for each lumen.
+  const LightLayers layers = random_layers(3, 2, {"fire", "lamp"});
+  const Image picture = mix_layers(layers, mix);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float fire = layers.layers[0].radiance[i].g, lamp = layers.layers[1].radiance[i].g;
+    CHECK((*picture.find("G"))[i] == Approx(efficacy * (3 * fire + 10 * lamp)).epsilon(1e-6));
+    for (const auto& [name, layer, watts] : {std::tuple("fire", 0, 3.0), {"lamp", 1, 10.0}}) {
+      CHECK((*picture.find(fmt::format("Illuminance_{}.Y", name)))[i] ==
+            Approx(efficacy * watts * layers.layers[layer].illuminance[i]).epsilon(1e-6));
+    }
+  }
+  CHECK(picture.attributes.at("photile.units") == "cd/m2");
+  CHECK(picture.numbers.at("whiteLuminance") == 1.0f);
+  std::vector<glm::vec3> root(6);
+  combine_layers(light_layers(picture), read_light_mix(picture), root);
+  for (std::size_t i = 0; i < 6; ++i)
+    CHECK(root[i].g == Approx((*picture.find("G"))[i]).epsilon(1e-6));
+
+  // Numbers without a unit are of the light's own.
+  const Image changed = relight(picture, {{"lamp", "500"}, {"fire", "1"}});
+  const auto lights = nlohmann::json::parse(changed.attributes.at("photile.lights"));
+  CHECK(lights[0]["unit"] == "W");
+  CHECK(lights[0]["power"] == 1);
+  CHECK(lights[1]["unit"] == "lm");
+  CHECK(lights[1]["power"] == 500);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const float fire = layers.layers[0].radiance[i].r, lamp = layers.layers[1].radiance[i].r;
+    CHECK((*changed.find("R"))[i] == Approx(efficacy * fire + 500 * lamp).epsilon(1e-5));
+  }
+
+  // Without the lamp's layer what is left is in cd/m2 still.
+  Image left;
+  static_cast<PictureHeader&>(left) = picture;
+  left.channel_names.clear();
+  for (const std::string channel :
+       {"R", "G", "B", "A", "Combined_fire.R", "Combined_fire.G", "Combined_fire.B"}) {
+    left.add(channel) = *picture.find(channel);
+  }
+  CHECK(relight(left, {}).attributes.at("photile.units") == "cd/m2");
+  CHECK(read_light_mix(left).lights[0].unit == PowerUnit::lumen);
+  CHECK(read_light_mix(left).lights[0].power == Approx(3 * efficacy));
 }
 
 TEST_CASE("layers start black, one per light, in the scene's order") {

@@ -279,6 +279,18 @@ TEST_CASE("rows that no source confirms say so, and the glare of observers is ju
   CHECK_THAT(lines[3], Contains("desk 2: UGR 22.4, at most 19: NOT MET"));
 }
 
+TEST_CASE("a UGR below 10 is stated as data sheets do, and compared by its number") {
+  CHECK(glare_text(19.26) == "19.3");
+  CHECK(glare_text(10) == "10.0");
+  CHECK(glare_text(9.99) == "<10");
+  CHECK(glare_text(-7.5) == "<10");
+  const auto judged = [](double limit, double rating) {
+    return judgement_text({"desk 2", "UGR", limit, {rating, 0.1}, true});
+  };
+  CHECK(judged(19, -7.5) == "desk 2: UGR <10, at most 19: met");
+  CHECK(judged(8, 9) == "desk 2: UGR 9, at most 8: NOT MET");  // a limit of one's own
+}
+
 TEST_CASE("within two standard errors of the limit a judgement is doubtful") {
   const Requirement own = parse_requirement("Em=500");
   CHECK(judge(grid(GridRole::task, {505, 505}, 10), own)[0].doubtful());

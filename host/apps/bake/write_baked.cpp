@@ -64,9 +64,10 @@ std::vector<std::uint8_t> texels_of(const Texture& texture) {
 }
 
 void write_layer(const std::filesystem::path& file, const BakedLight& baked, std::size_t layer,
-                 const MixedLight& light) {
+                 const LightMix& mix) {
   const std::vector<glm::vec3> texels = baked.layer(layer);
-  const glm::vec3 scale(light.power * glm::dvec3(light.tint));
+  const MixedLight& light = mix.lights[layer];
+  const glm::vec3 scale(mix.power_in_picture(light) * glm::dvec3(light.tint));
   Image image;
   image.width = static_cast<int>(baked.width());
   image.height = static_cast<int>(baked.height());
@@ -259,11 +260,12 @@ void write_baked(const std::filesystem::path& file, const Scene& scene, const Ba
   json layers;
   for (std::size_t i = 0; i < mix.lights.size(); ++i) {
     const MixedLight& light = mix.lights[i];
-    write_layer(layer_file(file, i), baked, i, light);
+    write_layer(layer_file(file, i), baked, i, mix);
     layers.push_back({{"light", light.name},
                       {"uri", layer_file(file, i).filename().string()},
                       {"texCoord", 1},
                       {"power", light.power},
+                      {"unit", symbol_of(light.unit)},
                       {"tint", {light.tint.r, light.tint.g, light.tint.b}}});
   }
   document["scenes"] = {
@@ -271,7 +273,7 @@ void write_baked(const std::filesystem::path& file, const Scene& scene, const Ba
        {"extras",
         {{"photile",
           {{"light_maps", layers},
-           {"irradiance", scene.unit == PowerUnit::lumen ? "lm/m2" : "W/m2"}}}}}}};
+           {"irradiance", mix.unit() == PowerUnit::lumen ? "lm/m2" : "W/m2"}}}}}}};
   document["scene"] = 0;
   document.write();
 }

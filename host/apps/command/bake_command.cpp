@@ -48,7 +48,8 @@ void run_bake(BakeOptions& options) {
   RenderSession session(prepared_scene, devices, render.parameters, prepared ? &*prepared : nullptr,
                         keep_maps(scene, render, progress), progress);
   cache::SurfaceCache& cache = *session.light().cache();
-  for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
+  for (const MixedLight& light : mix.lights)
+    options.baking.powers.push_back(mix.power_in_picture(light));
   const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.visibility(),
                                options.baking, progress);
   bake::write_baked(options.output, scene, baked, mix);

@@ -165,7 +165,7 @@ nlohmann::ordered_json levels_json(const report::LevelComparison& comparison) {
   }
   for (const auto& power : comparison.powers) {
     json["powers"].push_back({{"light", power.light},
-                              {"unit", unit_symbol(power.unit)},
+                              {"unit", symbol_of(power.unit)},
                               {"first", power.a},
                               {"second", power.b}});
   }

@@ -139,6 +139,11 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   std::optional<measuring::Requirement> requirement;
   if (!options.target.empty()) requirement = measuring::parse_requirement(options.target);
+  if (options.daylight_factor && requirement) {
+    throw UsageError(
+        "--target judges lux, and daylight factors are per cent of the sky's lux; leave out one of "
+        "them, or let photile daylight judge the room by EN 17037");
+  }
   if (options.daylight_factor) take_overcast_sky(render.load);
   note_inputs_of(render);
   note_places(options.places);

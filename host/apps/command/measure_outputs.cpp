@@ -71,7 +71,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
   record["lumen_per_watt"] = run.mix.lumen_per_watt;
   for (const MixedLight& light : run.mix.lights) {
     record["lights"].push_back(
-        {{"name", light.name}, {"power", light.power}, {"unit", unit_symbol(light.unit)}});
+        {{"name", light.name}, {"power", light.power}, {"unit", symbol_of(light.unit)}});
   }
   if (run.requirement) record["target"] = target_json(measurement, *run.requirement);
   record["grids"] = report::measurement_json(measurement);

@@ -142,7 +142,8 @@ void run_publish(PublishOptions& options) {
 
   const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
   options.baking.open = bake::open_sides(prepared_scene->rays);
-  for (const MixedLight& light : mix.lights) options.baking.powers.push_back(light.power);
+  for (const MixedLight& light : mix.lights)
+    options.baking.powers.push_back(mix.power_in_picture(light));
   options.baking.most_texels =
       limits::max_published_texels / std::max<std::size_t>(1, mix.lights.size());
 

@@ -198,8 +198,7 @@ void write_glare(const RenderOptions& options, const LightLayers& layers,
   std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
   image::draw_marks(glare.marks, rgb);
   view::write_screenshot(options.glare, layers.width, layers.height, rgb);
-  const PowerUnit unit = mix.lights.empty() ? PowerUnit::lumen : mix.lights.front().unit;
-  for (const std::string& line : image::glare_lines(glare, unit)) progress.note(line);
+  for (const std::string& line : image::glare_lines(glare, mix.unit())) progress.note(line);
 }
 
 /// Renders and writes the pictures. Returns a watch that was started when they were written: what

@@ -146,7 +146,7 @@ std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double eff
     const IntensityDistribution* const lamp = file == none ? nullptr : &scene.distributions[file];
     all[group] += lumens[i];
     if (lamp != nullptr && lamp->data().watts > 0) {
-      stated[group] += lamp->data().watts * lumens[i] / lamp->flux();
+      stated[group] += lamp->electrical_watts(lumens[i]);
     } else {
       known[group] = false;
     }

@@ -149,7 +149,7 @@ json run_json(const RunRecord& record) {
   for (const MixedLight& light : record.mix.lights) {
     result["lights"].push_back({{"name", light.name},
                                 {"power", light.power},
-                                {"unit", unit_symbol(light.unit)},
+                                {"unit", symbol_of(light.unit)},
                                 {"tint", {light.tint.r, light.tint.g, light.tint.b}}});
   }
   for (const StageStatistics& stage : record.stages) {

@@ -56,10 +56,35 @@ json components(const Vector& vector) {
   return json::array({vector.x, vector.y, vector.z});
 }
 
-json power_json(double power, PowerUnit unit, double lumen_per_watt) {
-  const bool lumen = unit == PowerUnit::lumen;
-  return {{"lumens", lumen ? power : power * lumen_per_watt},
-          {"watts", lumen ? power / lumen_per_watt : power}};
+/// What a light of the scene emits, as its layer states it.
+struct StatedPower {
+  double power;
+  PowerUnit unit;
+  double lumens;
+  double electrical_watts;  ///< that a luminaire takes; 0 = not known
+};
+
+std::vector<StatedPower> stated_powers(const Scene& scene, const LightMix& mix) {
+  const LightGroups groups = light_groups_of(scene);
+  const std::vector<double> powers = powers_of(scene, mix);
+  std::vector<StatedPower> stated;
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    const PowerUnit unit = mix.lights[groups.group_of[i]].unit;
+    const double lumens = in_unit(powers[i], unit, PowerUnit::lumen, mix.lumen_per_watt);
+    const std::uint32_t file = scene.lights[i].distribution;
+    stated.push_back({powers[i], unit, lumens,
+                      file == none ? 0 : scene.distributions[file].electrical_watts(lumens)});
+  }
+  return stated;
+}
+
+/// Radiant watts of luminaires with photometric files would be read as those of the mains.
+json power_json(const StatedPower& stated, bool photometric, double lumen_per_watt) {
+  json entry{{"unit", symbol_of(stated.unit)}, {"lumens", stated.lumens}};
+  if (!photometric)
+    entry["watts"] = in_unit(stated.power, stated.unit, PowerUnit::watt, lumen_per_watt);
+  if (stated.electrical_watts > 0) entry["electrical_watts"] = stated.electrical_watts;
+  return entry;
 }
 
 /// The file that says where a light shines to, or "".
@@ -69,7 +94,7 @@ std::string source_of(const Scene& scene, const Light& light) {
   return "";
 }
 
-json light_json(const Light& light, const std::string& source, double power, PowerUnit unit,
+json light_json(const Light& light, const std::string& source, const StatedPower& stated,
                 double lumen_per_watt) {
   json entry{{"name", light.name},
              {"kind", kind_name(light)},
@@ -78,13 +103,14 @@ json light_json(const Light& light, const std::string& source, double power, Pow
              {"two_sided", light.two_sided}};
   if (!light.group.empty()) entry["group"] = light.group;
   if (!source.empty()) entry["source"] = source;
-  entry.update(power_json(power, unit, lumen_per_watt));
+  entry.update(power_json(stated, light.distribution != none, lumen_per_watt));
   return entry;
 }
 
-json group_json(const MixedLight& group, double lumen_per_watt) {
+json group_json(const MixedLight& group, const StatedPower& stated, bool photometric,
+                double lumen_per_watt) {
   json entry{{"name", group.name}, {"lights", group.members}, {"color", components(group.color)}};
-  entry.update(power_json(group.power, group.unit, lumen_per_watt));
+  entry.update(power_json(stated, photometric, lumen_per_watt));
   return entry;
 }
 
@@ -175,15 +201,17 @@ Extents extents_of(const Scene& scene) {
 std::vector<std::string> sky_summary(const LightMix& mix) {
   const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(mix);
   double power = 0;
+  PowerUnit unit = PowerUnit::lumen;
   std::size_t patches = 0;
   for (std::size_t i = 0; i < mix.lights.size(); ++i) {
     if (patch_of[i] == none) continue;
     patches = std::max<std::size_t>(patches, patch_of[i]);
     power += mix.lights[i].power;
+    unit = mix.lights[i].unit;
   }
   if (patches == 0) return {};
   return {fmt::format("sky: {} patches and the ground, a light each: {}", patches,
-                      format_power_in_lumens(power, mix.lights.front().unit, mix.lumen_per_watt))};
+                      format_power_in_lumens(power, unit, mix.lumen_per_watt))};
 }
 
 namespace {
@@ -212,17 +240,20 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
                   "{:.4g}, {:.4g})",
                   size.x, size.y, size.z, extents.lowest.x, extents.lowest.y, extents.lowest.z,
                   extents.highest.x, extents.highest.y, extents.highest.z)};
-  const std::vector<double> powers = powers_of(scene, mix);
+  const std::vector<StatedPower> powers = stated_powers(scene, mix);
   const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(mix);
   const LightGroups groups = light_groups_of(scene);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
     if (patch_of[groups.group_of[i]] != none) continue;
     const std::string source = source_of(scene, light);
-    lines.push_back(fmt::format("light: {}: {}, {}{}{}", light.name, kind_name(light),
-                                format_power_in_lumens(powers[i], scene.unit, mix.lumen_per_watt),
-                                light.group.empty() ? "" : ", of group " + light.group,
-                                source.empty() ? "" : ", from " + source));
+    const double watts = powers[i].electrical_watts;
+    lines.push_back(fmt::format(
+        "light: {}: {}, {}{}{}{}", light.name, kind_name(light),
+        format_power_in_lumens(powers[i].power, powers[i].unit, mix.lumen_per_watt),
+        watts > 0 ? fmt::format(", takes {}", format_power(watts, PowerUnit::watt)) : "",
+        light.group.empty() ? "" : ", of group " + light.group,
+        source.empty() ? "" : ", from " + source));
   }
   for (const std::string& line : sky_summary(mix)) lines.push_back(line);
   if (is_black_below_the_horizon(scene)) {
@@ -290,10 +321,9 @@ std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix) {
         counted(materials, "material"), counted(covered, "triangle"),
         100 * defaults::doubtful_reflectance, brightest, 100 * most));
   }
-  const std::vector<double> powers = powers_of(scene, mix);
-  const double lumens = scene.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
+  const std::vector<StatedPower> powers = stated_powers(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const double flux = lumens * powers[i];
+    const double flux = powers[i].lumens;
     if (scene.lights[i].is_distant() || !(flux > 0) || flux >= defaults::doubtful_lumens) continue;
     lines.push_back(
         fmt::format("light '{}' emits {:.2g} lm, less than a candle (12 lm); --light NAME=FLUX "
@@ -321,7 +351,7 @@ std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix) 
 json scene_json(const Scene& scene, const LightMix& mix) {
   const Extents extents = extents_of(scene);
   json result{{"scene", scene.source.string()},
-              {"unit", unit_symbol(scene.unit)},
+              {"unit", symbol_of(mix.unit())},
               {"lumen_per_watt", mix.lumen_per_watt},
               {"triangles", scene.triangle_count()},
               {"vertices", scene.vertices.size()},
@@ -348,13 +378,24 @@ json scene_json(const Scene& scene, const LightMix& mix) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     result["materials"].push_back(material_json(scene, scene.materials[i], triangles[i]));
   }
-  const std::vector<double> powers = powers_of(scene, mix);
+  const std::vector<StatedPower> powers = stated_powers(scene, mix);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     result["lights"].push_back(light_json(scene.lights[i], source_of(scene, scene.lights[i]),
-                                          powers[i], scene.unit, mix.lumen_per_watt));
+                                          powers[i], mix.lumen_per_watt));
   }
-  for (const MixedLight& group : mix.lights) {
-    if (!group.members.empty()) result["groups"].push_back(group_json(group, mix.lumen_per_watt));
+  const LightGroups groups = light_groups_of(scene);
+  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+    const MixedLight& group = mix.lights[i];
+    if (group.members.empty()) continue;
+    StatedPower stated{group.power, group.unit, mix.lumens_of(group), 0};
+    bool photometric = true, known = true;
+    for (const std::uint32_t light : groups.groups[i].lights) {
+      photometric = photometric && scene.lights[light].distribution != none;
+      known = known && powers[light].electrical_watts > 0;
+      stated.electrical_watts += powers[light].electrical_watts;
+    }
+    if (!known) stated.electrical_watts = 0;
+    result["groups"].push_back(group_json(group, stated, photometric, mix.lumen_per_watt));
   }
   for (const auto& [camera, room] : measuring::rooms_of_cameras(scene)) {
     result["rooms"].push_back({{"camera", scene.cameras[camera].name},

@@ -227,10 +227,8 @@ std::string format_seconds(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
-std::string unit_symbol(PowerUnit unit) { return unit == PowerUnit::lumen ? "lm" : "W"; }
-
 std::string format_power(double power, PowerUnit unit) {
-  return report::grouped(power, 4) + " " + unit_symbol(unit);
+  return report::grouped(power, 4) + " " + symbol_of(unit);
 }
 
 std::string format_power_in_lumens(double power, PowerUnit unit, double lumen_per_watt) {

@@ -98,7 +98,4 @@ std::string format_power(double power, PowerUnit unit);
 /// "800 lm", and of a light that its scene counts in watts "5 W (3,415 lm)".
 std::string format_power_in_lumens(double power, PowerUnit unit, double lumen_per_watt);
 
-/// "lm" or "W"
-std::string unit_symbol(PowerUnit unit);
-
 }  // namespace photile::app

@@ -80,7 +80,7 @@ class PageWriter {
     json& d = document_;
     d["title"] = room_.title;
     d["version"] = room_.version;
-    d["lux"] = scene_.unit == PowerUnit::lumen ? 1.0 : room_.mix.lumen_per_watt;
+    d["lux"] = in_unit(1, room_.mix.unit(), PowerUnit::lumen, room_.mix.lumen_per_watt);
     d["coding"] = {{"steps", steps_per_octave}, {"octaves", octaves}, {"chroma", chroma_steps}};
     d["atlas"] = {{"width", room_.baked.width()}, {"height", room_.baked.height()},
                   {"texel", room_.baked.texel()}, {"used", room_.baked.used_texels()},
@@ -104,20 +104,22 @@ class PageWriter {
   void add_lights() {
     const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(room_.mix);
     const LightGroups groups = light_groups_of(scene_);
-    for (std::size_t i = 0; i < room_.mix.lights.size(); ++i) {
-      const MixedLight& light = room_.mix.lights[i];
+    const LightMix& mix = room_.mix;
+    for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+      const MixedLight& light = mix.lights[i];
       const double brightest =
           sections_.add_light(fmt::format("light{}", i), room_.baked.layer(i), room_.baked.width());
       json entry{{"name", light.name},
                  {"power", light.power},
-                 {"unit", light.unit == PowerUnit::lumen ? "lm" : "W"},
+                 {"scale", in_unit(1, light.unit, mix.unit(), mix.lumen_per_watt)},
+                 {"unit", symbol_of(light.unit)},
                  {"color", numbers(light.color)},
                  {"tint", numbers(light.tint)},
                  {"brightest", brightest}};
       if (patch_of[i] != none) {
         entry["patch"] = patch_of[i];
-        entry["unitPower"] = groups.groups[i].power *
-                             (light.unit == PowerUnit::lumen ? 1 : 1 / room_.mix.lumen_per_watt);
+        entry["unitPower"] =
+            groups.groups[i].power * in_unit(1, PowerUnit::lumen, light.unit, mix.lumen_per_watt);
       }
       document_["lights"].push_back(std::move(entry));
     }

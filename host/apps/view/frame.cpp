@@ -112,17 +112,12 @@ DisplayedFrame false_coloured(const Frame& frame, const LightMix& mix,
   return result;
 }
 
-/// What turns a layer's illuminance into lux.
-double lux_of(const MixedLight& light, const LightMix& mix) {
-  return light.power * (light.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt);
-}
-
 }  // namespace
 
 std::vector<glm::vec3> scales_of(const LightMix& mix) {
   std::vector<glm::vec3> scales;
   for (const MixedLight& light : mix.lights) {
-    scales.emplace_back(light.power * glm::dvec3(light.tint));
+    scales.emplace_back(mix.power_in_picture(light) * glm::dvec3(light.tint));
   }
   return scales;
 }
@@ -134,7 +129,7 @@ std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& 
     double sum = 0;
     for_each_light(layers, pixel % width, pixel / width,
                    [&](std::size_t light, float illuminance, const glm::vec3&) {
-                     sum += lux_of(mix.lights[light], mix) * static_cast<double>(illuminance);
+                     sum += mix.lumens_of(mix.lights[light]) * static_cast<double>(illuminance);
                    });
     result[pixel] = static_cast<float>(sum);
   });
@@ -167,7 +162,7 @@ std::array<float, 3> white_of(const Frame& frame, const LightMix& mix) {
   }
   for (std::size_t light = 0; light < sums.size(); ++light) {
     if (!frame.mixed.empty()) sums[light] = 1;
-    sums[light] *= lux_of(mix.lights[light], mix);
+    sums[light] *= mix.lumens_of(mix.lights[light]);
   }
   return image::white_of_light(sums, mix);
 }
@@ -182,16 +177,16 @@ std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, i
     return readings;
   // A layer holds the light of power 1: times paths it is as the number of photons.
   std::vector<double> photons(mix.lights.size());
-  for_each_light(frame.layers, static_cast<std::size_t>(x), static_cast<std::size_t>(y),
-                 [&](std::size_t light, float illuminance, const glm::vec3& radiance) {
-                   const MixedLight& mixed = mix.lights[light];
-                   readings[light].luminance.value =
-                       mixed.power * luminance(glm::dvec3(mixed.tint) * glm::dvec3(radiance));
-                   readings[light].illuminance.value =
-                       lux_of(mixed, mix) * static_cast<double>(illuminance);
-                   if (light >= frame.noise.paths.size()) return;
-                   photons[light] = static_cast<double>(illuminance) * frame.noise.paths[light];
-                 });
+  for_each_light(
+      frame.layers, static_cast<std::size_t>(x), static_cast<std::size_t>(y),
+      [&](std::size_t light, float illuminance, const glm::vec3& radiance) {
+        const MixedLight& mixed = mix.lights[light];
+        readings[light].luminance.value =
+            mix.power_in_picture(mixed) * luminance(glm::dvec3(mixed.tint) * glm::dvec3(radiance));
+        readings[light].illuminance.value = mix.lumens_of(mixed) * static_cast<double>(illuminance);
+        if (light >= frame.noise.paths.size()) return;
+        photons[light] = static_cast<double>(illuminance) * frame.noise.paths[light];
+      });
   const double all = std::accumulate(photons.begin(), photons.end(), 0.0);
   for (std::size_t light = 0; light < readings.size(); ++light) {
     if (!(photons[light] > 0) || !(frame.noise.photons > 0)) continue;

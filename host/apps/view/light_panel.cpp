@@ -16,8 +16,6 @@ namespace photile::view {
 
 namespace {
 
-const char* word_of(PowerUnit unit) { return unit == PowerUnit::lumen ? "lm" : "W"; }
-
 void tell(std::string& message, const std::function<void()>& action) {
   try {
     action();
@@ -93,7 +91,7 @@ bool draw_light(LightControl& control) {
   // The slider of a lamp that is off in the scene still has to reach somewhere.
   const double most = control.scene_power > 0 ? 4 * control.scene_power : 1000;
   const double least = 0;
-  const std::string format = report::grouped(control.power, 4) + " " + word_of(control.unit);
+  const std::string format = report::grouped(control.power, 4) + " " + symbol_of(control.unit);
   constexpr float temperature_width = 70;
   ImGui::SetNextItemWidth(-temperature_width - ImGui::GetStyle().ItemSpacing.x);
   changed |= ImGui::SliderScalar("##power", ImGuiDataType_Double, &control.power, &least, &most,

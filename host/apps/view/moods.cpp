@@ -43,11 +43,6 @@ double kelvin_of(double value) {
 /// With four digits that count: a slider's other ones say nothing.
 double rounded(double power) { return *parse_number<double>(fmt::format("{:.4g}", power)); }
 
-double in_unit(double power, PowerUnit from, PowerUnit to, double lumen_per_watt) {
-  if (from == to) return power;
-  return to == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
-}
-
 PowerUnit unit_of(const std::string& word) {
   if (word == "lm") return PowerUnit::lumen;
   if (word == "W") return PowerUnit::watt;
@@ -143,7 +138,7 @@ std::vector<LightChange> Moods::changes(const std::string& name, const LightMix&
       changes.push_back({light.name, "off"});
       continue;
     }
-    const char* unit = setting.unit == PowerUnit::lumen ? "lm" : "W";
+    const char* unit = symbol_of(setting.unit);
     if (setting.power) changes.push_back({light.name, fmt::format("{}{}", *setting.power, unit)});
     if (setting.kelvin > 0) {
       changes.push_back({light.name, fmt::format("{}K", setting.kelvin)});
@@ -191,7 +186,7 @@ void Moods::write(const std::map<std::string, Mood>& moods) const {
       entry = {{"on", setting.on}};
       if (setting.power) {
         entry["power"] = *setting.power;
-        entry["unit"] = setting.unit == PowerUnit::lumen ? "lm" : "W";
+        entry["unit"] = symbol_of(setting.unit);
       }
       if (setting.color) entry["color"] = hex_of(*setting.color);
       if (setting.kelvin > 0) entry["kelvin"] = setting.kelvin;

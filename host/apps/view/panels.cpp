@@ -224,8 +224,7 @@ void draw_photon_map(const PhotonMapView* map) {
 }  // namespace
 
 const char* luminance_unit(const LightMix& mix) {
-  const bool photometric = mix.lights.empty() || mix.lights[0].unit == PowerUnit::lumen;
-  return photometric ? "cd/m2" : "W/(m2 sr)";
+  return mix.unit() == PowerUnit::lumen ? "cd/m2" : "W/(m2 sr)";
 }
 
 void draw_display(PanelState& state, const PanelReadings& readings, PanelEvents& events) {

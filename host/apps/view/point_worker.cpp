@@ -24,9 +24,8 @@ std::vector<Measured> ClickedPoint::lux(const LightMix& mix, double factor,
     auto& row = values.emplace_back(count + 1);
     for (std::size_t light = 0; light < repeat.size(); ++light) {
       const MixedLight& mixed = mix.lights[light];
-      const double lumens = mixed.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
       const auto lux =
-          static_cast<float>(factor * lumens * mixed.power *
+          static_cast<float>(factor * mix.lumens_of(mixed) *
                              luminance(glm::dvec3(mixed.tint) * glm::dvec3(repeat[light])));
       row[layers ? layers->layer_of[light] : light] += lux;
       row.back() += lux;

@@ -105,7 +105,7 @@ void check_powers(const Scene& scene, double emissive_scale) {
     if (light.power <= limits::max_light_power) continue;
     const std::string emits =
         fmt::format("light '{}' emits {:.4g} {}; the limit is {:g}", light.name, light.power,
-                    scene.unit == PowerUnit::lumen ? "lm" : "W", limits::max_light_power);
+                    symbol_of(scene.unit), limits::max_light_power);
     const bool by_scale = light.kind == LightKind::area && emissive_scale > 1.0 &&
                           light.power / emissive_scale <= limits::max_light_power;
     if (by_scale) {

@@ -199,16 +199,15 @@ template <class Refusal>
 void check_flux(const Scene& scene, const std::string& what, const char* remedy) {
   const Light& light = scene.lights.back();
   if (light.power <= limits::max_light_power) return;
-  throw Refusal(
-      fmt::format("{}: light '{}' emits {:.4g} {} into a scene of this size; the limit is "
-                  "{:g}; {}",
-                  what, light.name, light.power, scene.unit == PowerUnit::lumen ? "lm" : "W",
-                  limits::max_light_power, remedy));
+  throw Refusal(fmt::format(
+      "{}: light '{}' emits {:.4g} {} into a scene of this size; the limit is "
+      "{:g}; {}",
+      what, light.name, light.power, symbol_of(scene.unit), limits::max_light_power, remedy));
 }
 
 /// What is given in lux, in the scene's unit.
 double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& options) {
-  return scene.unit == PowerUnit::lumen ? lux : lux / options.lumen_per_watt;
+  return in_unit(lux, PowerUnit::lumen, scene.unit, options.lumen_per_watt);
 }
 
 void add_picture(const EnvironmentPicture& picture, Scene& scene) {

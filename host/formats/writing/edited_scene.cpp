@@ -68,7 +68,8 @@ std::vector<LightSetting> settings_of(const loading::SourcedScene& sourced,
     const glm::dvec3 color = setting.tint * glm::dvec3(light.color);
     const double bright = luminance(color);
     setting.color = bright > 0 ? color / bright : glm::dvec3(1.0);
-    setting.factor = group.power > 0 ? mixed.power / group.power : 0;
+    const double power = in_unit(mixed.power, mixed.unit, scene.unit, mix.lumen_per_watt);
+    setting.factor = group.power > 0 ? power / group.power : 0;
     setting.power = light.power * setting.factor * bright;
     setting.recolored = mixed.tint != glm::vec3(1.0f) || colored_by_option(light, options);
     if (setting.source.kind == reading::LightSource::Kind::surface) {

@@ -168,9 +168,8 @@ void Readings::add(const LightLayers& layers, const LightMix& mix, double factor
   auto& repeat = repeats_.emplace_back();
   for (const LightLayers::Layer& layer : dense.layers) {
     const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
-    const double lumens = light.unit == PowerUnit::lumen ? 1.0 : mix.lumen_per_watt;
     const glm::dvec3 scale =
-        factor * glm::pi<double>() * light.power * lumens * glm::dvec3(light.tint);
+        factor * glm::pi<double>() * mix.lumens_of(light) * glm::dvec3(light.tint);
     std::vector<float>& values = repeat.emplace_back(sensors_);
     std::size_t lost = 0;
     for (std::size_t sensor = 0; sensor < sensors_; ++sensor) {

@@ -182,10 +182,17 @@ std::vector<std::string> requirement_lines(const Measurement& measurement,
   return lines;
 }
 
+std::string glare_text(double rating, const char* format) {
+  return rating < least_glare ? fmt::format("<{:g}", least_glare)
+                              : fmt::format(fmt::runtime(format), rating);
+}
+
 std::string judgement_text(const Judgement& judgement) {
-  const bool ratio = judgement.figure == "Uo";
-  const std::string value = ratio ? fmt::format("{:.3f}", judgement.measured.value)
-                                  : fmt::format("{:.4g}", judgement.measured.value);
+  const double measured = judgement.measured.value;
+  const bool rating = judgement.figure == "UGR" && judgement.required >= least_glare;
+  const std::string value = judgement.figure == "Uo" ? fmt::format("{:.3f}", measured)
+                            : rating                 ? glare_text(measured, "{:.4g}")
+                                                     : fmt::format("{:.4g}", measured);
   return fmt::format("{}: {} {}, {} {:g}: {}{}", judgement.grid, judgement.figure, value,
                      judgement.at_most ? "at most" : "at least", judgement.required,
                      judgement.met() ? "met" : "NOT MET",

@@ -60,6 +60,11 @@ std::vector<std::string> requirement_lines(const Measurement& measurement,
 /// E_m of the immediate surroundings of a task: EN 12464-1:2021, table 2.
 double mean_of_surroundings(double task_mean);
 
+/// Below it a glare rating means nothing any more (CIE 117).
+inline constexpr double least_glare = 10;
+/// A glare rating as data sheets state it: "19.3" or "<10".
+std::string glare_text(double rating, const char* format = "{:.1f}");
+
 /// "office-desk: working plane: Em 512 lux, at least 500: met"
 std::string judgement_text(const Judgement& judgement);
 

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "common/foreign_text.hpp"
+#include "measuring/requirements.hpp"
 #include "report/tables.hpp"
 
 namespace photile::report {
@@ -19,23 +20,30 @@ std::string with_error(const std::optional<Measured>& measured, const char* form
   return fmt::format("{:>{}}", text, width);
 }
 
+/// A rating of UGR with its error.
+std::string rating_text(const std::optional<Measured>& measured, int width) {
+  if (!measured) return with_error(measured, "", width);
+  const std::string rating = measuring::glare_text(measured->value);
+  if (!rating.starts_with('<')) return with_error(measured, "{:.1f} +-{:.1g}", width);
+  return fmt::format("{:>{}}", rating, width);
+}
+
 std::string plain(const std::optional<double>& value, const char* format, int width) {
   if (!value) return fmt::format("{:>{}}", "-", width);
   return fmt::format("{:>{}}", fmt::format(fmt::runtime(format), *value), width);
 }
 
 /// "highest UGR: 19.3, eyes 4", or nothing.
-template <class Value>
-void add_highest(std::span<const glare::ObserverGlare> all, const char* what, const char* format,
+template <class Value, class Text>
+void add_highest(std::span<const glare::ObserverGlare> all, const char* what, const Text& text,
                  const Value& value, std::vector<std::string>& lines) {
   const glare::ObserverGlare* highest = nullptr;
   for (const glare::ObserverGlare& each : all) {
     if (value(each) && (!highest || *value(each) > *value(*highest))) highest = &each;
   }
   if (!highest) return;
-  lines.push_back(fmt::format("highest {}: {}, {}", what,
-                              fmt::format(fmt::runtime(format), *value(*highest)),
-                              highest->observer.name));
+  lines.push_back(
+      fmt::format("highest {}: {}, {}", what, text(*value(*highest)), highest->observer.name));
 }
 
 std::optional<double> value_of(const std::optional<Measured>& measured) {
@@ -111,11 +119,11 @@ std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) 
                   "UGR", ggr ? fmt::format(" {:>6}", "GGR") : "",
                   pictures ? fmt::format(" {:>15} {:>10} {:>6}", "DGP", "low light", "DGI") : "")};
   for (const glare::ObserverGlare& each : all) {
-    std::string line = fmt::format("{:<{}} {} {} {}", each.observer.name, width,
-                                   with_error(each.illuminance, "{:.4g} +-{:.2g}", 16),
-                                   with_error(each.background, "{:.4g} +-{:.2g}", 16),
-                                   with_error(each.ugr, "{:.1f} +-{:.1g}", 13));
-    if (ggr) line += " " + plain(each.ggr, "{:.1f}", 6);
+    std::string line =
+        fmt::format("{:<{}} {} {} {}", each.observer.name, width,
+                    with_error(each.illuminance, "{:.4g} +-{:.2g}", 16),
+                    with_error(each.background, "{:.4g} +-{:.2g}", 16), rating_text(each.ugr, 13));
+    if (ggr) line += fmt::format(" {:>6}", each.ggr ? measuring::glare_text(*each.ggr) : "-");
     if (pictures) {
       line += " " + with_error(each.dgp, "{:.3f} +-{:.1g}", 15);
       line += " " + plain(value_of(each.dgp_low_light), "{:.3f}", 10);
@@ -125,9 +133,11 @@ std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) 
   }
   if (all.size() > 1) {
     add_highest(
-        all, "UGR", "{:.1f}", [](const auto& each) { return value_of(each.ugr); }, lines);
+        all, "UGR", [](double rating) { return measuring::glare_text(rating); },
+        [](const auto& each) { return value_of(each.ugr); }, lines);
     add_highest(
-        all, "DGP", "{:.3f}", [](const auto& each) { return value_of(each.dgp); }, lines);
+        all, "DGP", [](double rating) { return fmt::format("{:.3f}", rating); },
+        [](const auto& each) { return value_of(each.dgp); }, lines);
   }
   return lines;
 }
@@ -173,7 +183,7 @@ Json glare_json(std::span<const glare::ObserverGlare> all) {
   return list;
 }
 
-std::vector<std::string> ugr_table_lines(const glare::UgrTable& table) {
+std::vector<std::string> ugr_table_lines(const glare::UgrTable& table, bool corrected) {
   std::string ceiling = "ceiling    ", walls = "walls      ", floor = "floor      ";
   for (int direction = 0; direction < 2; ++direction) {
     for (const glare::RoomReflectances& each : glare::table_reflectances) {
@@ -189,7 +199,9 @@ std::vector<std::string> ugr_table_lines(const glare::UgrTable& table) {
     std::string line = fmt::format("{:<11}", room_name(glare::table_rooms[room]));
     std::size_t column = 0;
     for_each_value(table, room, [&](double value) {
-      line += std::isnan(value) ? fmt::format("{:>6}", "-") : fmt::format("{:>6.1f}", value);
+      line += std::isnan(value) ? fmt::format("{:>6}", "-")
+              : corrected       ? fmt::format("{:>6}", measuring::glare_text(value))
+                                : fmt::format("{:>6.1f}", value);
       if (++column == glare::table_reflectances.size()) line += "  ";
     });
     lines.push_back(std::move(line));

@@ -53,9 +53,11 @@ ReportTable glare_table(std::vector<json> observers) {
     observers.resize(most_observers);
   }
   for (const json& each : observers) {
+    const std::optional<double> ugr = ugr_of(each);
+    const std::string plain = ugr ? measuring::glare_text(*ugr) : "";
     table.rows.push_back({each.at("name").get<std::string>(), place_text(each.at("position")),
-                          measured_text(each, "ugr", 1), measured_text(each, "dgp", 3),
-                          measured_text(each, "illuminance", 0)});
+                          plain.starts_with('<') ? plain : measured_text(each, "ugr", 1),
+                          measured_text(each, "dgp", 3), measured_text(each, "illuminance", 0)});
   }
   return table;
 }
@@ -163,8 +165,12 @@ void add_glare_map(const json& record, IncludedResults& results) {
   FalseColour ratings;
   ratings.scale = 32;
   ratings.label = "UGR";
+  const auto drawn = [](const json& observer) {
+    const std::optional<double> rating = ugr_of(observer);
+    return rating ? std::optional(std::max(*rating, measuring::least_glare)) : std::nullopt;
+  };
   results.maps.push_back(map_of(record["plane"], "observers", "the highest UGR", ratings,
-                                record.at("observers"), ugr_of));
+                                record.at("observers"), drawn));
 }
 
 }  // namespace

@@ -36,7 +36,12 @@ std::vector<std::pair<std::string, std::string>> data_rows(const IntensityDistri
     add("power",
         fmt::format("{} W, {:.0f} lm/W", number_text(data.watts, 4), lamp.flux() / data.watts));
   }
-  if (data.kelvin > 0) add("colour temperature", fmt::format("{:.0f} K", data.kelvin));
+  if (data.kelvin > 0) {
+    const bool tunable = data.highest_kelvin > data.kelvin;
+    add("colour temperature",
+        fmt::format("{:.0f}{} K", data.kelvin,
+                    tunable ? fmt::format(" to {:.0f}", data.highest_kelvin) : ""));
+  }
   if (data.rendering > 0) add("colour rendering", fmt::format("Ra {:.0f}", data.rendering));
   return rows;
 }
@@ -99,7 +104,7 @@ std::vector<Part> parts_of(const Scene& scene, const std::vector<double>& lumens
     if (part == parts.end()) part = parts.insert(part, Part{lamp});
     ++part->count;
     part->lumens += lumens[i];
-    part->watts += lamp->data().watts * lumens[i] / lamp->flux();
+    part->watts += lamp->electrical_watts(lumens[i]);
   }
   return parts;
 }

@@ -97,7 +97,8 @@ LevelComparison compare_levels(const LayeredPicture& a, const LayeredPicture& b,
     const auto other = std::find_if(of_b.lights.begin(), of_b.lights.end(),
                                     [&](const auto& each) { return each.name == light.name; });
     if (other == of_b.lights.end()) continue;
-    result.powers.push_back({light.name, light.power, other->power, light.unit});
+    const double power = in_unit(other->power, other->unit, light.unit, of_b.lumen_per_watt);
+    result.powers.push_back({light.name, light.power, power, light.unit});
   }
   return result;
 }
@@ -108,8 +109,8 @@ bool lights_differ(const PictureHeader& a, const PictureHeader& b) {
     for (const MixedLight& light : of_a.lights) {
       for (const MixedLight& other : of_b.lights) {
         if (light.name != other.name) continue;
-        const double larger = std::max(light.power, other.power);
-        if (std::abs(light.power - other.power) > 1e-6 * larger) return true;
+        const double power = in_unit(other.power, other.unit, light.unit, of_b.lumen_per_watt);
+        if (std::abs(light.power - power) > 1e-6 * std::max(light.power, power)) return true;
         if (glm::length(light.tint - other.tint) > 1e-4f) return true;
       }
     }

@@ -30,7 +30,8 @@ std::string glare_csv(std::span<const glare::ObserverGlare> all);
 nlohmann::ordered_json glare_json(std::span<const glare::ObserverGlare> all);
 
 /// A UGR table as data sheets have it: rooms in rows, five reflectances crosswise and endwise.
-std::vector<std::string> ugr_table_lines(const glare::UgrTable& table);
+///   corrected   of a luminaire's own flux; others are no ratings yet, and have no least one
+std::vector<std::string> ugr_table_lines(const glare::UgrTable& table, bool corrected = true);
 std::string ugr_table_csv(const glare::UgrTable& table);
 nlohmann::ordered_json ugr_table_json(const glare::UgrTable& table);
 

@@ -24,7 +24,7 @@ Row judgement_row(const Page& page, const measuring::Judgement& judgement) {
   const Measured& measured = judgement.measured;
   const std::string value = judgement.figure == "Em"   ? Page::lux(measured)
                             : judgement.figure == "Uo" ? Page::ratio(measured)
-                                                       : fmt::format("{:.1f}", measured.value);
+                                                       : measuring::glare_text(measured.value);
   return figure_row(page, judgement.grid, judgement.figure, judgement.at_most, judgement.required,
                     value, verdict(page, judgement.met()));
 }

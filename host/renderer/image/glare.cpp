@@ -31,16 +31,20 @@ Glare find_glare(const LightLayers& picture, const LightLayers& reflections, con
   }
   Glare glare;
   glare.limit = limit > largest_factor ? limit : limit * mean_luminance(picture, mix);
-  for (const MixedLight& light : mix.lights) glare.lights.push_back({light.name});
+  std::vector<double> powers;
+  for (const MixedLight& light : mix.lights) {
+    glare.lights.push_back({light.name});
+    powers.push_back(mix.power_in_picture(light));
+  }
   const auto width = static_cast<std::size_t>(picture.width);
   glare.marks.assign(width * static_cast<std::size_t>(picture.height), -1);
   for (std::size_t pixel = 0; pixel < glare.marks.size(); ++pixel) {
     double brightest = glare.limit;
     for_each_light(reflections, pixel % width, pixel / width,
                    [&](std::size_t light, float, const glm::vec3& radiance) {
-                     const MixedLight& mixed = mix.lights[light];
                      const double reflected =
-                         mixed.power * luminance(glm::dvec3(mixed.tint) * glm::dvec3(radiance));
+                         powers[light] *
+                         luminance(glm::dvec3(mix.lights[light].tint) * glm::dvec3(radiance));
                      LightGlare& its = glare.lights[light];
                      its.peak = std::max(its.peak, reflected);
                      if (reflected <= glare.limit) return;

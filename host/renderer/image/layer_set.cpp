@@ -110,6 +110,7 @@ LayerSet find_layers(const PictureHeader& image) {
   }
 
   LightRecords recorded = read_light_records(image);
+  const PowerUnit unit = recorded.mix.unit();
   LayerSet set;
   set.records.mix.lumen_per_watt = recorded.mix.lumen_per_watt;
   for (MixedLight& light : recorded.mix.lights) {
@@ -128,6 +129,13 @@ LayerSet find_layers(const PictureHeader& image) {
     set.channels.push_back(finder.channels_of(layer));
     set.records.relative.insert(light.name);
     set.records.mix.lights.push_back(std::move(light));
+  }
+  // A picture in cd/m2 stays one where all that is left in it are lights of watts.
+  if (set.records.mix.unit() != unit && set.records.relative.empty()) {
+    for (MixedLight& light : set.records.mix.lights) {
+      light.power = set.records.mix.lumens_of(light);
+      light.unit = PowerUnit::lumen;
+    }
   }
   return set;
 }
@@ -234,7 +242,7 @@ void write_light_records(PictureHeader& image, const LightRecords& records) {
   for (const MixedLight& light : records.mix.lights) {
     Json record{{"name", light.name}, {"power", light.power}};
     if (!records.relative.contains(light.name)) {
-      record["unit"] = light.unit == PowerUnit::lumen ? "lm" : "W";
+      record["unit"] = symbol_of(light.unit);
     }
     if (!light.members.empty()) record["lights"] = light.members;
     record["color"] = rgb_to_json(light.color);
@@ -247,8 +255,7 @@ void write_light_records(PictureHeader& image, const LightRecords& records) {
   if (!records.relative.empty()) return;
 
   const double lumen_per_watt = records.mix.lumen_per_watt;
-  const bool watts =
-      !records.mix.lights.empty() && records.mix.lights.front().unit == PowerUnit::watt;
+  const bool watts = records.mix.unit() == PowerUnit::watt;
   set_attribute(image, "photile.units", watts ? "W/(m2 sr)" : "cd/m2");
   set_attribute(image, "photile.illuminance.units", "lux");
   set_attribute(image, efficacy_attribute, fmt::format("{}", lumen_per_watt));

@@ -125,12 +125,6 @@ Image to_image(const LayeredPicture& picture) {
 
 namespace {
 
-/// What a layer's illuminance is multiplied with. The tint is not in it: it leaves the luminance
-/// that the light emits as it was.
-float illuminance_scale(const MixedLight& light, double lumen_per_watt) {
-  return static_cast<float>(light.power * (light.unit == PowerUnit::lumen ? 1.0 : lumen_per_watt));
-}
-
 class MixedPicture : public LayeredPicture {
  public:
   MixedPicture(const LightLayers& layers, const LightMix& mix) : source_(layers) {
@@ -141,8 +135,9 @@ class MixedPicture : public LayeredPicture {
     for (const LightLayers::Layer& layer : layers.layers) {
       const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
       layers_.push_back({layer.light, true});
-      scales_.emplace_back(light.power * glm::dvec3(light.tint));
-      illuminance_scales_.push_back(illuminance_scale(light, mix.lumen_per_watt));
+      scales_.emplace_back(mix.power_in_picture(light) * glm::dvec3(light.tint));
+      // Without the tint, which leaves the luminance that the light emits as it was.
+      illuminance_scales_.push_back(static_cast<float>(mix.lumens_of(light)));
       records.mix.lights.push_back(light);
     }
     image::write_light_records(header_, records);

@@ -123,10 +123,7 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
     power *= factor->factor;
   } else {
     const SetPower& set = std::get<SetPower>(request);
-    power = set.power;
-    if (set.unit && *set.unit != light.unit) {
-      power = light.unit == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
-    }
+    power = in_unit(set.power, set.unit.value_or(light.unit), light.unit, lumen_per_watt);
   }
   if (!(power <= limits::max_light_power)) {
     throw UsageError(fmt::format("light '{}': its power would be {:g}; the limit is {:g}; use less",

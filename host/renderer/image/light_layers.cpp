@@ -86,6 +86,19 @@ LightLayers LightLayers::dense() const {
   return result;
 }
 
+double in_unit(double power, PowerUnit from, PowerUnit to, double lumen_per_watt) {
+  if (from == to) return power;
+  return to == PowerUnit::lumen ? power * lumen_per_watt : power / lumen_per_watt;
+}
+
+PowerUnit LightMix::unit() const {
+  const bool watts =
+      !lights.empty() && std::all_of(lights.begin(), lights.end(), [](const MixedLight& light) {
+        return light.unit == PowerUnit::watt;
+      });
+  return watts ? PowerUnit::watt : PowerUnit::lumen;
+}
+
 LightMix LightMix::of(const Scene& scene, double lumen_per_watt) {
   check_value("lumen_per_watt", lumen_per_watt, PositiveNumbers{});
   LightMix mix;
@@ -93,8 +106,11 @@ LightMix LightMix::of(const Scene& scene, double lumen_per_watt) {
   for (const LightGroup& group : light_groups_of(scene).groups) {
     MixedLight mixed;
     mixed.name = group.name;
-    mixed.power = group.power;
-    mixed.unit = scene.unit;
+    const bool photometric =
+        std::all_of(group.lights.begin(), group.lights.end(),
+                    [&](std::uint32_t light) { return scene.lights[light].distribution != none; });
+    mixed.unit = photometric ? PowerUnit::lumen : scene.unit;
+    mixed.power = in_unit(group.power, scene.unit, mixed.unit, lumen_per_watt);
     mixed.color = group.color;
     for (const std::uint32_t light : group.lights) {
       if (!scene.lights[light].group.empty()) mixed.members.push_back(scene.lights[light].name);
@@ -147,7 +163,7 @@ std::vector<glm::vec3> scales_of(const LightLayers& layers, const LightMix& mix)
   std::vector<glm::vec3> scales;
   for (const LightLayers::Layer& layer : layers.layers) {
     const MixedLight& light = mix.lights[image::index_of(mix, layer.light)];
-    scales.emplace_back(light.power * glm::dvec3(light.tint));
+    scales.emplace_back(mix.power_in_picture(light) * glm::dvec3(light.tint));
   }
   return scales;
 }

@@ -184,7 +184,7 @@ LightLayers light_layers(const Image& layered) {
     const MixedLight& light = set.records.mix.lights[l];
     const image::LayerChannels& channels = set.channels[l];
     for (int c = 0; c < 3; ++c) {
-      const double power = light.power * light.tint[c];
+      const double power = set.records.mix.power_in_picture(light) * light.tint[c];
       if (power == 0) continue;
       const auto& plane = layered.channels[channels.rgb[static_cast<std::size_t>(c)]];
       for (std::size_t p = 0; p < plane.size(); ++p) {
@@ -193,9 +193,9 @@ LightLayers light_layers(const Image& layered) {
     }
     if (!channels.illuminance || light.power == 0) continue;
     const auto& plane = layered.channels[*channels.illuminance];
-    const double lux = light.unit == PowerUnit::lumen ? 1.0 : set.records.mix.lumen_per_watt;
+    const double lumens = set.records.mix.lumens_of(light);
     for (std::size_t p = 0; p < plane.size(); ++p) {
-      layers.layers[l].illuminance[p] = static_cast<float>(plane[p] / (light.power * lux));
+      layers.layers[l].illuminance[p] = static_cast<float>(plane[p] / lumens);
     }
   }
   return layers;

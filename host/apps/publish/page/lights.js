@@ -17,9 +17,9 @@ class Lights {
       const state = this.states[i];
       if (light.patch !== undefined) {
         const power = sky ? sky[light.patch] * light.unitPower : light.power;
-        return scaled(light.tint, this.sky.on ? power * this.sky.factor : 0);
+        return scaled(light.tint, this.sky.on ? light.scale * power * this.sky.factor : 0);
       }
-      return scaled(state.tint, state.on ? state.power : 0);
+      return scaled(state.tint, state.on ? light.scale * state.power : 0);
     });
   }
 
