@@ -80,7 +80,7 @@ sanitized=(scene image loading cloud saved_maps measuring fuzz trace groups surf
 sanitized_tests="^($(IFS='|'; echo "${sanitized[*]}"))/"
 step "build" cmake/build.sh release
 step "quick tests" ctest --preset release --parallel "$jobs"
-for area in blender cache command device estimate faults groups mpi package property publish python \
+for area in blender cache command device docs estimate faults groups mpi package property publish python \
   reference render runtimes validation view; do
   slow "$area"
 done

@@ -34,6 +34,7 @@
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "view/moods.hpp"
+#include "view/moving_sky.hpp"
 
 namespace photile::app {
 namespace {
@@ -75,6 +76,15 @@ std::vector<std::filesystem::path> files_of(const std::vector<std::string>& outp
     files.insert(files.end(), own.begin(), own.end());
   }
   return files;
+}
+
+/// What moves the sky on the page: patches stand for it in the scene that is to be loaded, unless
+/// the options ask for the sky of one hour or of another kind.
+SkySituation sky_of_page(SceneLoadOptions& load) {
+  const SkySituation given = load.situation;
+  const bool placed = given.site || !given.weather.empty();
+  const bool moves = load.sky ? load.sky->kind == SkyKind::patches : !given.time;
+  return placed && moves && !load.sun ? view::take_moving_sky(load) : given;
 }
 
 /// The light maps of a room.
@@ -132,11 +142,12 @@ void run_publish(PublishOptions& options) {
   note_inputs_of(render);
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
+  const SkySituation situation = sky_of_page(render.load);
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
   check_outputs(files_of(options.outputs, scene, mix));
   const std::vector<publish::Preset> presets = presets_of(render, mix);
-  const publish::SkyHours hours = publish::sky_hours(mix, render.load.situation);
+  const publish::SkyHours hours = publish::sky_hours(mix, situation);
   std::vector<Device> devices = devices_for(render, progress);
   tell_scene(scene, mix, progress);
 
