@@ -82,11 +82,10 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         return self._core.statistics
 
     def __getitem__(self, light: str) -> NDArray[np.float32]:
-        for row in self._core.lights(self._changes):
-            if row["name"] == light:
-                scale = row["power_in_picture"] * np.array(row["tint"])
-                return self._core.unit_layer(light) * scale.astype(np.float32)
-        raise KeyError(light)
+        layer = self._core.unit_layer(light)
+        row = next(row for row in self._core.lights(self._changes) if row["name"] == light)
+        scale = row["power_in_picture"] * np.array(row["tint"])
+        return layer * scale.astype(np.float32)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.lights)
