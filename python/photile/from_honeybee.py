@@ -90,12 +90,19 @@ def _material(modifier: Any) -> tuple[dict[str, Any], str]:
 
 
 def _surfaces(model: Any) -> Iterator[tuple[Any, Any]]:
-    """Meshes of triangles and quads, and their modifiers; rooms' faces face inwards."""
+    """Meshes of triangles and quads, and their modifiers.
+
+    Rooms' faces, windows and doors face inwards: where two rooms touch, each has its own side.
+    """
     for face in model.faces:
         if str(face.type) != "AirBoundary":
             inwards = face.punched_geometry.flip() if face.has_parent else face.punched_geometry
             yield inwards.triangulated_mesh3d, face.properties.radiance.modifier
-    for part in (*model.apertures, *model.doors, *model.shades):
+    for part in (*model.apertures, *model.doors):
+        of_room = part.has_parent and part.parent.has_parent
+        inwards = part.geometry.flip() if of_room else part.geometry
+        yield inwards.triangulated_mesh3d, part.properties.radiance.modifier
+    for part in model.shades:
         yield part.geometry.triangulated_mesh3d, part.properties.radiance.modifier
     for part in model.shade_meshes:
         yield part.geometry, part.properties.radiance.modifier

@@ -83,6 +83,23 @@ Scene room_in_a_yard(float thickness, float above) {
   return builder.build();
 }
 
+/// Light in the cavity of a closed room's double shell: a panel that faces the ceiling from above,
+/// or a lamp in the gap of double walls.
+Scene room_in_a_shell(float gap, bool panel_above) {
+  SceneBuilder builder;
+  const std::uint32_t paint = builder.add(diffuse(glm::vec3(0.7f)));
+  builder.box({0, 0, 0}, {4, 4, 3}, paint, true);
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  if (panel_above) {
+    builder.grid({1.7f, 1.7f, 3 + gap}, {0, 0.6f, 0}, {0.6f, 0, 0}, 1, black,
+                 builder.add(area_light("panel")));
+  } else {
+    builder.box({-gap, -gap, -gap}, {4 + gap, 4 + gap, 3 + gap}, paint, true);
+    builder.add(point_light("cavity", {2, 2, 3 + 0.5f * gap}));
+  }
+  return builder.build();
+}
+
 }  // namespace
 
 TEST_CASE("No light comes through the walls of a closed room") {
@@ -107,6 +124,22 @@ TEST_CASE("No light comes through the walls of a closed room") {
   for (std::size_t i = within; i < lux.size(); ++i) yard += lux[i] / beside;
   CAPTURE(inside, yard);
   CHECK(inside < 1e-4 * yard);
+}
+
+TEST_CASE("No light comes through a thin shell whose other side is lit") {
+  const float gap = GENERATE(1e-5f, 1e-4f, 1e-3f, 1e-2f);
+  const bool panel_above = GENERATE(true, false);
+  const auto mode = GENERATE(LightMapMode::automatic, LightMapMode::on);
+  CAPTURE(gap, panel_above, name_of(mode));
+  const Scene scene = room_in_a_shell(gap, panel_above);
+  const std::vector<Sensor> sensors{
+      {{2, 2, 0.75}, {0, 0, 1}}, {{1, 1, 0.75}, {0, 0, 1}}, {{2, 2, 2.9}, {0, 0, 1}}};
+  RenderParameters parameters = parameters_of(mode);
+  parameters.photons.emitted_photons = GENERATE(20'000, 100'000);
+  const std::vector<double> lux =
+      lux_of(gather(scene, sensors, {.rays = 1024}, one_device(), parameters));
+  // In the room the light would be some 0.1 lux.
+  for (const double value : lux) CHECK(value < 1e-4);
 }
 
 TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes") {

@@ -33,13 +33,34 @@ TEST_CASE("a face that the file has twice is one, whatever its winding") {
   CHECK(warns(scene, {"2 triangles that lie exactly on others"}));
 }
 
-TEST_CASE("of two materials in one place the first counts") {
+TEST_CASE("of two materials in one place that face one way the first counts") {
   const Scene scene =
-      load_obj(unit_square + lamp_above + "usemtl other\nf 1 2 3\nusemtl wall\nf 3 2 1\nf 1 3 4\n",
+      load_obj(unit_square + lamp_above + "usemtl other\nf 1 2 3\nusemtl wall\nf 2 3 1\nf 1 3 4\n",
                three_materials);
   REQUIRE(scene.triangle_count() == 4);
   CHECK(scene.materials[scene.triangle_material[2]].name == "other");
   CHECK(scene.materials[scene.triangle_material[3]].name == "wall");
+  CHECK(scene.report.duplicate_triangles == 1);
+  CHECK(warns(scene, {"1 triangles that lie exactly on others", "that face one way the first"}));
+}
+
+TEST_CASE("two materials in one place that face away from each other are two sides") {
+  // The third and the fourth face look where others look that come before them.
+  const Scene scene = load_obj(unit_square + lamp_above +
+                                   "usemtl other\nf 1 2 3\nusemtl wall\nf 3 2 1\nf 1 2 3\n"
+                                   "usemtl other\nf 1 3 2\n",
+                               three_materials);
+  REQUIRE(scene.triangle_count() == 4);
+  CHECK(scene.report.duplicate_triangles == 2);
+  CHECK(scene.triangles[2] == scene.triangles[3]);
+  CHECK(scene.front_side[2] != scene.front_side[3]);
+  CHECK(scene.materials[scene.triangle_material[2]].name == "other");
+  CHECK(scene.materials[scene.triangle_material[3]].name == "wall");
+  const Scene alike =
+      load_obj(unit_square + lamp_above + "usemtl other\nf 1 2 3\nf 3 2 1\nusemtl wall\nf 3 2 1\n",
+               three_materials);
+  CHECK(alike.triangle_count() == 3);
+  CHECK(alike.report.duplicate_triangles == 2);
 }
 
 TEST_CASE("a lamp of two faces back to back shines from both, a repeated face not twice") {

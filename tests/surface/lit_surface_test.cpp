@@ -65,7 +65,7 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
     photons.position.push_back(middle_of(dark) + above);
     photons.first_of = {0, own, own, own + 1, own + 1};
     const auto parts =
-        surface::find_unlit_regions(mesh, photons, std::vector<std::uint8_t>(4, 0), 0.05);
+        surface::find_unlit_regions(mesh, photons, std::vector<std::uint8_t>(4, 0), {}, 0.05);
     CAPTURE(on_lit);
     REQUIRE(parts.size() == (on_lit == 10 ? 1 : 0));
     for (const DarkPart& part : parts) {

@@ -235,7 +235,7 @@ double fraction_through(const Scene& scene) {
   for (int i = 0; i < samples; ++i) {
     const RandomStream random(3, static_cast<std::uint64_t>(i), 0);
     const RandomBlock place = random.block(Purpose::film_position, 0);
-    glm::vec3 origin(1.8f * place.uniform(0) - 0.9f, 1.8f * place.uniform(1) - 0.9f, 2);
+    RayOrigin origin(glm::vec3(1.8f * place.uniform(0) - 0.9f, 1.8f * place.uniform(1) - 0.9f, 2));
     std::uint32_t holes = 0;
     const auto met = next_surface(rays, origin, {0, 0, -1}, random, Purpose::eye_cutouts, holes);
     REQUIRE(met);
@@ -269,7 +269,7 @@ TEST_CASE("A texture's alpha multiplies the opacity") {
 TEST_CASE("Looking at a lamp sees through holes by what is not there") {
   const auto seen = [](const Scene& scene) {
     const RayScene rays(scene);
-    return transmittance(rays, {0.2f, 0.1f, -0.5f}, {0.25f, 0.15f, 3.0f});
+    return transmittance(rays, glm::vec3(0.2f, 0.1f, -0.5f), {0.25f, 0.15f, 3.0f});
   };
   CHECK(seen(plate_over_floor(1.0f)) == glm::vec3(0.0f));
   CHECK(seen(plate_over_floor(0.0f)) == glm::vec3(1.0f));
@@ -302,12 +302,12 @@ TEST_CASE("Photons reach what lies behind holes, and are stored where they pass"
 TEST_CASE("A surface without holes asks for no random numbers") {
   const Scene scene = plate_over_floor(1.0f);
   const RayScene rays(scene);
-  glm::vec3 origin(0.1f, 0.2f, 1.0f);
+  RayOrigin origin(glm::vec3(0.1f, 0.2f, 1.0f));
   std::uint32_t holes = 0;
   REQUIRE(
       next_surface(rays, origin, {0, 0, -1}, RandomStream(1, 1, 0), Purpose::eye_cutouts, holes));
   CHECK(holes == 0);
-  CHECK(origin == glm::vec3(0.1f, 0.2f, 1.0f));
+  CHECK(origin.position == glm::vec3(0.1f, 0.2f, 1.0f));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST_CASE("A ray hits the point of the plate below it, on the side that it comes
     const float x = 1.9f * uniform() - 0.95f, y = 1.9f * uniform() - 0.95f;
     for (const float z : {-1.0f, 1.0f}) {
       const glm::vec3 direction(0, 0, -z);
-      const auto hit = impl_of(rays).intersect({x, y, z}, direction);
+      const auto hit = impl_of(rays).intersect(glm::vec3(x, y, z), direction);
       REQUIRE(hit);
       const SurfacePoint point = surface_hit(scene, *hit, direction);
       CHECK(glm::distance(point.position, glm::vec3(x, y, 0)) < 1e-6f);

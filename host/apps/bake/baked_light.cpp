@@ -120,7 +120,13 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
 void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
                               const Progress& progress) {
   const std::span<const std::uint32_t> chart_of = maps_.charts().chart_of();
-  const auto open = [&](std::uint32_t s) { return parameters.open.empty() || parameters.open[s]; };
+  const scene::CoincidentFaces& coincident = maps_.charts().coincident();
+  const auto counts = [&](std::uint32_t s) {
+    return coincident.before(s).empty() || !coincident.parts_of(scene_, s).counted.empty();
+  };
+  const auto open = [&](std::uint32_t s) {
+    return (parameters.open.empty() || parameters.open[s]) && counts(s);
+  };
   PrimaryHits samples;  // the middle, and a point towards each corner
   for (std::uint32_t s = 0; s < chart_of.size(); ++s) {
     if (chart_of[s] == none || !open(s)) continue;
@@ -148,9 +154,30 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
     const std::uint32_t brighter =
         only_back || light[oriented(t, 1 - front)] > light[oriented(t, front)] ? 1 - front : front;
     for (const std::uint32_t side : {0u, 1u}) {
-      if (side == brighter || light[oriented(t, side)] > 0) sides_.push_back(oriented(t, side));
+      const std::uint32_t s = oriented(t, side);
+      if ((side == brighter || light[s] > 0) && counts(s)) sides_.push_back(s);
     }
   }
+}
+
+std::vector<DrawnTriangle> BakedLight::drawn(std::uint32_t oriented_face) const {
+  const std::uint32_t triangle = triangle_of(oriented_face);
+  const std::size_t second = 1 + side_of(oriented_face), third = 2 - side_of(oriented_face);
+  const scene::CoincidentFaces& coincident = maps_.charts().coincident();
+  if (coincident.before(oriented_face).empty()) {
+    const std::array<glm::vec3, 3> corner{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    return {{corner[0], corner[second], corner[third]}};
+  }
+  std::vector<DrawnTriangle> triangles;
+  for (const auto& part : coincident.parts_of(scene_, oriented_face).counted) {
+    const auto weights = [&](std::size_t corner) {
+      const auto [number, u, v, other, before] =
+          trace::nearest_on_triangle(scene_, triangle, glm::dvec3(part[corner]));
+      return glm::vec3(1.0f - u - v, u, v);
+    };
+    triangles.push_back({weights(0), weights(second), weights(third)});
+  }
+  return triangles;
 }
 
 bool BakedLight::place_charts(double texel, std::uint32_t most_side) {

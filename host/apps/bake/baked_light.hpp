@@ -46,6 +46,19 @@ struct BakeParameters {
 /// through glass and cutouts, too. Depends on the scene alone.
 std::vector<std::uint8_t> open_sides(const RayScene& rays);
 
+/// A triangle on another: per corner the weights of the other's corners. Counter-clockwise as seen
+/// from the side that it belongs to.
+using DrawnTriangle = std::array<glm::vec3, 3>;
+
+/// What an attribute of the corners of a triangle is at these weights.
+template <class Value>
+Value at_weights(const std::array<Value, 3>& corner, const glm::vec3& weights) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (weights[static_cast<int>(i)] == 1.0f) return corner[i];
+  }
+  return weights.x * corner[0] + weights.y * corner[1] + weights.z * corner[2];
+}
+
 /// The charts of the light maps side by side: of each triangle the side on which more light falls,
 /// and the other where it is open and lit, too. Texels are points of the charts' lattices, so that
 /// bilinear filtering blends neighbours of one chart; a border of one texel repeats the last.
@@ -69,6 +82,9 @@ class BakedLight {
   /// Texture coordinates of a baked triangle's corners: (0, 0) is the top left corner of the
   /// picture.
   std::array<glm::vec2, 3> corners(std::uint32_t oriented_face) const;
+  /// The triangles that a baked side is drawn by: itself, or those of its parts in which no other
+  /// face in its place counts.
+  std::vector<DrawnTriangle> drawn(std::uint32_t oriented_face) const;
 
   /// Irradiance of a layer at power 1: width x height, row 0 at the top; 0 where no chart lies.
   /// Where nodes know how light depends on the normal it is that of the shading normal.

@@ -76,7 +76,9 @@ std::vector<std::uint8_t> met_sides(const RayScene& rays) {
     const auto numbers = [&](std::uint32_t index) {
       return random.block(trace::Purpose::eye_scattering, index);
     };
-    auto [origin, direction] = sources[path % sources.size()].start(scene, numbers(0), numbers(1));
+    const PathStart start = sources[path % sources.size()].start(scene, numbers(0), numbers(1));
+    trace::RayOrigin origin = start.position;
+    glm::vec3 direction = start.direction;
     for (std::uint32_t bounce = 0; bounce < open_bounces; ++bounce) {
       const auto hit = trace::intersect(rays, origin, direction);
       if (!hit) return;

@@ -207,10 +207,12 @@ json primitive_of(const Scene& scene, const BakedLight& baked,
     const std::uint32_t t = triangle_of(s);
     const auto corners = scene.corners(t);
     const auto light = baked.corners(s);
-    for (const std::size_t corner : {0u, 1 + side_of(s), 2 - side_of(s)}) {
-      positions.push_back(corners[corner]);
-      lights.push_back(light[corner]);
-      if (!scene.corner_uv.empty()) colours.push_back(scene.corner_uv[t][corner]);
+    for (const DrawnTriangle& triangle : baked.drawn(s)) {
+      for (const glm::vec3& weights : triangle) {
+        positions.push_back(at_weights(corners, weights));
+        lights.push_back(at_weights(light, weights));
+        if (!scene.corner_uv.empty()) colours.push_back(at_weights(scene.corner_uv[t], weights));
+      }
     }
   }
   // A second set needs a first one.

@@ -53,21 +53,24 @@ RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked) {
       const std::uint32_t triangle = triangle_of(side);
       const auto positions = scene.corners(triangle);
       const auto light_uv = baked.corners(side);
-      for (const std::size_t corner : {0u, 1 + side_of(side), 2 - side_of(side)}) {
-        RoomVertex vertex;
-        vertex.position = positions[corner];
-        vertex.normal = trace::shading_normal(scene, side, positions[corner]);
-        if (coordinates) {
-          vertex.uv = (textures.emission != none ? scene.corner_emission_uv
-                                                 : scene.corner_uv)[triangle][corner];
+      for (const bake::DrawnTriangle& drawn : baked.drawn(side)) {
+        for (const glm::vec3& weights : drawn) {
+          RoomVertex vertex;
+          vertex.position = bake::at_weights(positions, weights);
+          vertex.normal = trace::shading_normal(scene, side, vertex.position);
+          if (coordinates) {
+            vertex.uv = bake::at_weights(
+                (textures.emission != none ? scene.corner_emission_uv : scene.corner_uv)[triangle],
+                weights);
+          }
+          vertex.light_uv = bake::at_weights(light_uv, weights);
+          vertex.material = scene.triangle_material[triangle];
+          vertex.light = light_of(scene, side);
+          const auto [entry, is_new] =
+              number_of.insert({vertex, static_cast<std::uint32_t>(mesh.vertices.size())});
+          if (is_new) mesh.vertices.push_back(vertex);
+          mesh.indices.push_back(entry->second);
         }
-        vertex.light_uv = light_uv[corner];
-        vertex.material = scene.triangle_material[triangle];
-        vertex.light = light_of(scene, side);
-        const auto [entry, is_new] =
-            number_of.insert({vertex, static_cast<std::uint32_t>(mesh.vertices.size())});
-        if (is_new) mesh.vertices.push_back(vertex);
-        mesh.indices.push_back(entry->second);
       }
     }
     part.count = static_cast<std::uint32_t>(mesh.indices.size()) - part.first;

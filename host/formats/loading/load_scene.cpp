@@ -58,7 +58,8 @@ void report_dropped_triangles(const ImportReport& report, files::Warnings& warni
   }
   if (report.duplicate_triangles > 0) {
     warnings.add(fmt::format(
-        "{} triangles that lie exactly on others are dropped: of two materials the first counts",
+        "{} triangles that lie exactly on others are dropped: of those that face one way the first "
+        "counts",
         report.duplicate_triangles));
   }
 }

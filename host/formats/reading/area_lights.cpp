@@ -2,10 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "photile/errors.hpp"
+#include "scene/coincident_faces.hpp"
 #include "scene/light_emission.hpp"
 
 namespace photile::reading {
+namespace {
+
+/// Whether other faces are the backs of all these triangles.
+bool have_other_backs(const Scene& scene, const scene::CoincidentFaces& coincident,
+                      const std::vector<std::uint32_t>& triangles) {
+  return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t triangle) {
+    const std::uint32_t back = oriented(triangle, 1 - scene.front_side[triangle]);
+    return !coincident.before(back).empty() && coincident.parts_of(scene, back).counted.empty();
+  });
+}
+
+}  // namespace
 
 std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& object_name,
                                       std::uint32_t material, const Emission& emission,
@@ -40,6 +55,10 @@ std::vector<AreaLights::Origin> AreaLights::finish(files::Warnings& warnings) {
     triangles[light].push_back(triangle);
     area[light] += triangle_area(scene_, triangle);
   }
+  const bool any_two_sided =
+      std::any_of(pending_.begin(), pending_.end(),
+                  [](const Pending& pending) { return pending.emission.two_sided; });
+  const auto coincident = any_two_sided ? scene::CoincidentFaces(scene_) : scene::CoincidentFaces();
   std::vector<std::uint32_t> final_index(pending_.size(), none);
   const std::size_t first_light = scene_.lights.size();
   std::vector<const Pending*> sources;  // of the lights
@@ -48,8 +67,9 @@ std::vector<AreaLights::Origin> AreaLights::finish(files::Warnings& warnings) {
     Light light;
     light.name = name_of(pending);
     light.group = pending.traits.group;
-    light.two_sided = pending.emission.two_sided;
     light.triangles = std::move(triangles[i]);
+    light.two_sided =
+        pending.emission.two_sided && !have_other_backs(scene_, coincident, light.triangles);
     if (!set_emission(pending, area[i], light, warnings)) {
       warnings.add("light", light.name, "emits nothing (no area or no finite radiance); dropped");
       continue;

@@ -19,15 +19,16 @@ SkyRays::SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
                  const SkyRayParameters& parameters)
     : rays_(rays), patches_(patches), parameters_(parameters), portals_(rays.scene()) {}
 
-void SkyRays::follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t batch,
-                     const trace::RandomStream& random, VisibleByRays& seen) const {
+void SkyRays::follow(trace::RayOrigin origin, glm::vec3 direction, glm::vec3 weight,
+                     std::uint32_t batch, const trace::RandomStream& random,
+                     VisibleByRays& seen) const {
   const Scene& scene = rays_.scene();
   double radiance_factor = 1;
   float distance = 0;
   bool straight = true;
   std::uint32_t cutouts = 0;
   for (int depth = 0; depth <= parameters_.max_specular_depth; ++depth) {
-    const glm::vec3 from = origin;
+    const glm::vec3 from = origin.position;
     const auto met =
         trace::next_surface(rays_, origin, direction, random, trace::Purpose::eye_cutouts, cutouts);
     const auto factor = static_cast<float>(radiance_factor);

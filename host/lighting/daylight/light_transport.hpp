@@ -63,7 +63,7 @@ class SkyRays {
                      int rays) const;
 
  private:
-  void follow(glm::vec3 origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t batch,
+  void follow(trace::RayOrigin origin, glm::vec3 direction, glm::vec3 weight, std::uint32_t batch,
               const trace::RandomStream& random, VisibleByRays& seen) const;
 
   const RayScene& rays_;

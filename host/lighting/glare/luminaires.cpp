@@ -159,7 +159,7 @@ VisibleLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observe
     const double ahead = glm::dot(direction, observer.forward);
     if (!(distance > 0) || !(ahead > 0)) continue;
     const glm::vec3 place = lamp.kind == LightKind::area
-                                ? patch.point.origin_towards(glm::vec3(-direction))
+                                ? patch.point.origin_towards(glm::vec3(-direction)).position
                                 : lamp.position;
     const double share = static_cast<double>(patch.area) / whole;
     const double candela =

@@ -60,7 +60,7 @@ void measure_floor_of(const trace::Room& room, const RayScene& rays, const trace
   for (const glm::dvec3& place : room.positions()) {
     double above = glm::dot(place, axes.up);
     const double lowest = above - trace::Room::most_height;
-    glm::vec3 from(place);
+    trace::RayOrigin from{glm::vec3(place)};
     for (int i = 0; i < most_surfaces_below; ++i) {
       const auto hit = trace::intersect(rays, from, down);
       if (!hit) break;

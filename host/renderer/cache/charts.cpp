@@ -107,7 +107,7 @@ NearestPoint nearest_within(const Corners2& c, glm::dvec2 p, double inset) {
 }  // namespace
 
 Charts::Charts(const Scene& scene, double spacing, double angle_degrees)
-    : scene_(scene), spacing_(spacing) {
+    : scene_(scene), coincident_(scene), spacing_(spacing) {
   ChartGrowth growth = grow_charts(scene, spacing, angle_degrees);
   chart_of_ = std::move(growth.chart_of);
   charts_.resize(growth.seed.size());

@@ -12,6 +12,7 @@
 #include "common/index_rows.hpp"
 #include "geometry/box_tree.hpp"
 #include "photile/scene.hpp"
+#include "scene/coincident_faces.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::cache {
@@ -67,6 +68,7 @@ class Charts {
   std::span<const std::uint32_t> chart_of() const { return chart_of_; }
   const LatticeCoordinates& lattice(std::size_t chart) const { return lattices_[chart]; }
   double spacing() const { return spacing_; }
+  const scene::CoincidentFaces& coincident() const { return coincident_; }
   std::uint32_t roots() const { return roots_; }
   std::uint64_t bytes() const;
 
@@ -101,6 +103,7 @@ class Charts {
   glm::dvec2 in_plane(const Chart& chart, const glm::vec3& point) const;
 
   const Scene& scene_;
+  scene::CoincidentFaces coincident_;
   double spacing_;
   std::vector<std::uint32_t> chart_of_;
   IndexRows members_;  ///< oriented faces of the charts

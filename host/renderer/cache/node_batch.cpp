@@ -31,7 +31,8 @@ PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const Node
     const Charts::Support support = charts.support(nodes[i], levels);
     const trace::SurfacePoint point = trace::surface_point(scene, support.where, support.side);
     points.position[i] = point.position;
-    points.oriented_face[i] = point.oriented_face();
+    points.oriented_face[i] =
+        charts.coincident().at(scene, point.oriented_face(), glm::dvec3(point.position));
     if (!glossy) return;
     points.outgoing[i] = point.normal;
     points.lobe[i] = {.specular = glm::vec3(0.0f),

@@ -10,6 +10,7 @@
 #include "estimate/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
+#include "scene/scene_queries.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
 
@@ -24,11 +25,15 @@ constexpr float just_above = 0x1p-4f;
 /// Photons of a light that are looked at first. Where more than one of them is seen, much of its
 /// light is left.
 constexpr int most_probes = 5, most_probes_seen = 1;
+/// Photons of a face that are looked at for whether it lies in a cavity.
+constexpr std::size_t most_cavity_probes = 16;
 /// Places of the disc, each of the same area: the share that is seen is known to a tenth of the
 /// disc.
 constexpr int positions = 24;
 /// The part of an estimate that must be left for it to stand.
 constexpr float most_kept = 0.25f;
+/// The same where photons lie behind the surface.
+constexpr float most_kept_before = 0.9f;
 /// Photons farther from the hit's plane do not count (docs/density.md).
 constexpr float flat = 0.2f;
 /// Of the angle between the normals of surfaces that share light.
@@ -47,13 +52,19 @@ struct VisiblePhotons::Disc {
 struct VisiblePhotons::Layer {
   int photons = 0, passed = 0;  ///< how many there are, and are behind in the list
   int probes = 0, probes_seen = 0;
+  bool behind = false;       ///< some lie behind the surface
   double all = 0, seen = 0;  ///< flux, weighted by the kernel
 
-  bool doubtful() const { return probes > 0 && probes_seen <= most_probes_seen; }
+  bool doubtful() const { return probes > 0 && (behind || probes_seen <= most_probes_seen); }
+  /// Up to this part of the light what is seen replaces it.
+  double kept() const { return behind ? most_kept_before : most_kept; }
 };
 
-VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel)
+VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel,
+                               double radius)
     : rays_(rays),
+      rounding_(static_cast<float>(trace::ray_offset_per_coordinate) *
+                scene::largest_coordinate(rays.scene())),
       kernel_(kernel),
       position_(photons.position),
       oriented_face_(photons.oriented_face),
@@ -62,6 +73,7 @@ VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, Den
   for (const glm::vec3& flux : photons.flux) {
     flux_.push_back(static_cast<float>(luminance(glm::dvec3(flux))));
   }
+  find_cavities(radius);
 }
 
 std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& hits,
@@ -92,12 +104,54 @@ std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& h
     const float below = just_above * defaults::photon_ray_offset * reach;
     chosen[hit] = trace::occluded(rays_, here.position - below * here.normal,
                                   here.position - flat * reach * here.normal);
+    if (!chosen[hit]) chosen[hit] = is_before_cavity(here, reach);
   });
   std::vector<std::uint32_t> result;
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (chosen[hit]) result.push_back(hit);
   }
   return result;
+}
+
+void VisiblePhotons::find_cavities(double radius) {
+  const auto depth = static_cast<float>(flat * radius);
+  std::vector<std::size_t> first;  // photons of a face
+  for (std::size_t i = 0; i < oriented_face_.size(); ++i) {
+    if (i == 0 || oriented_face_[i] != oriented_face_[i - 1]) first.push_back(i);
+  }
+  first.push_back(oriented_face_.size());
+  std::vector<std::uint8_t> covers(first.size() - 1, 0);
+  tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t face) {
+    const trace::FlushDenormals flush_denormals;
+    const std::size_t count = first[face + 1] - first[face];
+    const std::size_t step = (count + most_cavity_probes - 1) / most_cavity_probes;
+    for (std::size_t i = first[face]; i < first[face + 1] && !covers[face]; i += step) {
+      covers[face] = covered(location_of(static_cast<std::uint32_t>(i)), rounding_, depth);
+    }
+  });
+  std::vector<geometry::Box> boxes;
+  for (std::size_t face = 0; face < covers.size(); ++face) {
+    if (covers[face] == 0) continue;
+    cavity_faces_.push_back(oriented_face_[first[face]]);
+    boxes.push_back(geometry::triangle_box(rays_.scene(), triangle_of(cavity_faces_.back())));
+  }
+  cavities_ = geometry::BoxTree(boxes);
+}
+
+bool VisiblePhotons::is_before_cavity(const trace::SurfaceLocation& here, float radius) const {
+  const Scene& scene = rays_.scene();
+  geometry::Box box;
+  box.extend(here.position);
+  bool found = false;
+  cavities_.visit_within(box, geometry::squared_reach(radius), [&](std::uint32_t i) {
+    const glm::vec3 normal(face_normal(scene, cavity_faces_[i]));
+    if (glm::dot(normal, here.normal) < least_cosine) return false;
+    for (const glm::vec3& corner : scene.corners(triangle_of(cavity_faces_[i]))) {
+      found = found || glm::dot(here.position - corner, here.normal) > rounding_;
+    }
+    return found;
+  });
+  return found;
 }
 
 double VisiblePhotons::weight(double relative_squared) const {
@@ -113,14 +167,23 @@ bool VisiblePhotons::sees(const trace::SurfaceLocation& here, const trace::Surfa
                           float height) const {
   const float off_plane = std::abs(glm::dot(there.position - here.position, here.normal));
   // In a cavity of the wall, say.
-  if (off_plane > just_above * height && covered(there, height + off_plane)) return false;
+  if (off_plane > just_above * height && covered(there, just_above * height, height + off_plane)) {
+    return false;
+  }
+  if (is_behind(here, there)) return false;
   // Nodes may lie close to the foot of a wall: the line ends short of them.
   return trace::see_each_other(rays_, there, here, {height, defaults::visibility_left_out});
 }
 
-bool VisiblePhotons::covered(const trace::SurfaceLocation& point, float height) const {
-  return trace::occluded(rays_, point.position + just_above * height * point.normal,
-                         point.position + height * point.normal);
+bool VisiblePhotons::covered(const trace::SurfaceLocation& point, float from, float to) const {
+  return trace::occluded(rays_, point.position + from * point.normal,
+                         point.position + to * point.normal);
+}
+
+bool VisiblePhotons::is_behind(const trace::SurfaceLocation& here,
+                               const trace::SurfaceLocation& photon) const {
+  const float below = glm::dot(here.position - photon.position, here.normal);
+  return below > rounding_ && covered(photon, rounding_, below + 2 * rounding_);
 }
 
 std::optional<trace::SurfaceLocation> VisiblePhotons::surface_at(
@@ -165,6 +228,10 @@ bool VisiblePhotons::probe(const Disc& disc, std::vector<Layer>& layers) const {
     ++layer.probes;
     if (sees(disc.here, location_of(photon), disc.height)) ++layer.probes_seen;
   }
+  for (const std::uint32_t photon : disc.photons) {
+    Layer& layer = layers[layer_of(photon)];
+    layer.behind = layer.behind || is_behind(disc.here, location_of(photon));
+  }
   return std::any_of(disc.photons.begin(), disc.photons.end(),
                      [&](std::uint32_t photon) { return layers[layer_of(photon)].doubtful(); });
 }
@@ -202,7 +269,7 @@ void VisiblePhotons::leave_out_hidden(const PrimaryHits& hits,
         .height = defaults::photon_ray_offset * std::sqrt(near.squared_radius[row])};
     if (!(disc.squared_radius > 0)) return;
     // High enough for cracks along walls not to count, unless the hit lies in a slit.
-    if (covered(disc.here, disc.height)) disc.height *= 0.25f;
+    if (covered(disc.here, just_above * disc.height, disc.height)) disc.height *= 0.25f;
     thread_local std::vector<Layer> layers;
     layers.resize(lights);
     for (const std::uint32_t photon : disc.photons) layers[layer_of(photon)] = {};
@@ -212,11 +279,11 @@ void VisiblePhotons::leave_out_hidden(const PrimaryHits& hits,
     for_each_estimate(estimates, hit, lights, [&](std::size_t index, std::size_t i) {
       const Layer& layer = layers[index];
       const bool lit = estimates.irradiance[i] != glm::vec3(0.0f);
-      if (!lit || !layer.doubtful() || !(layer.seen < most_kept * layer.all)) return;
+      if (!lit || !layer.doubtful() || !(layer.seen < layer.kept() * layer.all)) return;
       if (!area) area = visible_area(disc);
       const double all = luminance(glm::dvec3(estimates.irradiance[i]));
       const double seen = layer.seen / *area;
-      if (!(*area > 0) || !(seen < most_kept * all)) return;
+      if (!(*area > 0) || !(seen < (layer.behind ? 1.0 : most_kept) * all)) return;
       const auto scale = static_cast<float>(seen / all);
       estimates.irradiance[i] *= scale;
       if (!estimates.radiance.empty()) estimates.radiance[i] *= scale;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/box_tree.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
@@ -23,7 +24,8 @@ class VisiblePhotons {
  public:
   /// Keeps a reference to `rays`, and copies of what it needs of the photons.
   ///   kernel   of the estimates
-  VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel);
+  ///   radius   metres, from which no neighbour is farther
+  VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel, double radius);
 
   /// The hits whose estimate is not 0, and near which something stands on the surface: those whose
   /// neighbours need to be looked at.
@@ -32,8 +34,9 @@ class VisiblePhotons {
                                               double radius) const;
 
   /// Where a hit sees so few of a light's photons that they say less than a quarter of the light,
-  /// on the area that it sees, replaces the light's estimate by what they say. Else the estimate
-  /// stands: it has less noise, and knows the area exactly.
+  /// on the area that it sees, replaces the light's estimate by what they say, and where more than
+  /// a tenth of the light lies behind the surface itself, as in the cavity above a ceiling. Else
+  /// the estimate stands: it has less noise, and knows the area exactly.
   ///   chosen   of the hits
   ///   near     of the chosen hits
   void leave_out_hidden(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
@@ -47,9 +50,16 @@ class VisiblePhotons {
   /// Whether nothing stands between two points of a disc, at a height above the surface, metres.
   bool sees(const trace::SurfaceLocation& here, const trace::SurfaceLocation& there,
             float height) const;
-  /// Whether something lies less than `height` above a point.
-  bool covered(const trace::SurfaceLocation& point, float height) const;
-  /// Looks at a few photons of each light that has some. Returns whether one is in doubt.
+  /// Whether something lies above a point, between these heights, metres.
+  bool covered(const trace::SurfaceLocation& point, float from, float to) const;
+  /// Finds the faces on which photons lie close below another surface.
+  void find_cavities(double radius);
+  /// Whether one of these lies behind a surface, within a radius.
+  bool is_before_cavity(const trace::SurfaceLocation& here, float radius) const;
+  /// Whether a photon lies behind the surface of a disc, with a surface in between.
+  bool is_behind(const trace::SurfaceLocation& here, const trace::SurfaceLocation& photon) const;
+  /// Looks at a few photons of each light that has some, and at all behind the surface. Returns
+  /// whether one is in doubt.
   bool probe(const Disc& disc, std::vector<Layer>& layers) const;
   /// Sums the photons of the lights that are in doubt, all and those that are seen.
   ///   full   the farthest photon tells the radius
@@ -63,11 +73,14 @@ class VisiblePhotons {
   double weight(double relative_squared) const;
 
   const RayScene& rays_;
+  float rounding_;  ///< metres: surfaces that are nearer to each other count as one
   DensityKernel kernel_;
   std::vector<glm::vec3> position_;
   std::vector<std::uint32_t> oriented_face_;
   std::vector<float> flux_;           ///< luminance
   std::vector<std::uint16_t> light_;  ///< empty for one alone
+  std::vector<std::uint32_t> cavity_faces_;
+  geometry::BoxTree cavities_;  ///< of these faces
 };
 
 }  // namespace photile::estimate

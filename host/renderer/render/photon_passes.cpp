@@ -317,7 +317,8 @@ PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParamete
   kernels_->wait();
   std::shared_ptr<const estimate::VisiblePhotons> seen;
   if (leaves_out_hidden) {
-    seen = std::make_shared<const estimate::VisiblePhotons>(rays_, photons, kernel);
+    seen =
+        std::make_shared<const estimate::VisiblePhotons>(rays_, photons, kernel, parameters.radius);
   }
   std::vector<std::uint8_t> own;
   if (owners_) own = owners_->maps_of(plan_.used().processes->rank());

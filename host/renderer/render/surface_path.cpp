@@ -49,7 +49,7 @@ class SurfacePath {
  private:
   /// The next surface point in a direction; adds what it emits. Nothing beyond the scene.
   std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
-    glm::vec3 origin = from.origin_towards(direction);
+    trace::RayOrigin origin = from.origin_towards(direction);
     const auto point =
         trace::next_surface(rays_, origin, direction, random_, Purpose::path_cutouts, cutouts_);
     if (!point) {
@@ -110,7 +110,7 @@ class SurfacePath {
         lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));
     if (!light || !(glm::dot(light->direction, point.normal) > 0.0f)) return;
-    const glm::vec3 origin = point.origin_towards(light->direction);
+    const trace::RayOrigin origin = point.origin_towards(light->direction);
     const glm::vec3 arrives = light->received * trace::transmittance(rays_, origin, light->target);
     if (arrives == glm::vec3(0.0f)) return;
     const float weight = light->weight_beside(density(light->direction));

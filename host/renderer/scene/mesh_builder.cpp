@@ -38,11 +38,11 @@ bool comes_before(const glm::vec3& a, const glm::vec3& b) {
 }  // namespace
 
 std::size_t MeshBuilder::TriangleHash::operator()(std::uint32_t triangle) const {
-  return BytesHash{}(scene->triangles[triangle]);
+  return BytesHash{}(scene->triangles[triangle]) + scene->front_side[triangle];
 }
 
 bool MeshBuilder::TriangleEqual::operator()(std::uint32_t a, std::uint32_t b) const {
-  return scene->triangles[a] == scene->triangles[b];
+  return scene->triangles[a] == scene->triangles[b] && scene->front_side[a] == scene->front_side[b];
 }
 
 MeshBuilder::MeshBuilder(Scene& scene, const CornerNeeds& needs)
@@ -97,7 +97,7 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   scene_.front_side.push_back(front_side);
   scene_.triangle_material.push_back(material);
   scene_.triangle_light.push_back(light);
-  if (is_duplicate(static_cast<std::uint32_t>(scene_.triangles.size() - 1))) {
+  if (is_duplicate(static_cast<std::uint32_t>(scene_.triangles.size() - 1), sorted)) {
     scene_.triangles.pop_back();
     scene_.front_side.pop_back();
     scene_.triangle_material.pop_back();
@@ -122,15 +122,34 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   return true;
 }
 
-/// Whether the triangle lies exactly on one before it. Which of the two a ray meets would be
-/// chance, and photons would be shared between them. Files have such pairs for both sides of a
-/// surface, which here reflects on either; lights emit from one side only, so that they need both.
-bool MeshBuilder::is_duplicate(std::uint32_t triangle) {
-  const auto [first, inserted] = distinct_.insert(triangle);
-  if (inserted) return false;
+/// Whether the triangle says nothing that one before it in its place does not. Of two that look the
+/// same way the first counts. Two that look away from each other are the two sides of a surface;
+/// where both are of one material, as files often have them, one is enough, since a material
+/// reflects on either side. Lights shine from the front, so that they need both.
+bool MeshBuilder::is_duplicate(std::uint32_t triangle, const std::array<const Corner*, 3>& sorted) {
   const std::uint32_t light = scene_.triangle_light[triangle];
-  return light == none || (light == scene_.triangle_light[*first] &&
-                           scene_.front_side[triangle] == scene_.front_side[*first]);
+  std::uint8_t& front_side = scene_.front_side[triangle];
+  front_side ^= 1;
+  const auto behind = distinct_.find(triangle);
+  front_side ^= 1;
+  if (behind != distinct_.end() && light == none) {
+    if (both_sides_.contains(*behind)) return true;
+    if (repeats(*behind, triangle, sorted)) return both_sides_.insert(*behind).second;
+  }
+  const auto [first, inserted] = distinct_.insert(triangle);
+  return !inserted && (light == none || light == scene_.triangle_light[*first]);
+}
+
+/// Whether a triangle has the same material as another in its place, and the same texels.
+bool MeshBuilder::repeats(std::uint32_t other, std::uint32_t triangle,
+                          const std::array<const Corner*, 3>& sorted) const {
+  if (scene_.triangle_material[other] != scene_.triangle_material[triangle]) return false;
+  const Material& material = scene_.materials[scene_.triangle_material[triangle]];
+  if (!needs_.uv || !material.textured()) return true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (glm::vec2(sorted[i]->uv) != scene_.corner_uv[other][i]) return false;
+  }
+  return true;
 }
 
 void MeshBuilder::add_normals(const std::array<const Corner*, 3>& sorted, double sign) {

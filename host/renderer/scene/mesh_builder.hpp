@@ -48,7 +48,7 @@ class MeshBuilder {
   void finish();
 
  private:
-  /// Numbers of triangles by their corners.
+  /// Numbers of triangles by their corners and the side that is the front.
   struct TriangleHash {
     const Scene* scene;
     std::size_t operator()(std::uint32_t triangle) const;
@@ -59,7 +59,9 @@ class MeshBuilder {
   };
 
   std::uint32_t vertex_index(const glm::vec3& position);
-  bool is_duplicate(std::uint32_t triangle);
+  bool is_duplicate(std::uint32_t triangle, const std::array<const Corner*, 3>& sorted);
+  bool repeats(std::uint32_t other, std::uint32_t triangle,
+               const std::array<const Corner*, 3>& sorted) const;
   void add_normals(const std::array<const Corner*, 3>& sorted, double sign);
   void add_tangents(const std::array<const Corner*, 3>& sorted, double sign);
 
@@ -70,6 +72,7 @@ class MeshBuilder {
   /// Triangles, with their hashes: comparing two looks them up.
   tsl::robin_set<std::uint32_t, TriangleHash, TriangleEqual, std::allocator<std::uint32_t>, true>
       distinct_;
+  tsl::robin_set<std::uint32_t> both_sides_;  ///< those that a second one turned round repeats
 };
 
 }  // namespace photile::scene

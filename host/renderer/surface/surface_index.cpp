@@ -10,6 +10,7 @@
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/scene_builder.hpp"
+#include "scene/coincident_faces.hpp"
 #include "surface/coplanar_regions.hpp"
 #include "surface/open_fraction.hpp"
 #include "surface/smooth_components.hpp"
@@ -96,8 +97,10 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
   index.angle_degrees = angle_degrees;
   surface::SurfaceMesh mesh(scene);
   const auto connections = surface::find_connections(mesh, radius, angle_degrees);
-  index.dark = surface::find_unlit_sides(mesh, connections,
-                                         surface::join_components(mesh, connections), landed);
+  const surface::SmoothComponents connected = surface::join_components(mesh, connections);
+  index.dark = surface::find_unlit_sides(mesh, connections, connected, landed);
+  const std::vector<DarkPart> hidden = surface::find_hidden_parts(
+      mesh, scene::CoincidentFaces(scene), connected, landed, index.dark);
   const surface::SmoothComponents components =
       surface::join_components(mesh, connections, index.dark);
   const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, radius, index.dark);
@@ -113,7 +116,7 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
       mesh, regions, components, lit_components(index, landed), radius, angle_degrees);
   index.region = regions.of_triangle;
   if (photons != nullptr) {
-    index.unlit_regions = surface::find_unlit_regions(mesh, *photons, index.dark, radius);
+    index.unlit_regions = surface::find_unlit_regions(mesh, *photons, index.dark, hidden, radius);
     // What counts in part for most hits has no holes for others.
     std::erase_if(index.unlit_regions, [&](const DarkPart& part) {
       return index.open_fraction[part.oriented_face] < 1;

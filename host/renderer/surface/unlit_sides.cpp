@@ -68,6 +68,35 @@ std::vector<std::uint8_t> find_unlit_sides(const SurfaceMesh& mesh,
   return dark;
 }
 
+std::vector<DarkPart> find_hidden_parts(const SurfaceMesh& mesh,
+                                        const scene::CoincidentFaces& coincident,
+                                        const SmoothComponents& components,
+                                        std::span<const std::uint32_t> landed,
+                                        std::vector<std::uint8_t>& dark) {
+  if (coincident.empty()) return {};
+  std::vector<std::uint8_t> lit(components.count, 0);
+  for (std::size_t s = 0; s < landed.size(); ++s) {
+    if (landed[s] != 0) lit[components.of[s]] = 1;
+  }
+  std::vector<DarkPart> parts;
+  for (std::uint32_t s = 0; s < landed.size(); ++s) {
+    const std::span<const std::uint32_t> others = coincident.before(s);
+    if (others.empty() || dark[s] != 0 || lit[components.of[s]] == 0) continue;
+    if (std::any_of(others.begin(), others.end(), [&](std::uint32_t other) {
+          return mesh.original[other] == mesh.original[s];
+        })) {
+      continue;
+    }
+    const auto of_side = coincident.parts_of(mesh.scene, s);
+    if (of_side.counted.empty()) {
+      dark[s] = 1;
+      continue;
+    }
+    for (const auto& part : of_side.hidden) parts.push_back({part, s});
+  }
+  return parts;
+}
+
 namespace {
 
 constexpr double least_on_a_half = 12;     ///< photons, as dense as on the denser half of the whole
@@ -166,13 +195,15 @@ class PartFinder {
 }  // namespace
 
 std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons& photons,
-                                         std::span<const std::uint8_t> dark, double radius) {
+                                         std::span<const std::uint8_t> dark,
+                                         std::vector<DarkPart> hidden, double radius) {
   const std::size_t sides = mesh.original.size();
   // Photons on coincident triangles may lie on either: which part of one is empty says nothing.
   std::vector<std::uint8_t> shared(sides, 0);
   for (std::uint32_t s = 0; s < sides; ++s) {
     if (mesh.original[s] != s) shared[s] = shared[mesh.original[s]] = 1;
   }
+  for (const DarkPart& part : hidden) shared[part.oriented_face] = 1;
   const PartFinder finder(mesh, photons, least_of_a_disc * glm::pi<double>() * radius * radius);
   std::vector<std::vector<DarkPart>> of_side(sides);
   tbb::parallel_for(std::size_t{0}, sides, [&](std::size_t i) {
@@ -182,8 +213,9 @@ std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons&
   });
   std::vector<DarkPart> parts;
   for (const auto& more : of_side) parts.insert(parts.end(), more.begin(), more.end());
-  if (!photons.of_all) return parts;
-  parts = photons.of_all->processes->gather_values<DarkPart>(parts);
+  if (photons.of_all) parts = photons.of_all->processes->gather_values<DarkPart>(parts);
+  if (!photons.of_all && hidden.empty()) return parts;
+  parts.insert(parts.end(), hidden.begin(), hidden.end());
   std::stable_sort(parts.begin(), parts.end(), [](const DarkPart& a, const DarkPart& b) {
     return a.oriented_face < b.oriented_face;
   });

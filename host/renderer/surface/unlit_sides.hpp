@@ -10,6 +10,7 @@
 #include "geometry/box_tree.hpp"
 #include "photile/photons.hpp"
 #include "photile/surface_index.hpp"
+#include "scene/coincident_faces.hpp"
 #include "surface/coplanar_regions.hpp"
 #include "surface/smooth_components.hpp"
 #include "surface/surface_mesh.hpp"
@@ -30,14 +31,26 @@ std::vector<std::uint8_t> find_unlit_sides(const SurfaceMesh& mesh,
                                            const SmoothComponents& components,
                                            std::span<const std::uint32_t> landed);
 
+/// The parts of lit components in which other faces of the same place count. Sides that are hidden
+/// as a whole become dark, and have no parts; so have those that coincide with what hides them,
+/// with which they are one. In the order of the oriented faces.
+///   components, landed   as in find_unlit_sides
+std::vector<DarkPart> find_hidden_parts(const SurfaceMesh& mesh,
+                                        const scene::CoincidentFaces& coincident,
+                                        const SmoothComponents& components,
+                                        std::span<const std::uint32_t> landed,
+                                        std::vector<std::uint8_t>& dark);
+
 /// Halves triangles, across the middles of their longest edges, as long as a half would hold 12
 /// photons, were they as dense there as on the denser half of what it is a half of, and is not
 /// smaller than a thousandth of the largest disc. A half on which next to none landed is a dark
 /// part. In the order of the oriented faces.
 ///   photons   sorted by oriented face; several processes find those of all together
 ///   dark      sides that are dark as a whole: have no parts
+///   hidden    parts that are known, and kept: their sides have no others
 std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons& photons,
-                                         std::span<const std::uint8_t> dark, double radius);
+                                         std::span<const std::uint8_t> dark,
+                                         std::vector<DarkPart> hidden, double radius);
 
 /// A piece of surface as PhotileSurfaceLeaf describes it, with its box.
 struct SurfacePiece {

@@ -57,6 +57,15 @@ void intersect(const RayScene& rays, const glm::vec3& origin, const CoherentDire
       hits.v[i] = where.v;
       hits.side[i] = surface_hit(*scene.scene, where, direction).side;
     }
+    if (hits.triangle[i] == none || scene.coincident.empty()) continue;
+    const glm::vec3 direction(directions.x[i], directions.y[i], directions.z[i]);
+    const TriangleHit first =
+        scene.resolve_coincident({hits.triangle[i], hits.u[i], hits.v[i]}, direction);
+    if (first.triangle == hits.triangle[i]) continue;
+    hits.triangle[i] = first.triangle;
+    hits.u[i] = first.u;
+    hits.v[i] = first.v;
+    hits.side[i] = surface_hit(*scene.scene, first, direction).side;
   }
 }
 

@@ -53,7 +53,7 @@ class DirectLight {
     const float density = shading_point_.density(*direction);
     if (!(density > 0.0f)) return;
     LightWeights weights = shading_point_.weights(*direction) * glm::vec3(1.0f / density);
-    glm::vec3 origin = point_.origin_towards(*direction);
+    RayOrigin origin = point_.origin_towards(*direction);
     for (int surfaces = 0; surfaces <= most_passed; ++surfaces) {
       const auto hit = intersect(rays_, origin, *direction);
       if (!hit) {
@@ -143,6 +143,7 @@ void find_direct_light(const RayScene& rays, const LightSampler& light_sampler,
 
 void ShadowRays::clear() {
   lines_.clear();
+  origins_.clear();
   found_.clear();
 }
 
@@ -154,7 +155,8 @@ void ShadowRays::add(const SurfacePoint& point, const std::optional<LightSample>
   const glm::vec3 arrives = cosine * weight * light->received *
                             light->weight_beside(directions * cosine * glm::one_over_pi<float>());
   if (arrives == glm::vec3(0.0f)) return;
-  lines_.push_back({point.origin_towards(light->direction), light->target});
+  origins_.push_back(point.origin_towards(light->direction));
+  lines_.push_back({origins_.back().position, light->target});
   found_.push_back({tag, light->layer, arrives, light->direction});
 }
 
@@ -164,9 +166,9 @@ std::span<const ShadowRays::Found> ShadowRays::found(const RayScene& rays) {
   std::size_t left = 0;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     Found light = found_[i];
-    if (hidden_[i] != 0) {
+    if (hidden_[i] != 0 || origins_[i].next != none) {
       if (!rays.needs().see_through) continue;
-      light.irradiance *= transmittance(rays, lines_[i].from, lines_[i].to);
+      light.irradiance *= transmittance(rays, origins_[i], lines_[i].to);
       if (light.irradiance == glm::vec3(0.0f)) continue;
     }
     found_[left++] = light;

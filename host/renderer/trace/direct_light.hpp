@@ -108,7 +108,8 @@ class ShadowRays {
 
  private:
   std::vector<LineOfSight> lines_;
-  std::vector<Found> found_;  ///< one for each line
+  std::vector<RayOrigin> origins_;  ///< one for each line
+  std::vector<Found> found_;        ///< one for each line
   std::vector<std::uint8_t> hidden_;
 };
 

@@ -68,8 +68,8 @@ void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scatt
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record) {
   const scene::Reflectance surface = reflectance(*rays.scene, point);
-  record.hits.push_back({point.position, point.oriented_face(), ray.pixel, ray.radiance_weight(),
-                         surface.albedo, ray.fraction});
+  record.hits.push_back({point.position, face_of_photons(*rays.scene, point), ray.pixel,
+                         ray.radiance_weight(), surface.albedo, ray.fraction});
   if (!rays.needs.glossy) return;
   const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
   record.glossy.push_back(
@@ -81,7 +81,7 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
                                      const LightSampleNumbers* light_samples,
                                      std::vector<EyeRay>* split) {
   const Scene& scene = *setup.rays->scene;
-  const glm::vec3 start = ray.origin;
+  const glm::vec3 start = ray.origin.position;
   // Lights seen in mirrors or through refracting glass are found by following alone.
   const bool sees_near_lights = other == nullptr || !other->distant_only;
   const auto weight_against = [&](float found) {

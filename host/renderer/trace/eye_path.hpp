@@ -74,7 +74,7 @@ struct EyeSetup {
 
 /// A ray on its way to the eye's first opaque surface.
 struct EyeRay {
-  glm::vec3 origin;     ///< metres
+  RayOrigin origin;
   glm::vec3 direction;  ///< unit
   glm::vec3 throughput;
   std::uint32_t pixel;

@@ -57,7 +57,7 @@ std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsd
     const glm::vec3 radiance = hit.throughput * bsdf.reflected(light->direction) * light->received *
                                light->weight_beside(bsdf.density(light->direction));
     if (radiance != glm::vec3(0.0f)) {
-      const glm::vec3 origin = point.origin_towards(light->direction);
+      const RayOrigin origin = point.origin_towards(light->direction);
       ray_hits.direct.push_back(
           {hit.pixel, light->layer, radiance * transmittance(run.rays, origin, light->target)});
     }

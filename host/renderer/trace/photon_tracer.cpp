@@ -59,7 +59,8 @@ constexpr std::uint32_t most_branches = 4096;
 /// Light on its way.
 struct Walk {
   RandomStream random;
-  glm::vec3 origin, direction, flux;
+  RayOrigin origin;
+  glm::vec3 direction, flux;
   int bounce = 1;  ///< of the surface that it comes to next
   std::uint32_t cutouts = 0;
   bool unscattered = true;  ///< but for panes and cutouts, which sampling lights sees through
@@ -157,7 +158,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
         landed ? thinned(walk->flux, *landed, numbers.uniform(store_word)) : walk->flux;
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
-    if (opaque && largest(stored) > 0.0f) {
+    if (opaque && largest(stored) > 0.0f && !behind_cutout(scene, point)) {
       if (!walk->unscattered || (setup.parameters->store_direct && !setup.caustics))
         store(setup, point, walk->direction, stored, record.photons);
     }

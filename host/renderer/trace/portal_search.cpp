@@ -48,7 +48,7 @@ struct Escape {
 
 /// Where a ray ends on a surface that light does not pass straight through; nothing where it
 /// leaves.
-std::optional<SurfacePoint> opaque_surface(const RayScene& rays, glm::vec3 origin,
+std::optional<SurfacePoint> opaque_surface(const RayScene& rays, RayOrigin origin,
                                            const glm::vec3& direction) {
   const Scene& scene = rays.scene();
   for (int surfaces = 0; surfaces < 256; ++surfaces) {
@@ -76,12 +76,13 @@ std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start, s
     if (path >= first_paths && escapes.size() * points >= enough_escapes) break;
     const RandomStream random(0, path, 0);
     const RandomBlock first = random.block(Purpose::eye_scattering, 0);
-    glm::vec3 origin = start, direction = sample_sphere(first.uniform(0), first.uniform(1));
+    RayOrigin origin = start;
+    glm::vec3 direction = sample_sphere(first.uniform(0), first.uniform(1));
     for (int bounce = 0; bounce <= path_bounces; ++bounce) {
       const auto end = opaque_surface(rays, origin, direction);
       if (!end) {
         at_once += bounce == 0 ? 1 : 0;
-        escapes.push_back({glm::dvec3(origin), glm::dvec3(direction)});
+        escapes.push_back({glm::dvec3(origin.position), glm::dvec3(direction)});
         break;
       }
       const RandomBlock numbers =

@@ -18,7 +18,7 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
   return glm::vec3(1.0f - there) + there * surface;
 }
 
-std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
+std::optional<TriangleHit> intersect(const RayScene& rays, const RayOrigin& origin,
                                      const glm::vec3& direction) {
   return impl_of(rays).intersect(origin, direction);
 }
@@ -40,19 +40,22 @@ void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
   }
 }
 
-glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to) {
-  if (!rays.needs().see_through) return glm::vec3(occluded(rays, from, to) ? 0.0f : 1.0f);
+glm::vec3 transmittance(const RayScene& rays, const RayOrigin& from, const glm::vec3& to) {
+  if (!rays.needs().see_through) {
+    return glm::vec3(from.next != none || occluded(rays, from, to) ? 0.0f : 1.0f);
+  }
   const Scene& scene = rays.scene();
-  const glm::vec3 direction = glm::normalize(to - from);
-  glm::vec3 passed(1.0f), origin = from;
-  while (occluded(rays, origin, to)) {
+  const glm::vec3 direction = glm::normalize(to - from.position);
+  glm::vec3 passed(1.0f);
+  RayOrigin origin = from;
+  while (origin.next != none || occluded(rays, origin, to)) {
     const auto hit = intersect(rays, origin, direction);
     if (!hit) return passed;  // rounding: the last surface ends where the line passes
     const SurfacePoint point = surface_hit(scene, *hit, direction);
     passed *= transmittance(scene, point, direction);
     if (passed == glm::vec3(0.0f)) return passed;
     origin = point.origin_towards(direction);
-    if (glm::dot(to - origin, direction) <= 0.0f) return passed;
+    if (glm::dot(to - origin.position, direction) <= 0.0f) return passed;
   }
   return passed;
 }
@@ -73,7 +76,7 @@ bool passes_cutout(const Scene& scene, const SurfacePoint& point, const RandomSt
   return there <= 0.0f || random.block(purpose, number).uniform(0) >= there;
 }
 
-std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& origin,
+std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, RayOrigin& origin,
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& cutouts) {
   while (const auto hit = rays.intersect(origin, direction)) {
@@ -84,7 +87,7 @@ std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& 
   return std::nullopt;
 }
 
-std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin,
+std::optional<SurfacePoint> next_surface(const RayScene& rays, RayOrigin& origin,
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& cutouts) {
   return next_surface(impl_of(rays), origin, direction, random, purpose, cutouts);

@@ -37,7 +37,7 @@ class FlushDenormals {
 };
 
 /// Nearest hit of the ray, or nothing. A ray with a NaN or infinity hits nothing.
-std::optional<TriangleHit> intersect(const RayScene& rays, const glm::vec3& origin,
+std::optional<TriangleHit> intersect(const RayScene& rays, const RayOrigin& origin,
                                      const glm::vec3& direction);
 
 /// Whether a surface of any material cuts the straight line between two points.
@@ -61,7 +61,7 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
 /// What the straight line between two points lets through, per channel: black behind a surface that
 /// bends or stops light, the product of their transmittances behind panes of thin glass and
 /// surfaces with cutouts.
-glm::vec3 transmittance(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
+glm::vec3 transmittance(const RayScene& rays, const RayOrigin& from, const glm::vec3& to);
 
 /// Whether a ray passes the surface here as if it were not there: always in a cutout, never where
 /// the surface is whole, by chance where it is partly there. Behind 4096 cutouts of a path all
@@ -72,10 +72,10 @@ bool passes_cutout(const Scene& scene, const SurfacePoint& point, const RandomSt
 
 /// Where a ray meets a surface that it does not pass, or nothing. `origin` moves behind the last
 /// cutout.
-std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, glm::vec3& origin,
+std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, RayOrigin& origin,
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& cutouts);
-std::optional<SurfacePoint> next_surface(const RayScene& rays, glm::vec3& origin,
+std::optional<SurfacePoint> next_surface(const RayScene& rays, RayOrigin& origin,
                                          const glm::vec3& direction, const RandomStream& random,
                                          Purpose purpose, std::uint32_t& cutouts);
 

@@ -42,7 +42,7 @@ bool finite(const glm::vec3& origin, const glm::vec3& direction) {
 }  // namespace
 
 RayScene::Impl::Impl(const Scene& scene)
-    : scene(&scene), needs(needs_of(scene)), bounds(scene::bounds_of(scene)) {
+    : scene(&scene), needs(needs_of(scene)), bounds(scene::bounds_of(scene)), coincident(scene) {
   try {
     build();
   } catch (...) {
@@ -53,10 +53,17 @@ RayScene::Impl::Impl(const Scene& scene)
 
 RayScene::Impl::~Impl() { release(); }
 
-std::optional<trace::TriangleHit> RayScene::Impl::intersect(const glm::vec3& origin,
+std::optional<trace::TriangleHit> RayScene::Impl::intersect(const trace::RayOrigin& from,
                                                             const glm::vec3& direction) const {
   constexpr float infinity = std::numeric_limits<float>::infinity();
+  const glm::vec3& origin = from.position;
   if (!finite(origin, direction)) return std::nullopt;
+  if (from.next != none) {
+    trace::TriangleHit hit = trace::nearest_on_triangle(*scene, from.next, glm::dvec3(origin));
+    hit.other = from.from;
+    hit.other_before = true;
+    return hit;
+  }
 
   RTCRayHit query;
   query.ray = ray_of(origin, direction, infinity);
@@ -69,13 +76,36 @@ std::optional<trace::TriangleHit> RayScene::Impl::intersect(const glm::vec3& ori
   if (query.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
     const std::uint32_t triangle =
         single_triangles.empty() ? query.hit.primID : single_triangles[query.hit.primID];
-    return trace::TriangleHit{triangle, query.hit.u, query.hit.v};
+    return resolve_coincident({triangle, query.hit.u, query.hit.v}, direction);
   }
   const std::uint32_t first = scene->instances[query.hit.instID[0]].first_triangle;
   // Weights of an instance's own triangle would not do: its corners may come in another order.
-  return trace::nearest_on_triangle(
-      *scene, first + query.hit.primID,
-      glm::dvec3(origin) + double{query.ray.tfar} * glm::dvec3(direction));
+  return resolve_coincident(
+      trace::nearest_on_triangle(
+          *scene, first + query.hit.primID,
+          glm::dvec3(origin) + double{query.ray.tfar} * glm::dvec3(direction)),
+      direction);
+}
+
+trace::TriangleHit RayScene::Impl::resolve_coincident(const trace::TriangleHit& hit,
+                                                      const glm::vec3& direction) const {
+  if (coincident.before(oriented(hit.triangle, 0)).empty() &&
+      coincident.before(oriented(hit.triangle, 1)).empty()) {
+    return hit;
+  }
+  const trace::SurfacePoint met = trace::surface_hit(*scene, hit, direction);
+  const glm::dvec3 position(met.position);
+  const std::uint32_t face = coincident.at(*scene, met.oriented_face(), position);
+  trace::TriangleHit first = hit;
+  if (triangle_of(face) != hit.triangle) {
+    first = trace::nearest_on_triangle(*scene, triangle_of(face), position);
+  }
+  const Material& material = scene->materials[scene->triangle_material[first.triangle]];
+  if (material.interaction == Interaction::glass || material.has_cutouts()) {
+    const std::uint32_t beyond = triangle_of(coincident.at(*scene, face ^ 1u, position));
+    if (beyond != first.triangle) first.other = beyond;
+  }
+  return first;
 }
 
 bool RayScene::Impl::occluded(const glm::vec3& from, const glm::vec3& to) const {

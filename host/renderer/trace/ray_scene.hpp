@@ -12,6 +12,7 @@
 
 #include "geometry/box.hpp"
 #include "photile/ray_scene.hpp"
+#include "scene/coincident_faces.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 
@@ -24,8 +25,11 @@ struct RayScene::Impl {
   Impl& operator=(const Impl&) = delete;
 
   /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
-  std::optional<trace::TriangleHit> intersect(const glm::vec3& origin,
+  std::optional<trace::TriangleHit> intersect(const trace::RayOrigin& origin,
                                               const glm::vec3& direction) const;
+  /// Of the triangles in the place of a hit, the one that the ray meets.
+  trace::TriangleHit resolve_coincident(const trace::TriangleHit& hit,
+                                        const glm::vec3& direction) const;
 
   /// Whether anything lies on the straight line between two points. Thread-safe. A line with a NaN
   /// or infinity meets nothing.
@@ -36,7 +40,8 @@ struct RayScene::Impl {
 
   const Scene* scene;
   SceneNeeds needs;
-  geometry::Box bounds;                ///< encloses all triangles, metres
+  geometry::Box bounds;  ///< encloses all triangles, metres
+  scene::CoincidentFaces coincident;
   std::atomic<std::int64_t> bytes{0};  ///< outlives the device, which reports to it
   RTCDevice device = nullptr;
   RTCScene bvh = nullptr;

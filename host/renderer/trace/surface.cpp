@@ -111,6 +111,14 @@ SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm
   return on_side(where, at, glm::dot(at.normal, glm::dvec3(direction)) > 0.0 ? 1 : 0);
 }
 
+std::uint32_t face_of_photons(const Scene& scene, const SurfacePoint& point) {
+  if (!behind_cutout(scene, point)) return point.oriented_face();
+  const std::uint32_t before = point.where.other;
+  const bool alike =
+      glm::dot(face_normal(scene, oriented(before, 0)), glm::dvec3(point.normal)) > 0;
+  return oriented(before, alike ? 0 : 1);
+}
+
 glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point) {
   const std::uint32_t light = scene.triangle_light[point.where.triangle];
   if (light == none || scene.lights[light].emission_texture == none) return glm::vec3(1.0f);

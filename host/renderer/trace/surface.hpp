@@ -13,6 +13,21 @@ namespace photile::trace {
 struct TriangleHit {
   std::uint32_t triangle;
   float u, v;  ///< barycentric weights of the second and third corner
+  /// Where light passes a triangle that has another in its place, looking away from it: that one.
+  /// It lies behind the hit, or before it where the ray came from there.
+  std::uint32_t other = none;
+  bool other_before = false;
+};
+
+/// Where a ray begins.
+struct RayOrigin {
+  RayOrigin() = default;
+  RayOrigin(const glm::vec3& at) : position(at) {}  // NOLINT: a position is an origin
+  operator const glm::vec3&() const { return position; }
+
+  glm::vec3 position{0.0f};   ///< metres
+  std::uint32_t next = none;  ///< the triangle in the same place that the ray meets first
+  std::uint32_t from = none;  ///< the one that it left, where there is a next one
 };
 
 /// The offset of rays over the largest coordinate of the triangle's corners. The position is
@@ -34,8 +49,14 @@ struct SurfacePoint {
 
   std::uint32_t oriented_face() const { return oriented(where.triangle, side); }
   /// Origin of a ray that leaves in `direction`, to this side or the other.
-  glm::vec3 origin_towards(const glm::vec3& direction) const {
-    return position + (glm::dot(direction, normal) < 0.0f ? -ray_offset : ray_offset) * normal;
+  RayOrigin origin_towards(const glm::vec3& direction) const {
+    const bool through = glm::dot(direction, normal) < 0.0f;
+    RayOrigin origin(position + (through ? -ray_offset : ray_offset) * normal);
+    if (where.other != none && through != where.other_before) {
+      origin.next = where.other;
+      origin.from = where.triangle;
+    }
+    return origin;
   }
 };
 
@@ -61,6 +82,17 @@ SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm
 inline const Material& material_of(const Scene& scene, const SurfacePoint& point) {
   return scene.materials[scene.triangle_material[point.where.triangle]];
 }
+
+/// Whether the point lies behind a cutout of a surface in its place.
+inline bool behind_cutout(const Scene& scene, const SurfacePoint& point) {
+  return point.where.other_before &&
+         scene.materials[scene.triangle_material[point.where.other]].interaction ==
+             Interaction::opaque;
+}
+
+/// The oriented face on which the photons lie that arrive at the point: behind a cutout they have
+/// been stored where they passed it.
+std::uint32_t face_of_photons(const Scene& scene, const SurfacePoint& point);
 
 /// Whether the point lies on the side that the file calls the front.
 inline bool on_front(const Scene& scene, const SurfacePoint& point) {
