@@ -91,6 +91,57 @@ TEST_CASE("a metal reflects the share that is asked for, keeps its hue and stays
   CHECK(material.specular.g / material.specular.r == Approx(0.75));
 }
 
+namespace {
+
+/// Linear, of a byte of sRGB (IEC 61966-2-1).
+double linear(int byte) {
+  const double value = byte / 255.0;
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+/// A texture of 16 x 16 texels: white for nothing, with a bright square at its top left and a
+/// darker one beside it; three square metres show the bright one, one the darker.
+Scene atlas() {
+  std::vector<std::array<std::uint8_t, 4>> texels(256, {255, 255, 255, 255});
+  for (std::size_t y = 0; y < 4; ++y) {
+    for (std::size_t x = 0; x < 4; ++x) texels[16 * y + x] = {188, 188, 188, 255};
+    for (std::size_t x = 4; x < 8; ++x) texels[16 * y + x] = {90, 90, 90, 255};
+  }
+  SceneBuilder builder("atlas");
+  Material material = diffuse(glm::vec3(1.0f));
+  material.diffuse_texture = builder.add(Texture("atlas", 16, 16, texels));
+  const std::uint32_t number = builder.add(material);
+  const auto square = [&](const glm::vec3& origin, float width, float u) {
+    const std::array<glm::vec3, 4> corners{origin, origin + glm::vec3(width, 0, 0),
+                                           origin + glm::vec3(width, 1, 0),
+                                           origin + glm::vec3(0, 1, 0)};
+    const std::array<glm::vec2, 4> uv{glm::vec2(u, 0.1f), glm::vec2(u + 0.05f, 0.1f),
+                                      glm::vec2(u + 0.05f, 0.15f), glm::vec2(u, 0.15f)};
+    const std::array<glm::uvec3, 2> triangles{glm::uvec3(0, 1, 2), glm::uvec3(0, 2, 3)};
+    MeshArrays mesh;
+    mesh.vertices = corners;
+    mesh.triangles = triangles;
+    mesh.uv = uv;
+    mesh.material = number;
+    builder.add(mesh);
+  };
+  square({0, 0, 0}, 3, 0.1f);
+  square({0, 0, 1}, 1, 0.35f);
+  builder.add(point_light("lamp", {0, 0, 3}));
+  return builder.build();
+}
+
+}  // namespace
+
+TEST_CASE("a texture reflects what its surface shows of it, by area") {
+  Scene scene = atlas();
+  const double mean = (3 * linear(188) + linear(90)) / 4;
+  CHECK(reflectance_of(scene, scene.materials[0])->whole == Approx(mean).epsilon(1e-3));
+  CHECK_FALSE(scene::set_reflectance(scene, scene.materials[0], 1.01 * mean));
+  REQUIRE(scene::set_reflectance(scene, scene.materials[0], 0.2));
+  CHECK(scene.materials[0].diffuse.r == Approx(0.2 / mean).epsilon(1e-3));
+}
+
 TEST_CASE("reflectances that cannot be are refused with the remedy") {
   const auto refused = [&](const char* text, const char* words) {
     SceneLoadOptions options;

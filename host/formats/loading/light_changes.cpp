@@ -151,17 +151,38 @@ std::string material_names(const Scene& scene) {
   return names + (scene.materials.size() > most ? " ..." : "");
 }
 
+/// What comes nearest to a fraction that a material cannot reflect, from `own`, which it can.
+double nearest_reflectance(Scene& scene, Material& material, double fraction, double own) {
+  double possible = own, impossible = fraction;
+  for (int step = 0; step < 20; ++step) {
+    const double middle = 0.5 * (possible + impossible);
+    (scene::set_reflectance(scene, material, middle) ? possible : impossible) = middle;
+  }
+  return possible;
+}
+
 void apply(Scene& scene, const ReflectanceChange& change) {
   bool found = false;
   for (Material& material : scene.materials) {
     if (::fnmatch(change.glob.c_str(), material.name.c_str(), 0) != 0) continue;
     found = true;
+    const auto before = scene::reflectance_of(scene, material);
     if (scene::set_reflectance(scene, material, change.fraction)) continue;
+    const std::string what =
+        fmt::format("reflectance of '{}': {:g} cannot be had", material.name, change.fraction);
+    if (!before) {
+      throw UsageError(what + ": it is glass, whose colour is what it lets through");
+    }
+    const double own = before->whole;
+    const double nearest = nearest_reflectance(scene, material, change.fraction, own);
+    if (change.fraction < own) {
+      throw UsageError(fmt::format(
+          "{}: its gloss alone reflects {:.3g}; --set lambertian=on removes that", what, nearest));
+    }
     throw UsageError(fmt::format(
-        "reflectance of '{}': {:g} cannot be had by making its colour brighter or darker: it is "
-        "glass, its gloss reflects more alone (--set lambertian=on removes that) or a channel "
-        "exceeds 1",
-        material.name, change.fraction));
+        "{}: its colour exceeds 1 in a channel then; at its brightest it reflects {:.3g}, give "
+        "that or less",
+        what, nearest));
   }
   if (!found) {
     throw UsageError(fmt::format("reflectance of '{}': there is no such material; there are {}",

@@ -152,7 +152,20 @@ namespace {
 
 constexpr int cosines = 64;  // of the light's directions
 
-glm::dvec3 mean_texel(const Texture& texture) {
+/// Points of all surface of a material at which its texture is read, and of each triangle at least.
+constexpr double points_on_surface = 65'536;
+constexpr int least_points = 4;
+
+/// Point i of a sequence that fills a triangle evenly: the weights of its second and third corner
+/// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018: R2, folded).
+glm::vec2 point_in_triangle(int i) {
+  constexpr double step_u = 0.7548776662466927, step_v = 0.5698402909980532;
+  double u = std::fmod(0.5 + step_u * i, 1.0), v = std::fmod(0.5 + step_v * i, 1.0);
+  if (u + v > 1) u = 1 - u, v = 1 - v;
+  return {static_cast<float>(u), static_cast<float>(v)};
+}
+
+glm::dvec3 mean_of_all_texels(const Texture& texture) {
   glm::dvec3 sum(0.0);
   const double count = static_cast<double>(texture.width()) * texture.height();
   for (int y = 0; y < texture.height(); ++y) {
@@ -165,19 +178,55 @@ glm::dvec3 mean_texel(const Texture& texture) {
   return sum / std::max(1.0, count);
 }
 
+/// Of the colours, by area, on what the material's triangles show of its texture: most of an atlas
+/// belongs to other things, or to none. Cut out texels are no surface. Of a material that no
+/// triangle has, the mean of all texels.
+glm::dvec3 mean_texel(const Scene& scene, const Material& material) {
+  if (material.diffuse_texture == none) return glm::dvec3(1.0);
+  const Texture& texture = scene.textures[material.diffuse_texture];
+  const Texture* const cutouts =
+      material.opacity_texture == none ? nullptr : &scene.textures[material.opacity_texture];
+  const auto opacity_at = [&](const glm::vec2& uv) {
+    if (!cutouts) return 1.0;
+    const float opacity = material.opacity * cutouts->sample_data(uv).a;
+    if (material.opacity_cutoff > 0) return opacity >= material.opacity_cutoff ? 1.0 : 0.0;
+    return static_cast<double>(std::clamp(opacity, 0.0f, 1.0f));
+  };
+  std::vector<std::uint32_t> triangles;
+  double area = 0;
+  for (std::uint32_t t = 0; t < scene.corner_uv.size(); ++t) {
+    if (&scene.materials[scene.triangle_material[t]] != &material) continue;
+    triangles.push_back(t);
+    area += triangle_area(scene, t);
+  }
+  glm::dvec3 sum(0.0);
+  double weight = 0;
+  for (const std::uint32_t t : triangles) {
+    const double part = triangle_area(scene, t);
+    const int points =
+        std::max(least_points, static_cast<int>(std::ceil(points_on_surface * part / area)));
+    const auto& [a, b, c] = scene.corner_uv[t];
+    for (int i = 0; i < points; ++i) {
+      const glm::vec2 at = point_in_triangle(i);
+      const glm::vec2 uv = a + at.x * (b - a) + at.y * (c - a);
+      const double counts = part / points * opacity_at(uv);
+      sum += counts * glm::dvec3(texture.sample(uv));
+      weight += counts;
+    }
+  }
+  return weight > 0 ? sum / weight : mean_of_all_texels(texture);
+}
+
 /// The surface of a mean texel. Textures that vary roughness or metal are left out: their factors
 /// stand for them.
-Reflectance mean_surface(const Scene& scene, const Material& material) {
-  const glm::vec3 texel = material.diffuse_texture == none
-                              ? glm::vec3(1.0f)
-                              : glm::vec3(mean_texel(scene.textures[material.diffuse_texture]));
+Reflectance mean_surface(const Scene& scene, const Material& material, const glm::dvec3& texel) {
   if (material.metallic_roughness != none) {
     MetallicRoughness model = scene.metallic_roughness[material.metallic_roughness];
-    model.base_color *= glm::dvec3(texel);
+    model.base_color *= texel;
     return reflectance_of(model);
   }
-  return {material.diffuse * texel, material.specular, material.glossy() ? material.f90 : 0.0f,
-          material.roughness};
+  return {material.diffuse * glm::vec3(texel), material.specular,
+          material.glossy() ? material.f90 : 0.0f, material.roughness};
 }
 
 double whole_of(const Reflectance& surface) {
@@ -226,7 +275,7 @@ std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Mate
   if (material.interaction == Interaction::mirror) {
     return MaterialReflectance{luminance(glm::dvec3(material.specular)), 0};
   }
-  const Reflectance surface = mean_surface(scene, material);
+  const Reflectance surface = mean_surface(scene, material, mean_texel(scene, material));
   return MaterialReflectance{whole_of(surface), luminance(glm::dvec3(surface.albedo))};
 }
 
@@ -246,11 +295,12 @@ bool set_reflectance(Scene& scene, Material& material, double fraction) {
           ? glm::dvec3(1.0)
           : scene.metallic_roughness[material.metallic_roughness].base_color;
   const glm::dvec3 widest = material.metallic_roughness == none ? glm::dvec3(base) : model_base;
+  const glm::dvec3 texel = mean_texel(scene, material);
   // The scale at which a channel is 1; the reflectance grows with it.
   double high = 1 / std::max({widest.r, widest.g, widest.b, 1e-6}), low = 0;
   const auto at = [&](double scale) {
     scale_color(scene, material, color, base, model_base, scale);
-    return whole_of(mean_surface(scene, material));
+    return whole_of(mean_surface(scene, material, texel));
   };
   constexpr double slack = 1e-6;
   if (at(low) > fraction + slack || at(high) < fraction - slack) {
