@@ -50,7 +50,7 @@ def main():
             for _, date, hour in HOURS:
                 subprocess.run([given.photile, "measure", *base, "--integrator", "path", "--rays",
                                 "64" if given.quick else "2048", "--weather", weather, "--time", f"{date}T{hour:02}:30",
-                                "-o", folder / "hour.csv"], check=True, stdout=subprocess.PIPE)
+                                "--set", "ground=0", "-o", folder / "hour.csv"], check=True, stdout=subprocess.PIPE)
                 with open(folder / "hour.csv") as table:
                     truth.append([float(row["lux"]) for row in csv.DictReader(table)])
             for label, options in SETTINGS:

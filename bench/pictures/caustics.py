@@ -30,7 +30,7 @@ from tools import path_references, picture_error
 SIZE = "128x96"
 PATHS = {"glass-sphere": 16384, "metal-ring": 8192}  # of a pixel
 PATHS_OF_PICTURE = 2048
-POOL = ("--camera", "under water", "--sun", "215,55,60000")
+POOL = ("--camera", "under water", "--sun", "215,55,60000", "--set", "ground=0")
 LIGHT_PATHS, LIGHT_PICTURES = 1024, 16  # of a pixel of a picture by Mitsuba
 BRIGHT_SHARE = 0.03  # of the pixels: the caustic itself
 

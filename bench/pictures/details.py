@@ -38,7 +38,8 @@ GAP = 6  # pixels between the pictures of a strip
 SCENES = ROOT / "scenes"
 OFFICE = SCENES / "office/office.gltf"
 SURFACES = tuple(worked_project.SURFACES.split())
-BY_DAY = (*SURFACES, "--site", "52.5,13.4,1", "--time", "2026-03-10T15:00", "--sky", "perez=500,120")
+BY_DAY = (*SURFACES, "--site", "52.5,13.4,1", "--time", "2026-03-10T15:00", "--sky", "perez=500,120",
+          "--set", "ground=0")
 
 
 class Detail(NamedTuple):
@@ -61,7 +62,8 @@ PICTURES = {
     "day": Picture(OFFICE, BY_DAY),
     "coloured": Picture(SCENES / "gallery/coloured-lamps.gltf"),
     "downlights": Picture(SCENES / "gallery/downlights.gltf"),
-    "sky": Picture(SCENES / "gallery/sun-and-sky.gltf", ("--sun", "60,40,40000", "--sky", "clear=12000")),
+    "sky": Picture(SCENES / "gallery/sun-and-sky.gltf", ("--sun", "60,40,40000", "--sky", "clear=12000",
+                                                               "--set", "ground=0")),
     "cove": Picture(pathlib.Path("cove.gltf")),
     "doors": Picture(pathlib.Path("doors.gltf")),
 }

@@ -43,8 +43,8 @@ SUBJECTS = (
     Subject("metal-ring", "The caustic inside a mirroring ring; beside it a band of rough steel."),
     Subject("glossy-floor", "A window and its reflection in a floor of polished stone."),
     Subject("sun-and-sky", "A room lit by the sun and a clear sky through a window, "
-            "`--sun 60,40,40000 --sky clear=12000`.",
-            lights=("--sun", "60,40,40000", "--sky", "clear=12000")),
+            "`--sun 60,40,40000 --sky clear=12000 --set ground=0`.",
+            lights=("--sun", "60,40,40000", "--sky", "clear=12000", "--set", "ground=0")),
     Subject("downlights", "Three lamps with an IES file, close to a wall."),
     Subject("coloured-lamps", "Lamps in red, green and blue, and what their shadows mix."),
 )

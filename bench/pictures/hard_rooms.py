@@ -185,7 +185,8 @@ def blinds(path):
     house.save(path, (1.2, 0.9, 0.6))
 
 
-SKY = ("--site", "52.5,13.4,1", "--time", "2026-06-21T18:30", "--sky", "perez=500,120", "--set", "north=180")
+SKY = ("--site", "52.5,13.4,1", "--time", "2026-06-21T18:30", "--sky", "perez=500,120", "--set", "north=180",
+       "--set", "ground=0")
 ROOMS = {"doors": (doors_ajar, ()), "cove": (cove, ()), "hatch": (hatch, ()),
          "window": (small_window, (*SKY, "--set", "portals=off")), "blinds": (blinds, SKY)}
 PATHS_OF_PICTURE = 1024  # of a pixel, of one picture of the reference

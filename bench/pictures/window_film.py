@@ -38,7 +38,8 @@ SCREEN_PATIENCE, REST_PATIENCE = 10, 300  # seconds
 CASES = (  # name, scene, options
     ("living room", "scenes/living-room/living-room.gltf", ()),
     ("office by day", "scenes/office/office.gltf",
-     ("--sky", "perez=700,120", "--site", "52.5,13.4,1", "--time", "2026-03-21T10:00")),
+     ("--sky", "perez=700,120", "--site", "52.5,13.4,1", "--time", "2026-03-21T10:00",
+      "--set", "ground=0")),
     ("kitchen", "kitchen/kitchen.gltf", ()),
     ("classroom", "classroom/classroom.gltf", ()),
 )

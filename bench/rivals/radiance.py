@@ -287,7 +287,8 @@ After this page you can choose settings for lux at points, and compare photile w
 seconds. `bench/rivals/radiance.py` writes this page.
 
 - **Scenes**: the bundled living room and Cornell box, diffuse and without textures, lit by their lamps with an area:
-  copies that both programs read. Points look up from a horizontal plane.
+  copies that both programs read. Neither has a sky, and both programs have no ground below the horizon (`ground=0`).
+  Points look up from a horizontal plane.
 - **Error**: root of the mean over the points of ((lux - reference) / reference)^2, of photile over {len(SEEDS)} seeds;
   *largest* is that of the worst point. **Mean ratio**: mean lux over that of the reference.
 - **Reference**: the mean of `photile measure {REFERENCE}` with {len(REFERENCE_SEEDS)} other

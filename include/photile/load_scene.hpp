@@ -33,8 +33,9 @@ struct SceneLoadOptions {
   EnvironmentPicture environment = {};
   std::optional<Sun> sun = std::nullopt;
   std::optional<Sky> sky = std::nullopt;
-  /// Reflectance of even ground below the horizon, which the sun and the sky light; 0 = it is black.
-  double ground = 0;
+  /// Reflectance of even ground below the horizon, which the sun and the sky light; 0 = it is
+  /// black.
+  double ground = defaults::ground_reflectance;
   std::vector<ReflectanceChange> reflectances = {};
   bool lambertian = false;   ///< dielectrics have no specular lobe
   bool may_be_dark = false;  ///< no error where there is no light

@@ -451,7 +451,7 @@ def load(
     environment_rotation: float = 0.0,
     sun: Optional[tuple[float, float, float]] = None,
     sky: Optional[tuple[str, float]] = None,
-    ground: float = 0.0,
+    ground: float = 0.2,
     lumen_per_watt: float = _photile.lumen_per_watt,
     progress: _photile.Callback = None,
 ) -> Scene:
@@ -488,7 +488,7 @@ def load(
     sky : (kind, lux), optional
         "uniform", "overcast" or "clear"; lux on a horizontal surface.
     ground : float
-        Reflectance of even ground below the horizon, which the sun and the sky light.
+        Reflectance of even ground below the horizon, which the sun and the sky light; 0 is black.
     lumen_per_watt : float
         What turns lumens and lux into the watts of an OBJ scene.
     progress : callable, optional

@@ -222,6 +222,25 @@ TEST_CASE("a room that no sky shines into is warned of") {
   std::erase(arguments, "--quiet");
   const Outcome factors = succeed(arguments);
   CHECK_THAT(factors.errors, Contains("no light of the sky") && Contains("glass"));
+  // The same as lux, as a picture, at eyes and on a page.
+  const auto errors_of = [&](std::vector<std::string> words) {
+    return succeed(typed(words, "--sky overcast=10000 --light left=off --light right=off -q"))
+        .errors;
+  };
+  const std::string eyes = folder.write("eyes.pts", "0 0 0.5 0 0 -1\n");
+  const std::string told = "no light of the sky reaches any ";
+  CHECK_THAT(errors_of(typed("measure", closed, "--inside 0,0,0 --plane floor+0.75 --wall-band 0.2",
+                             "--photons 20k --rays 64 --repeats 2")),
+             Contains(told + "point") && Contains("has any light"));
+  CHECK_THAT(errors_of(typed("render", closed, "--quality draft --photons 20k --size 16x12 -o",
+                             folder / "a.exr")),
+             Contains(told + "part of the picture"));
+  CHECK_THAT(errors_of(typed("glare", closed, "--ratings ugr --photons 20k --rays 64 --repeats 2",
+                             "--observers", eyes)),
+             Contains(told + "observer"));
+  CHECK_THAT(errors_of(typed("publish", closed, "--quality draft --photons 20k --texel 0.2 -o",
+                             folder / "a.html")),
+             Contains(told + "surface that a camera sees"));
 }
 
 TEST_CASE("next to no light of the sky is told of with how much it is") {
@@ -272,9 +291,44 @@ TEST_CASE("daylight factors are per cent of the sky's lux") {
   const auto factors = run({"--daylight-factor"});
   CHECK(factors["unit"] == "DF %");
   const auto lux = run({"--sky", "overcast=5000"});
-  const double sky = lux["grids"][0]["lights"]["sky"]["Em"]["value"];
+  const auto& lights = lux["grids"][0]["lights"];
+  const double sky = lights["sky"]["Em"]["value"], ground = lights["ground"]["Em"]["value"];
   CHECK(factors["grids"][0]["statistics"]["Em"]["value"].get<double>() ==
-        Approx(sky / 50).epsilon(0.05));  // other photons: the sky of 5,000 lux has more
+        Approx((sky + ground) / 50).epsilon(0.05));  // other photons: 5,000 lux have more
+}
+
+TEST_CASE("the daylight factor of a wall in the open has the sky and the ground that it lights") {
+  const FileFolder folder;
+  // Far below, so that the points see all of the sky and of the ground.
+  const std::string scene =
+      folder.write("plate.obj", "v 0 -1 0\nv 0.01 -1 0\nv 0.01 -1 0.01\nv 0 -1 0.01\nf 4 3 2 1\n");
+  const std::string points = folder.write("p.pts", "0 0 0 0 1 0\n0 0 0 1 0 0\n0 0 0 0 -1 0\n");
+  const auto factors = [&](const std::vector<std::string>& more) {
+    const Outcome outcome = succeed(
+        typed("measure", scene, "--daylight-factor --rays 20k --repeats 4 --integrator path",
+              "--points", points, "-o", folder / "a.json", "-o", folder / "a.csv", more));
+    const auto record = nlohmann::json::parse(folder.read("a.json"));
+    std::vector<double> values;
+    for (const auto& sensor : record["grids"][0]["sensors"]) values.push_back(sensor["lux"]);
+    return std::tuple{values, record, outcome.output};
+  };
+  // Of an overcast sky a wall has Lz / 3 (pi / 2 + 4 / 3), open ground 7 pi Lz / 9; of the ground a
+  // wall has half of what it sends out, a ceiling all.
+  constexpr double pi = 3.14159265358979;
+  const double of_sky = 100 * 3 * (pi / 2 + 4.0 / 3) / (7 * pi);
+  const auto [values, record, text] = factors({});
+  CHECK(values[0] == Approx(100).epsilon(0.01));
+  CHECK(values[1] == Approx(of_sky + 10).epsilon(0.01));
+  CHECK(values[2] == Approx(20).epsilon(0.01));
+  CHECK(record["ground_reflectance"] == 0.2);
+  CHECK_THAT(text, Contains("ground: reflectance 0.2"));
+  CHECK_THAT(folder.read("a.csv"), Contains(",ground_reflectance\n") && Contains(",0.2\n"));
+  const auto [half, half_record, half_text] = factors({"--set", "ground=0.5"});
+  CHECK(half[1] == Approx(of_sky + 25).epsilon(0.01));
+  CHECK_THAT(half_text, Contains("ground: reflectance 0.5"));
+  const auto [black, black_record, black_text] = factors({"--set", "ground=0"});
+  CHECK(black[1] == Approx(of_sky).epsilon(0.01));
+  CHECK(black_record["ground_reflectance"] == 0);
 }
 
 TEST_CASE("a picture of patches takes the sky of another hour") {

@@ -199,7 +199,9 @@ TEST_CASE("info lists a sun and a sky with their lumens") {
   const Outcome outcome = succeed(
       {"info", write_floor(folder), "--json", "--sun", "180,45,50000", "--sky", "overcast=10000"});
   const auto facts = nlohmann::json::parse(outcome.output);
-  REQUIRE(facts["lights"].size() == 2);
+  REQUIRE(facts["lights"].size() == 3);
+  CHECK(facts["lights"][2]["name"] == "ground");
+  CHECK(facts["ground_reflectance"] == 0.2);
   CHECK(facts["lights"][0]["name"] == "sun");
   CHECK(facts["lights"][0]["kind"] == "sun");
   const double disc = 3.14159265358979 * 2;  // radius sqrt(2)

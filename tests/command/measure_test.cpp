@@ -403,4 +403,50 @@ TEST_CASE("a point beyond the walls is blank in every file, and the others keep 
   CHECK(grid["statistics"]["Emin"]["value"].get<double>() > 0);
 }
 
+TEST_CASE("points in a hollow counter are left out of all figures, and the report says so") {
+  const FileFolder folder;
+  // The counter of five boards without a bottom, x from -0.2 to 0.2, 0.8 m of the box's 2 m high.
+  std::string box = box_obj();
+  int vertices = 16;
+  box += "o counter\nusemtl wall\n";
+  const auto quad = [&](const std::string& corners) {
+    box += corners +
+           fmt::format("f {} {} {} {}\n", vertices + 1, vertices + 2, vertices + 3, vertices + 4);
+    vertices += 4;
+  };
+  quad("v -0.2 -1 -0.2\nv -0.2 -0.2 -0.2\nv -0.2 -0.2 0.6\nv -0.2 -1 0.6\n");
+  quad("v 0.2 -1 -0.2\nv 0.2 -0.2 -0.2\nv 0.2 -0.2 0.6\nv 0.2 -1 0.6\n");
+  quad("v -0.2 -1 -0.2\nv -0.2 -0.2 -0.2\nv 0.2 -0.2 -0.2\nv 0.2 -1 -0.2\n");
+  quad("v -0.2 -1 0.6\nv -0.2 -0.2 0.6\nv 0.2 -0.2 0.6\nv 0.2 -1 0.6\n");
+  quad("v -0.2 -0.2 -0.2\nv 0.2 -0.2 -0.2\nv 0.2 -0.2 0.6\nv -0.2 -0.2 0.6\n");
+  folder.write("box.mtl", box_mtl());
+  const std::string scene = folder.write("box.obj", box);
+  const Outcome outcome = succeed(measure(
+      scene, {"--inside", "0,0.5,0", "--plane", "floor+0.5", "--spacing", "0.13", "--wall-band",
+              "0.1", "-o", folder / "a.json", "-o", folder / "a.html", "-o", folder / "a.svg"}));
+  const auto grid = nlohmann::json::parse(folder.read("a.json"))["grids"][0];
+  REQUIRE(grid["blank"].size() > 8);
+  for (const auto& blank : grid["blank"]) {
+    CHECK(std::abs(blank["position"][0].get<double>()) < 0.21);
+    CHECK_THAT(blank["reason"].get<std::string>(), Contains("inside"));
+  }
+  CHECK(grid["statistics"]["Emin"]["value"].get<double>() > 0);
+  CHECK_THAT(outcome.output, Contains(fmt::format("and {} blank", grid["blank"].size())));
+  CHECK_THAT(folder.read("a.html"),
+             Contains(fmt::format("{} points are not measured: inside", grid["blank"].size())));
+  CHECK_THAT(folder.read("a.svg"), Contains("class=\"crosses\""));
+}
+
+TEST_CASE("where no point has light, that is told, in the report, too") {
+  const FileFolder folder;
+  const std::string points = folder.write("p.pts", "0 900 0 0 1 0\n100 900 0 0 1 0\n");
+  const Outcome outcome = succeed(measure(
+      write_box(folder), {"--points", points, "-o", folder / "a.html", "-o", folder / "a.json"}));
+  CHECK_THAT(outcome.errors, Contains("warning: none of the 2 points has any light") &&
+                                 Contains("warning: light 'left' reaches no point"));
+  CHECK_THAT(folder.read("a.html"), Contains("none of the 2 points has any light"));
+  CHECK_THAT(nlohmann::json::parse(folder.read("a.json"))["warnings"].dump(),
+             Contains("none of the 2 points has any light"));
+}
+
 }  // namespace photile::test

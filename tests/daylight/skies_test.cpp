@@ -1,14 +1,18 @@
 // The sun and skies of an hour.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <numbers>
 
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
+#include "temporary_folder.hpp"
 #include "weather/perez_sky.hpp"
 #include "weather/sky_patches.hpp"
+#include "weather/weather_file.hpp"
+#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
@@ -198,6 +202,42 @@ TEST_CASE("a Perez sky brings its sun, which north turns") {
   CHECK(turned.sun->azimuth_degrees == Approx(plain.sun->azimuth_degrees + 30));
   CHECK(turned.sky->to_sun.x ==
         Approx(std::sin(position.azimuth + 30 / degrees) * std::cos(position.elevation)));
+}
+
+TEST_CASE("weather of an hour is lit by the sun of its middle, whatever time of it is asked for") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "year.epw";
+  std::ofstream(file, std::ios::binary) << weather_text(
+      [](int, int, int hour) { return 10 * hour; }, [](int, int, int hour) { return 100 + hour; });
+  SceneLoadOptions options;
+  options.situation.weather = file;
+  const Site site = weather::read_weather(file).site;
+  const auto middle = weather::sun_position(site, {2026, 6, 21, 9.5});
+  // What a year of daylight takes: the irradiances of that row and the sun of its middle.
+  const weather::PerezSky perez(middle.elevation, {100, 110, 5.5}, 172);
+  for (const double hour : {9.2, 9.5, 10.0}) {
+    CAPTURE(hour);
+    options.situation.time = LocalTime{2026, 6, 21, hour};
+    const loading::SkySituationLights lights = loading::sun_and_sky(options);
+    REQUIRE((lights.sun && lights.sky));
+    CHECK(lights.sun->elevation_degrees == Approx(middle.elevation * degrees));
+    CHECK(lights.sun->azimuth_degrees == Approx(middle.azimuth * degrees));
+    CHECK(lights.sun->illuminance == Approx(perez.direct_illuminance()));
+    CHECK(lights.sky->illuminance == Approx(perez.diffuse_illuminance()));
+  }
+  const auto facts = loading::sky_facts(options);
+  REQUIRE(facts.size() == 2);
+  CHECK(facts[0] ==
+        std::pair<std::string, std::string>("ground", "reflectance 0.2 below the horizon"));
+  CHECK_THAT(facts[1].second, Catch::Contains("6/21 hour 10") && Catch::Contains("9:00 to 10:00") &&
+                                  Catch::Contains("100 W/m2 direct") &&
+                                  Catch::Contains("110 W/m2 diffuse") &&
+                                  Catch::Contains("sun is that of 9:30"));
+  // With a sky of its own the time places the sun.
+  options.sky = Sky::parse("perez=600,120");
+  const auto asked = weather::sun_position(site, {2026, 6, 21, 10.0});
+  CHECK(loading::sun_and_sky(options).sun->elevation_degrees == Approx(asked.elevation * degrees));
+  CHECK(loading::sky_facts(options).size() == 1);
 }
 
 TEST_CASE("at night a Perez sky has no sun") {

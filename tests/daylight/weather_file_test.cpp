@@ -53,6 +53,24 @@ TEST_CASE("the hours of a weather file are read, their middle half an hour befor
   CHECK(hour.irradiance.dew_point == 5.5);
 }
 
+TEST_CASE("a moment takes the row that covers it, and the sun of that row's middle") {
+  const TemporaryFolder folder;
+  const auto file = folder.path / "good.epw";
+  std::ofstream(file, std::ios::binary) << text_of_year();
+  const weather::WeatherYear year = weather::read_weather(file);
+  // The row of hour 10 covers 9:00 to 10:00.
+  for (const double hour : {9.01, 9.5, 9.75, 10.0}) {
+    CAPTURE(hour);
+    const LocalTime time{2026, 6, 21, hour};
+    const weather::WeatherHour& row = weather::hour_at(year, time);
+    CHECK(row.irradiance.diffuse_horizontal == 10);
+    const LocalTime middle = weather::middle_of(row, time);
+    CHECK(middle.hour == 9.5);
+    CHECK((middle.year == 2026 && middle.month == 6 && middle.day == 21));
+  }
+  CHECK(weather::hour_at(year, {2026, 6, 21, 0.0}).irradiance.diffuse_horizontal == 1);
+}
+
 TEST_CASE("a damaged weather file is refused in a line that names it and where") {
   const TemporaryFolder folder;
   const std::string good = text_of_year();

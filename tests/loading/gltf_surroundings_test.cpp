@@ -107,6 +107,7 @@ TEST_CASE("surroundings that cannot be read are named, with the remedy") {
   const std::vector<Texel> white(6, {255, 255, 255});
   SceneLoadOptions options;
   options.sky = Sky{SkyKind::uniform, 1000};  // a light that stays
+  options.ground = 0;
   const auto warning_of = [&](const ImageBasedScene& six) {
     const Scene scene = six.load(options);
     CHECK(scene.lights.size() == 1);

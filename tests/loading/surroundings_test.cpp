@@ -141,6 +141,7 @@ TEST_CASE("a sun gives its lux to a surface that faces it, whatever its size", "
   for (const double diameter : {0.0, 0.533, 60.0}) {
     SceneLoadOptions options;
     options.sun = Sun{90, 30, 1000, diameter};
+    options.ground = 0;
     const Scene scene = load_under(options);
     REQUIRE(scene.lights.size() == 1);
     const Light& sun = scene.lights[0];
@@ -202,9 +203,34 @@ TEST_CASE("a clear sky needs a sun above the horizon") {
   CHECK_THROWS_AS(load_under(options), UsageError);
   options.sun = Sun{0, 5, 1000};
   const Scene scene = load_under(options);
-  REQUIRE(scene.lights.size() == 2);
+  REQUIRE(scene.lights.size() == 3);
   CHECK(scene.lights[1].name == "sky");
   CHECK(scene.lights[1].power > 0);
+}
+
+TEST_CASE("a sky or a sun lights ground that reflects a fifth, unless another is given") {
+  const auto ground_under = [](const SceneLoadOptions& options) {
+    const Scene scene = load_under(options);
+    if (scene.lights.back().name != "ground") return 0.0;
+    const trace::DistantLights beyond(scene);
+    const std::size_t last = scene.lights.size() - 1;
+    return scene.lights[last].power * double{beyond[last].radiance({0, -1, 0}).g};
+  };
+  SceneLoadOptions options;
+  CHECK(!loading::ground_reflectance(options));
+  options.sky = Sky{SkyKind::overcast, 10'000};
+  CHECK(ground_under(options) == Approx(0.2 * 10'000 / pi));  // a matt plane: E rho / pi
+  CHECK(loading::ground_reflectance(options) == 0.2);
+  options.sky.reset();
+  options.sun = Sun{0, 30, 20'000};
+  CHECK(ground_under(options) == Approx(0.2 * 20'000 * 0.5 / pi));
+  options.ground = 0;
+  CHECK(ground_under(options) == 0);
+  CHECK_THAT(loading::sky_facts(options).front().second, Catch::Contains("reflectance 0 below"));
+  // At night nothing lights it, which is no error unless another ground was asked for.
+  options.ground = 0.2;
+  options.sun = Sun{0, -30, 20'000};
+  CHECK(ground_under(options) == 0);
 }
 
 TEST_CASE("ground below the horizon sends back its share of the light of sky and sun") {
@@ -232,6 +258,7 @@ TEST_CASE("lux become watts in an OBJ scene, by the luminous efficacy") {
   SceneLoadOptions options;
   options.sun = Sun{0, 90, 683, 0};
   options.lumen_per_watt = 179;
+  options.ground = 0;
   const std::string wall = "newmtl wall\nKd 0.5 0.5 0.5\n";
   const Scene scene = load_obj(unit_square + "usemtl wall\nf 1 2 3 4\n", wall, options);
   REQUIRE(scene.lights.size() == 1);

@@ -64,6 +64,49 @@ TEST_CASE(
   CHECK_THAT(without_right[0], Contains("light 'right' reaches no point"));
   lights[1].power = 0;
   CHECK(doubts_of(measured({3, 1}, {0, 0}), lights).empty());
+  // All dark: the likelier mistake.
+  const auto all_dark = doubts_of(measured({0, 0}, {0, 0}), lights);
+  REQUIRE(all_dark.size() == 2);
+  CHECK_THAT(all_dark[0], Contains("none of the 2 points has any light"));
+  CHECK_THAT(all_dark[1], Contains("light 'left' reaches no point"));
+  lights[0].power = 0;
+  const auto off = doubts_of(measured({0, 0}, {0, 0}), lights);
+  REQUIRE(off.size() == 1);
+  CHECK_THAT(off[0], Contains("all lights are off"));
+}
+
+TEST_CASE("a light alone that reaches no point is named") {
+  Measurement measurement = measured({0, 0}, {0, 0});
+  measurement[0].lights.resize(1);
+  std::vector<MixedLight> lights(1);
+  lights[0].name = "lamp";
+  lights[0].power = 1;
+  CHECK_THAT(doubts_of(measurement, lights).back(), Contains("light 'lamp' reaches no point"));
+}
+
+TEST_CASE("a sky that reaches nothing is told once, its ground never") {
+  const auto told = [](const std::vector<std::string>& names, const std::vector<bool>& reaches) {
+    std::vector<MixedLight> lights;
+    for (const std::string& name : names) lights.emplace_back().name = name;
+    for (MixedLight& light : lights) light.power = 1;
+    return lights_that_reach_nothing(lights, reaches, "point");
+  };
+  const auto dark = told({"sun", "sky", "ground"}, {false, false, false});
+  REQUIRE(dark.size() == 1);
+  CHECK_THAT(dark[0], Contains("no light of the sky reaches any point") && Contains("no opening"));
+  CHECK(told({"sky", "ground"}, {true, false}).empty());
+  CHECK(told({"sky_0001", "sky_0002", "ground"}, {false, true, false}).empty());
+  CHECK(told({"sky_0001", "sky_0002", "ground"}, {false, false, false}).size() == 1);
+  CHECK_THAT(told({"sun", "sky"}, {false, true}).at(0), Contains("another side"));
+}
+
+TEST_CASE("points without light are marked, where others have some") {
+  Measurement measurement = measured({3, 0}, {2, 0});
+  mark_dark_points(measurement);
+  CHECK(measurement[0].grid.marks == std::vector<std::string>{"", "no light"});
+  Measurement dark = measured({0, 0}, {0, 0});
+  mark_dark_points(dark);
+  CHECK(dark[0].grid.marks.empty());
 }
 
 TEST_CASE("without noise the figures are those of the values, and their errors 0") {

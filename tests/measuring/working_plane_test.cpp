@@ -6,7 +6,7 @@
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 
-#include "measuring/floor.hpp"
+#include "measuring/furniture.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"

@@ -28,6 +28,7 @@ struct SharedScene {
 inline Scene load_shared_scene(const SharedScene& scene) {
   SceneLoadOptions options;
   options.sky = Sky{SkyKind::uniform, 1000};
+  options.ground = 0;
   options.light_groups = {LightGrouping::parse("*=all")};  // one layer: few kernels
   return load_scene(shared_scenes_folder() / scene.file, options);
 }

@@ -110,7 +110,9 @@ TEST_CASE("the weather of a file lights its own place, in watts by the efficacy"
   const SkyMoment noon{172, 12};
   CHECK(sky->irradiance(noon).diffuse_horizontal == 100);
   const auto place = weather::read_weather(file).site;
-  const weather::PerezSky perez(weather::sun_position(place, noon.time()).elevation,
+  const SkyMoment middle{172, 11.5};  // of the hour whose row holds for noon
+  CHECK(sky->sun(noon).elevation == weather::sun_position(place, middle.time()).elevation);
+  const weather::PerezSky perez(weather::sun_position(place, middle.time()).elevation,
                                 sky->irradiance(noon), noon.day);
   CHECK(100 * horizontal(sky->powers(noon)) == Approx(perez.diffuse_illuminance()).epsilon(1e-6));
 }

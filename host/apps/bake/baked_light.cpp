@@ -386,6 +386,31 @@ std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
   return texels;
 }
 
+std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides) const {
+  const Estimates& values = maps_.values();
+  const std::size_t layers = dense_layers(values, maps_.statistics().nodes);
+  std::vector<bool> reached(layers, false);
+  const glm::vec2 size(atlas_.width, atlas_.height);
+  for (const std::uint32_t side : sides_) {
+    if (sides[side] == 0) continue;
+    const std::array<glm::vec2, 3> corners = this->corners(side);
+    const glm::uvec2 low(glm::min(glm::min(corners[0], corners[1]), corners[2]) * size);
+    const glm::uvec2 high(glm::max(glm::max(corners[0], corners[1]), corners[2]) * size);
+    for (std::uint32_t y = low.y; y <= std::min(high.y, atlas_.height - 1); ++y) {
+      for (std::uint32_t x = low.x; x <= std::min(high.x, atlas_.width - 1); ++x) {
+        const BilinearWeights& bilinear = bilinear_[std::size_t{y} * atlas_.width + x];
+        if (bilinear.node[0] == none) continue;
+        for (std::size_t layer = 0; layer < layers; ++layer) {
+          if (!reached[layer] && interpolated(values, bilinear, layer, layers) != glm::vec3(0.0f)) {
+            reached[layer] = true;
+          }
+        }
+      }
+    }
+  }
+  return reached;
+}
+
 std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nodes) const {
   std::vector<float> texels(bilinear_.size(), 0.0f);
   const std::size_t layers = dense_layers(of_nodes, maps_.statistics().nodes);

@@ -46,6 +46,9 @@ struct BakeParameters {
 /// through glass and cutouts, too. Depends on the scene alone.
 std::vector<std::uint8_t> open_sides(const RayScene& rays);
 
+/// Per oriented face 1 where such paths from the cameras alone come to it: what anybody can see.
+std::vector<std::uint8_t> seen_sides(const RayScene& rays);
+
 /// A triangle on another: per corner the weights of the other's corners. Counter-clockwise as seen
 /// from the side that it belongs to.
 using DrawnTriangle = std::array<glm::vec3, 3>;
@@ -96,6 +99,9 @@ class BakedLight {
   /// texels without light have none.
   ///   powers   per layer
   double standard_error(std::span<const double> powers, const Estimates& of_nodes) const;
+  /// Per layer whether its light is on any texel of these sides.
+  ///   sides   per oriented face 1, else 0
+  std::vector<bool> reaches(std::span<const std::uint8_t> sides) const;
   /// Texels of the charts, without what lies between them.
   std::uint64_t used_texels() const;
 

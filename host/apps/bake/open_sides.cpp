@@ -57,18 +57,16 @@ class PathSource {
   const Light* light_ = nullptr;
 };
 
-std::vector<PathSource> sources_of(const Scene& scene) {
+std::vector<PathSource> eyes_of(const Scene& scene) {
   std::vector<PathSource> sources;
   for (const Camera& camera : scene.cameras) sources.emplace_back(glm::vec3(camera.position));
-  for (const Light& light : scene.lights) sources.emplace_back(light);
   return sources;
 }
 
 /// Sides that paths meet.
-std::vector<std::uint8_t> met_sides(const RayScene& rays) {
+std::vector<std::uint8_t> met_sides(const RayScene& rays, const std::vector<PathSource>& sources) {
   const Scene& scene = rays.scene();
   std::vector<std::uint8_t> met(2 * std::size_t{scene.triangle_count()});
-  const std::vector<PathSource> sources = sources_of(scene);
   if (sources.empty()) return met;
   tbb::parallel_for(std::uint64_t{0}, open_paths, [&](std::uint64_t path) {
     const trace::FlushDenormals flush_denormals;
@@ -101,8 +99,14 @@ std::vector<std::uint8_t> met_sides(const RayScene& rays) {
 
 }  // namespace
 
+std::vector<std::uint8_t> seen_sides(const RayScene& rays) {
+  return met_sides(rays, eyes_of(rays.scene()));
+}
+
 std::vector<std::uint8_t> open_sides(const RayScene& rays) {
-  std::vector<std::uint8_t> open = met_sides(rays);
+  std::vector<PathSource> sources = eyes_of(rays.scene());
+  for (const Light& light : rays.scene().lights) sources.emplace_back(light);
+  std::vector<std::uint8_t> open = met_sides(rays, sources);
   const surface::SurfaceMesh mesh(rays.scene());
   geometry::DisjointSets joined(open.size());
   mesh.for_each_edge([&](std::span<const surface::MeshEdge> edges) {

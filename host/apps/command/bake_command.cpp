@@ -40,7 +40,7 @@ void run_bake(BakeOptions& options) {
   const LightMix mix = mix_of(scene, render);
   check_outputs(bake::files_of(options.output, scene, mix));
   std::vector<Device> devices = devices_for(render, progress);
-  tell_scene(scene, mix, progress);
+  tell_scene(scene, mix, render.load, progress);
 
   std::optional<TracedPhotons> prepared = load_maps(scene, render, progress);
   const auto prepared_scene = std::make_shared<const PreparedScene>(scene);

@@ -74,6 +74,18 @@ YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
     });
   });
   YearLamps lamps{std::move(found), {}};
+  std::vector<MixedLight> lights;
+  std::vector<bool> reaches;
+  for (const LightIlluminance& lamp : lamps.lux) {
+    for (const MixedLight& light : mix.lights) {
+      if (light.name == lamp.light) lights.push_back(light);
+    }
+    reaches.push_back(std::any_of(lamp.sensors.begin(), lamp.sensors.end(),
+                                  [](const Measured& measured) { return measured.value > 0; }));
+  }
+  for (const auto& line : measuring::lights_that_reach_nothing(lights, reaches, "point")) {
+    progress.warn(line);
+  }
   const std::vector<double> watts = watts_of(scene, mix, options.lamp_efficacy);
   for (const LightIlluminance& lamp : lamps.lux) {
     for (std::size_t i = 0; i < watts.size(); ++i) {
@@ -97,6 +109,7 @@ report::ReportText pages_of(const DaylightOptions& options, const Scene& scene,
   text.facts = {
       {"weather", options.render.load.situation.weather.filename().string()},
       {"sky", fmt::format("{} patches", options.patches)},
+      {"ground", fmt::format("reflectance {:g} below the horizon", options.asked.ground)},
       {"measured", fmt::format("{} times with {} rays a point",
                                rounds * static_cast<std::size_t>(options.parameters.repeats),
                                options.parameters.gathering.rays)},
@@ -119,10 +132,11 @@ void write(const DaylightOptions& options, const Scene& scene,
     }
     return drawn;
   };
-  write_results(options.outputs, {.csv = [&] { return report::daylight_csv(results); },
-                                  .json = [&] { return json_text(record); },
-                                  .plans = plans,
-                                  .page = [&] { return report::report_html({}, pages, {}, {}); }});
+  write_results(options.outputs,
+                {.csv = [&] { return report::daylight_csv(results, options.asked); },
+                 .json = [&] { return json_text(record); },
+                 .plans = plans,
+                 .page = [&] { return report::report_html({}, pages, {}, {}); }});
   if (options.honeybee.empty()) return;
   const std::filesystem::path folder = options.honeybee;
   for (const auto& [name, content] : report::annual_files(results, hours)) {
@@ -153,6 +167,7 @@ void check_lights(const DaylightOptions& options) {
 /// The sky's lights are needed to find the windows, and for no more.
 Scene scene_under_sky(const std::string& file, SceneLoadOptions load, const Progress& progress) {
   load.sky = Sky{SkyKind::patches, 0, 0, 0, weather::patch_counts[0]};
+  load.ground = defaults::ground_reflectance;  // that of the year is part of its hours
   load.situation.weather.clear();
   load.situation.site.reset();
   load.portals = {"off"};  // those of the grids are looked for
@@ -210,7 +225,8 @@ PreparedYear prepare_year(DaylightOptions& options, Progress& progress) {
                         std::move(loaded),
                         {}};
   auto& [year, scene, grids] = prepared;
-  year.hours = sky_hours(weather, year.patches, options.ground);
+  year.hours = sky_hours(weather, year.patches, render.load.ground);
+  options.asked.ground = render.load.ground;
   options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
   grids = grids_of(options, scene, weather.hours.size(), progress);
   take_windows(options, grids, scene);
@@ -309,8 +325,8 @@ void add_year(CLI::App& command, DaylightOptions& options) {
            "Radiance's two-phase method has it",
            CLI::IsMember({"rays", "patches"}))
       ->capture_default_str();
-  year.add("--ground", options.ground, "X", "reflectance of the ground that surrounds the scene",
-           number_between(0, 1))
+  year.add("--ground", options.render.load.ground, "X",
+           "reflectance of the ground that surrounds the scene", number_between(0, 1))
       ->capture_default_str();
   year.add("--lux", options.asked.target_lux, "LUX", "that count as autonomous daylight",
            positive_number())

@@ -23,7 +23,6 @@ struct DaylightOptions {
   std::vector<std::string> outputs;  ///< .csv, .json, .svg, .html, .pdf
   std::string honeybee;              ///< folder, "" = none
   int patches = defaults::sky_patches;
-  double ground = defaults::ground_reflectance;
   std::string suns = "rays";
   report::DaylightAsked asked{defaults::daylight_lux, {}, {}};
   std::string occupied = "8-18", days = "mon-sun";

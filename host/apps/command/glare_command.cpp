@@ -12,6 +12,7 @@
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
 #include "command/report_contents.hpp"
+#include "command/scene_report.hpp"
 #include "command/sensor_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
@@ -20,6 +21,7 @@
 #include "common/foreign_text.hpp"
 #include "glare/measure_glare.hpp"
 #include "loading/load_scene.hpp"
+#include "loading/surroundings.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
@@ -122,6 +124,9 @@ Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& m
               {"picture_side", options.parameters.picture_side},
               {"source_threshold", options.parameters.search.threshold},
               {"lumen_per_watt", mix.lumen_per_watt}};
+  if (const auto ground = loading::ground_reflectance(options.render.load)) {
+    record["ground_reflectance"] = *ground;
+  }
   if (options.render.mood.asked()) record["mood"] = options.render.mood.mood;
   if (const auto judgement = judged(options, all)) {
     record["target"] = {{"name", options.target},
@@ -168,7 +173,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   TerminalProgress progress(render.quiet);
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
-  tell_scene(scene, mix, progress);
+  tell_scene(scene, mix, render.load, progress);
   std::optional<measuring::PlaneLayout> plane;
   const std::vector<glare::Observer> observers = observers_of(options, scene, plane, progress);
   std::vector<Device> devices = devices_for(render, progress);
@@ -190,10 +195,17 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   const auto all =
       glare::measure_glare(scene, observers, mix, coverage_of(options, scene, observers.front()),
                            devices, parameters, keep, progress);
-  write_results(options.outputs,
-                {.csv = [&] { return report::glare_csv(all); },
-                 .json = [&] { return json_text(run_json(options, scene, mix, plane, all)); }});
+  std::vector<bool> reaches(all.front().reached_by.size(), false);
+  for (const glare::ObserverGlare& each : all) {
+    for (std::size_t i = 0; i < reaches.size(); ++i) reaches[i] = reaches[i] || each.reached_by[i];
+  }
+  warn_of_dark_lights(scene, mix, reaches, "observer", progress);
+  write_results(
+      options.outputs,
+      {.csv = [&] { return report::glare_csv(all, loading::ground_reflectance(render.load)); },
+       .json = [&] { return json_text(run_json(options, scene, mix, plane, all)); }});
   for (const auto& line : report::glare_lines(all)) std::cout << line << '\n';
+  for (const auto& line : sky_lines(render.load)) std::cout << line << '\n';
   if (const auto judgement = judged(options, all)) {
     std::cout << fmt::format("target {}: {}\n", options.target,
                              measuring::judgement_text(*judgement));

@@ -165,8 +165,9 @@ struct InfoOptions {
   bool json = false;
 };
 
-void print_text(const Scene& scene, const LightMix& mix) {
+void print_text(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load) {
   for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
+  for (const auto& line : sky_lines(load)) std::cout << line << '\n';
   const auto rooms = measuring::rooms_of_cameras(scene);
   if (rooms.empty()) {
     std::cout << "room: none with a ceiling around a camera or before it\n";
@@ -195,9 +196,9 @@ void run_info(const InfoOptions& options) {
   }
   const LightMix mix = LightMix::of(scene, options.load.lumen_per_watt);
   if (options.json) {
-    std::cout << json_text(scene_json(scene, mix), 2);
+    std::cout << json_text(scene_json(scene, mix, options.load), 2);
   } else {
-    print_text(scene, mix);
+    print_text(scene, mix, options.load);
   }
 }
 

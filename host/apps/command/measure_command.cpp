@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command/command_line.hpp"
@@ -21,6 +22,7 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "loading/load_scene.hpp"
+#include "loading/surroundings.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/sensor_grid.hpp"
@@ -61,15 +63,14 @@ void take_overcast_sky(SceneLoadOptions& load) {
   load.sky = Sky{SkyKind::overcast, 100};
 }
 
-/// Leaves what the sky gives alone.
-void keep_sky(measuring::Measurement& measurement) {
-  for (measuring::GridValues& values : measurement) {
-    for (const measuring::LightValues& light : values.lights) {
-      if (light.light != "sky") continue;
-      values.lights = {measuring::LightValues{"", light.sensors, light.statistics}};
-      break;
-    }
-  }
+/// Turns off all lights but the sky and the ground that it lights, which the scene has last.
+LightMix mix_of_sky(const SceneLoadOptions& load, Scene& scene, const RenderOptions& render) {
+  const std::size_t own = scene.lights.size() - (load.ground > 0 ? 2 : 1);
+  for (std::size_t i = own; i < scene.lights.size(); ++i) scene.lights[i].group.clear();
+  LightMix mix = mix_of(scene, render);
+  const LightGroups groups = light_groups_of(scene);
+  for (std::size_t i = 0; i < own; ++i) mix.lights[groups.group_of[i]].power = 0;
+  return mix;
 }
 
 double most_of(const measuring::Measurement& measurement) {
@@ -111,21 +112,23 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   return grids;
 }
 
-void warn(const Scene& scene, const LightMix& mix, const std::vector<measuring::SensorGrid>& grids,
-          Progress& progress) {
-  for (const std::string& line : doubts_of(scene, mix)) progress.warn(line);
+/// What is doubtful before anything is measured, a line each.
+std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
+                                     const std::vector<measuring::SensorGrid>& grids) {
+  std::vector<std::string> lines = doubts_of(scene, mix);
   if (has_hidden_caustics(scene)) {
-    progress.warn(
+    lines.emplace_back(
         "what mirrors and glass throw onto sensors from point, spot and directional "
         "lights is missing; lamps with an area are seen in them");
   }
   const std::size_t covered = measuring::covered_sensors(scene, grids);
   if (covered > 0) {
-    progress.warn(
+    lines.push_back(
         fmt::format("{} points have a surface less than 1 cm before them; they may lie in "
                     "furniture or just below a top",
                     covered));
   }
+  return lines;
 }
 
 void run_measure(const CLI::App& command, MeasureOptions& options) {
@@ -157,13 +160,18 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
   Scene scene = loading::load_scene(render.scene, render.load, progress);
-  const LightMix mix = mix_of(scene, render);
-  tell_scene(scene, mix, progress);
+  const LightMix mix =
+      options.daylight_factor ? mix_of_sky(render.load, scene, render) : mix_of(scene, render);
+  tell_scene(scene, mix, render.load, progress);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
-  warn(scene, mix, grids, progress);
+  std::vector<std::string> warnings = warnings_of(scene, mix, grids);
+  for (const std::string& line : warnings) progress.warn(line);
+  for (const measuring::SensorGrid& grid : grids) {
+    if (!grid.remark.empty()) warnings.push_back(fmt::format("{}: {}", grid.name, grid.remark));
+  }
 
   MeasuringParameters& parameters = options.parameters;
   parameters.photons = render.parameters;
@@ -174,12 +182,14 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {
-    keep_sky(measurement);
+    for (measuring::GridValues& values : measurement) values.lights.resize(1);
     const std::string warning = report::darkness_warning(most_of(measurement));
     if (!warning.empty()) progress.note(warning);
   } else {
-    for (const std::string& line : measuring::doubts_of(measurement, mix.lights)) {
+    measuring::mark_dark_points(measurement);
+    for (std::string& line : measuring::doubts_of(measurement, mix.lights)) {
       progress.warn(line);
+      warnings.push_back(std::move(line));
     }
   }
   outputs.check_picture(scene, progress);
@@ -187,10 +197,13 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
                 {scene, mix, parameters, render.mood.mood, requirement, moods, included,
                  outputs.any_report()
                      ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
-                     : std::nullopt});
+                     : std::nullopt,
+                 loading::ground_reflectance(render.load), loading::sky_facts(render.load),
+                 std::move(warnings)});
   for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
   }
+  for (const auto& line : sky_lines(render.load)) std::cout << line << '\n';
   if (requirement) {
     for (const auto& line :
          measuring::requirement_lines(measurement, *requirement, included.glare)) {

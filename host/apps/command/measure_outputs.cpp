@@ -68,6 +68,9 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
     record["neighbours"] = parameters.photons.neighbours;
   }
   if (!run.mood.empty()) record["mood"] = run.mood;
+  if (run.ground) record["ground_reflectance"] = *run.ground;
+  for (const auto& [name, value] : run.sky) record["sky"][name] = value;
+  if (!run.warnings.empty()) record["warnings"] = run.warnings;
   record["lumen_per_watt"] = run.mix.lumen_per_watt;
   for (const MixedLight& light : run.mix.lights) {
     record["lights"].push_back(
@@ -97,6 +100,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const MeasureRun& run,
       {"errors", "standard errors of the mean of the repeats"},
       {"seed", std::to_string(parameters.photons.seed)}};
   if (!run.mood.empty()) facts.emplace_back("mood", run.mood);
+  facts.insert(facts.end(), run.sky.begin(), run.sky.end());
   facts.emplace_back("program", "photile " + version_number());
   facts.emplace_back("date", today());
   return facts;
@@ -228,6 +232,7 @@ std::string MeasureOutputs::page_of(
       run.included.glare,
       options_.project};
   text.language = options_.language;
+  text.warnings = run.warnings;
   text.logo = logo_;
   text.sheets = data_sheets(parts);
   text.rendering = least_rendering(parts);
@@ -270,7 +275,7 @@ void MeasureOutputs::write(const measuring::Measurement& measurement, const Meas
     return drawn;
   };
   write_results(options_.outputs,
-                {.csv = [&] { return report::measurement_csv(measurement, unit_); },
+                {.csv = [&] { return report::measurement_csv(measurement, unit_, run.ground); },
                  .json = [&] { return json_text(run_json(measurement, run, unit_)); },
                  .plans = plans,
                  .page = [&] { return page_of(measurement, run, surroundings); }});

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command/output_files.hpp"
@@ -48,6 +49,10 @@ struct MeasureRun {
   std::filesystem::path moods = {};       ///< file of those that a report shows; "" = none
   report::IncludedResults included = {};  ///< of `included`
   std::optional<measuring::RoomSize> room = std::nullopt;
+  std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
+  /// What the sky is: name and value.
+  std::vector<std::pair<std::string, std::string>> sky = {};
+  std::vector<std::string> warnings = {};  ///< of the scene, the points and the lights
 };
 
 class MeasureOutputs {

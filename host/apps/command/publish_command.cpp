@@ -21,6 +21,7 @@
 #include "command/quality_options.hpp"
 #include "command/render_options.hpp"
 #include "command/run_record.hpp"
+#include "command/scene_report.hpp"
 #include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
@@ -149,7 +150,7 @@ void run_publish(PublishOptions& options) {
   const std::vector<publish::Preset> presets = presets_of(render, mix);
   const publish::SkyHours hours = publish::sky_hours(mix, situation);
   std::vector<Device> devices = devices_for(render, progress);
-  tell_scene(scene, mix, progress);
+  tell_scene(scene, mix, render.load, progress);
 
   const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
   options.baking.open = bake::open_sides(prepared_scene->rays);
@@ -158,7 +159,10 @@ void run_publish(PublishOptions& options) {
   options.baking.most_texels =
       limits::max_published_texels / std::max<std::size_t>(1, mix.lights.size());
 
+  std::vector<bool> reaches;
+  const std::vector<std::uint8_t> seen = bake::seen_sides(prepared_scene->rays);
   const auto write = [&](LitRoom& lit) {
+    reaches = lit.baked().reaches(seen);
     progress.begin("write files", 0, "");
     const std::optional<Estimates> errors = lit.errors();
     for (const std::filesystem::path file : options.outputs) {
@@ -196,6 +200,7 @@ void run_publish(PublishOptions& options) {
       for_later_rounds(asked.passes, [&](int parts) { lit.grow(parts, progress); });
     }
     write(lit);
+    warn_of_dark_lights(scene, mix, reaches, "surface that a camera sees", progress);
     return;
   }
   const RenderParameters part = first_part(render.goal, render.parameters);
@@ -218,6 +223,7 @@ void run_publish(PublishOptions& options) {
                               options_text(of_parts(part, parts), without)));
   };
   refine(render.goal, part, {make, finished, elapsed}, progress);
+  warn_of_dark_lights(scene, mix, reaches, "surface that a camera sees", progress);
 }
 
 }  // namespace

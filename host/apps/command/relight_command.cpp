@@ -107,6 +107,12 @@ void run_relight(const RelightOptions& options) {
       relit_picture(options.input, joined(mood_of_picture(mood, options.input), changes));
   throw_if_stop_requested();
   TerminalProgress notes(false);
+  if (options.by_time()) {
+    SceneLoadOptions load;
+    load.situation = options.situation;
+    load.sky = options.sky;
+    for (const std::string& line : sky_lines(load)) notes.note(line);
+  }
   outputs.write(*picture, notes, options.input);
 }
 

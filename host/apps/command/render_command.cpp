@@ -17,6 +17,7 @@
 #include "command/render_options.hpp"
 #include "command/run_record.hpp"
 #include "command/saved_maps_option.hpp"
+#include "command/scene_report.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
@@ -24,7 +25,9 @@
 #include "device/context.hpp"
 #include "image/display.hpp"
 #include "image/glare.hpp"
+#include "image/light_layers.hpp"
 #include "loading/load_scene.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
@@ -239,10 +242,11 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
     scene = loading::load_scene(options.scene, options.load, progress);
   }));
   record.mix = mix_of(scene, options);
-  tell_scene(scene, record.mix, progress);
+  tell_scene(scene, record.mix, options.load, progress);
   const Camera camera = projected(camera_of(scene, options), options);
   set_film_size(options.parameters.film, options.size, camera);
   record.scene = scene.source.filename().string();
+  record.ground = loading::ground_reflectance(options.load);
   record.surfaces = digest_of_surfaces(scene);
   record.camera = camera.name;
   record.integrator = name_of(options.integrator);
@@ -260,6 +264,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   const CameraHits hits(camera, wants_errors ? &errors : nullptr);
   LightLayers reflections;
   const Views views{hits, options.glare.empty() ? nullptr : &reflections};
+  std::vector<bool> reaches;
   const auto write = [&](const LightLayers& rendered) {
     if (!leads()) return;
     std::optional<LightLayers> denoised;
@@ -276,6 +281,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
         set_run_attributes(picture->header(), record);
         return picture;
       };
+      reaches = image::lit_layers(layers);
       outputs.write(*picture_of(layers), progress);
       if (!options.errors.empty()) write_exr(options.errors, *picture_of(errors));
       if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
@@ -287,6 +293,9 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
     write(render_by_paths(scene, camera, views, record, progress));
   } else {
     write(render_by_photons(scene, camera, devices, options, views, record, progress));
+  }
+  if (!reaches.empty()) {
+    warn_of_dark_lights(scene, record.mix, reaches, "part of the picture", progress);
   }
   for (Device& device : devices) tell_kernels(device, options.device.profile, record, progress);
   return {};

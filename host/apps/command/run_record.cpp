@@ -109,6 +109,9 @@ void set_run_attributes(PictureHeader& picture, const RunRecord& record) {
   attributes["photile.version"] = version_number();
   attributes["photile.scene"] = record.scene;
   attributes["photile.surfaces"] = record.surfaces;
+  if (record.ground) {
+    attributes["photile.ground_reflectance"] = fmt::format("{:g}", *record.ground);
+  }
   attributes["photile.camera"] = record.camera;
   attributes["photile.integrator"] = record.integrator;
   attributes["photile.quality"] = name_of(record.quality);
@@ -140,6 +143,7 @@ json run_json(const RunRecord& record) {
               {"total_seconds", record.total.seconds},
               {"total_processor_seconds", record.total.processor_seconds},
               {"peak_host_bytes", peak_host_bytes()}};
+  if (record.ground) result["ground_reflectance"] = *record.ground;
   if (!record.denoiser.empty()) result["denoiser"] = record.denoiser;
   if (record.has_photons()) {
     result["photons_stored"] = record.stored_photons;

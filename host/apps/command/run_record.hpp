@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,9 @@ struct KernelRecord {
 struct RunRecord {
   bool has_photons() const { return !devices.empty(); }
 
-  std::string scene;     ///< the file's name, without folders: a picture should not tell them
-  std::string surfaces;  ///< digest_of_surfaces
+  std::string scene;  ///< the file's name, without folders: a picture should not tell them
+  std::optional<double> ground;  ///< its reflectance; none without a sky or a sun of the options
+  std::string surfaces;          ///< digest_of_surfaces
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
   Quality quality = Quality::draft;  ///< whose settings are used but for those given

@@ -8,7 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "command/terminal_progress.hpp"
+#include "image/light_change.hpp"
+#include "image/light_layers.hpp"
 #include "loading/surroundings.hpp"
+#include "measuring/measurement.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
 #include "scene/scene_queries.hpp"
@@ -214,19 +217,11 @@ std::vector<std::string> sky_summary(const LightMix& mix) {
                       format_power_in_lumens(power, unit, mix.lumen_per_watt))};
 }
 
-namespace {
-
-/// Whether the scene has a sky of ours without ground.
-bool is_black_below_the_horizon(const Scene& scene) {
-  const auto has = [&](std::string_view name) {
-    return std::any_of(scene.lights.begin(), scene.lights.end(), [&](const Light& light) {
-      return light.is_distant() && light.name == name;
-    });
-  };
-  return has("sky") && !has("ground");
+std::vector<std::string> sky_lines(const SceneLoadOptions& load) {
+  std::vector<std::string> lines;
+  for (const auto& [name, text] : loading::sky_facts(load)) lines.push_back(name + ": " + text);
+  return lines;
 }
-
-}  // namespace
 
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) {
   const Extents extents = extents_of(scene);
@@ -256,9 +251,6 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
         source.empty() ? "" : ", from " + source));
   }
   for (const std::string& line : sky_summary(mix)) lines.push_back(line);
-  if (is_black_below_the_horizon(scene)) {
-    lines.push_back("sky: black below the horizon; --set ground=0.2 puts ground there");
-  }
   for (const MixedLight& group : mix.lights) {
     if (group.members.empty()) continue;
     lines.push_back(
@@ -333,6 +325,16 @@ std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix) {
   return lines;
 }
 
+void warn_of_dark_lights(const Scene& scene, const LightMix& mix, const std::vector<bool>& reaches,
+                         const std::string& what, Progress& progress) {
+  const std::vector<std::string> layers = image::layer_names(scene);
+  std::vector<MixedLight> lights;
+  for (const std::string& name : layers) lights.push_back(mix.lights[image::index_of(mix, name)]);
+  for (const auto& line : measuring::lights_that_reach_nothing(lights, reaches, what)) {
+    progress.warn(line);
+  }
+}
+
 std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix) {
   std::vector<std::string> lines = scene.report.warnings;
   for (std::string& line : doubts_of(scene, mix)) lines.push_back(std::move(line));
@@ -348,7 +350,7 @@ std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix) 
   return lines;
 }
 
-json scene_json(const Scene& scene, const LightMix& mix) {
+json scene_json(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load) {
   const Extents extents = extents_of(scene);
   json result{{"scene", scene.source.string()},
               {"unit", symbol_of(mix.unit())},
@@ -371,6 +373,7 @@ json scene_json(const Scene& scene, const LightMix& mix) {
               {"cameras", json::array()},
               {"rooms", json::array()},
               {"warnings", info_warnings(scene, mix)}};
+  if (const auto ground = loading::ground_reflectance(load)) result["ground_reflectance"] = *ground;
   const std::vector<std::size_t> triangles = triangles_of_materials(scene);
   for (const ImportedMesh& mesh : scene.report.meshes) {
     result["meshes"].push_back({{"name", mesh.name}, {"triangles", mesh.triangles}});

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "photile/layered_picture.hpp"
+#include "photile/load_scene.hpp"
+#include "photile/progress.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::app {
@@ -30,6 +32,9 @@ std::vector<std::string> sky_summary(const LightMix& mix);
 /// The counts, every light and every group of lights with its power in `mix`, a line each.
 std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix);
 
+/// The facts of the sky, a line each: "ground: reflectance 0.2 below the horizon".
+std::vector<std::string> sky_lines(const SceneLoadOptions& load);
+
 /// How each material scatters, on how many triangles and with which texture, a line each.
 std::vector<std::string> material_summary(const Scene& scene);
 
@@ -40,11 +45,16 @@ std::vector<std::string> mesh_summary(const Scene& scene);
 /// lamps that emit less than a candle.
 std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix);
 
+/// Warns of the lights that are on and reach nothing: lights_that_reach_nothing.
+///   reaches   per layer of the scene, in the order of layer_names
+void warn_of_dark_lights(const Scene& scene, const LightMix& mix, const std::vector<bool>& reaches,
+                         const std::string& what, Progress& progress);
+
 /// The import's warnings, doubts_of, and what takes a look at every triangle: solid glass on open
 /// sheets.
 std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix);
 
 /// Everything that `photile info` tells.
-nlohmann::json scene_json(const Scene& scene, const LightMix& mix);
+nlohmann::json scene_json(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load);
 
 }  // namespace photile::app

@@ -10,7 +10,7 @@
 
 #include "command/option_group.hpp"
 #include "common/files.hpp"
-#include "measuring/floor.hpp"
+#include "measuring/furniture.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
@@ -31,8 +31,8 @@ void add_plane_options(const OptionGroup& places, PlaneOptions& options) {
   places.add("--spacing", options.spacing, "M", "metres; default: that of EN 12464-1",
              positive_number());
   places.add("--clearance", options.clearance, "M",
-             "leaves out points inside furniture, or with a surface less than M before or behind "
-             "them",
+             "leaves out points with a surface less than M before or behind them; those inside "
+             "furniture are left out without it",
              positive_number());
 }
 
@@ -83,26 +83,53 @@ measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) 
   return measuring::working_plane_grid(scene, plane_at(options, options.height));
 }
 
+namespace {
+
+/// "inside a solid or beyond the walls (3), less than 1 cm from a surface (2)", without reasons
+/// that are known.
+std::string reasons_of(const measuring::SensorGrid& grid, const measuring::CountedReasons& known) {
+  std::string text;
+  for (const auto& [reason, count] : measuring::counted_blanks(grid)) {
+    const auto is_same = [&](const auto& other) { return other.first == reason; };
+    if (std::any_of(known.begin(), known.end(), is_same)) continue;
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reason, count);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                                std::span<measuring::SensorGrid> grids, Progress& progress) {
   std::size_t left = 0;
   for (measuring::SensorGrid& grid : grids) {
     if (!grid.remark.empty()) progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
     const std::size_t all = grid.sensors.size();
-    const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid);
+    const measuring::CountedReasons known = measuring::counted_blanks(grid);
+    std::optional<glm::dvec3> inside;
+    if (!options.inside.empty()) {
+      inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
+    }
+    const std::size_t blank =
+        measuring::leave_out_furniture(scene, options.clearance, grid, inside);
+    if (grid.sensors.empty() && !(options.clearance > 0)) {
+      throw UsageError(
+          fmt::format("{}: all {} points lie in things or on surfaces; give another "
+                      "height or place",
+                      grid.name, all));
+    }
     if (grid.sensors.empty()) {
       throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
                                    options.clearance, all, grid.name));
     }
     left += grid.sensors.size();
+    for (const auto& [mark, count] : measuring::counted_marks(grid)) {
+      progress.warn(fmt::format("{}: {} of {} points: {}; they are part of all figures", grid.name,
+                                count, all, mark));
+    }
     if (blank == 0) continue;
-    progress.note(fmt::format(
-        "{}: {} of {} points {}", grid.name, blank, all,
-        options.clearance > 0
-            ? fmt::format("lie in furniture, or less than {} m from some; they are left out",
-                          options.clearance)
-            : "are blank: they lie inside a solid or beyond the walls that the others stand "
-              "within"));
+    progress.note(fmt::format("{}: {} of {} points are blank: they lie {}", grid.name, blank, all,
+                              reasons_of(grid, known)));
   }
   return left;
 }

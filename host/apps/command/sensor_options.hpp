@@ -26,7 +26,7 @@ struct PlaneOptions {
   double wall_band = defaults::wall_band;
   double spacing = 0;          ///< metres; 0 = that of EN 12464-1
   std::vector<double> inside;  ///< a point in the room; empty = by the camera
-  double clearance = 0;        ///< metres; 0 = furniture is not looked for
+  double clearance = 0;        ///< metres from furniture; 0 = none
 };
 
 /// Positions of sensors.

@@ -209,8 +209,10 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
           "auto", [&options](std::string_view glob) { options.portals.emplace_back(glob); }),
       bound_number("north", group, loading::turns, options.situation.north_degrees,
                    "where north lies, clockwise from -z as seen from above", "degrees"),
-      bound_number("ground", group, loading::reflectances, options.ground,
-                   "reflectance of even ground below the horizon, which --sky and --sun light"),
+      bound_number(
+          "ground", group, loading::reflectances, options.ground,
+          "reflectance of even ground below the horizon, which --sky and --sun light; 0 is "
+          "black"),
       bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,
                    "luminous efficacy: 683 or, as Radiance, 179", "lm/W"),
       bound_number("emissive_scale", group, PositiveNumbers{}, options.emissive_scale,

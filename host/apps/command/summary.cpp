@@ -27,8 +27,10 @@ void tell_device(const DeviceInfo& device, Progress& progress) {
                             format_bytes(device.global_memory_bytes)));
 }
 
-void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress) {
+void tell_scene(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load,
+                Progress& progress) {
   for (const auto& line : scene_summary(scene, mix)) progress.note(line);
+  for (const auto& line : sky_lines(load)) progress.note(line);
   const std::vector<std::string>& warnings = scene.report.warnings;
   for (std::size_t i = 0; i < std::min(warnings.size(), shown_warnings); ++i) {
     progress.warn(warnings[i]);

@@ -18,8 +18,10 @@ namespace photile::app {
 /// A line for the device.
 void tell_device(const DeviceInfo& device, Progress& progress);
 
-/// What the scene holds, and the first of its warnings.
-void tell_scene(const Scene& scene, const LightMix& mix, Progress& progress);
+/// What the scene holds, sky_lines, and the first of its warnings.
+///   load   what it was loaded with
+void tell_scene(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load,
+                Progress& progress);
 
 /// Opens the devices that photon maps need, and tells them; none for paths. Errors: those of
 /// open_devices.

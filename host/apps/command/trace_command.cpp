@@ -45,7 +45,7 @@ void run_trace(TraceOptions& options) {
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
-  tell_scene(scene, LightMix::of(scene, render.load.lumen_per_watt), progress);
+  tell_scene(scene, LightMix::of(scene, render.load.lumen_per_watt), render.load, progress);
 
   const RayScene rays(scene);
   const RenderPlan plan(render.parameters, rays, HitsAsk::pictures, progress);

@@ -87,7 +87,7 @@ void run_view(ViewOptions& options) {
   const LightMix mix = mix_of(scene, render);
   const Camera camera = camera_of(scene, render);
   set_film_size(render.parameters.film, render.size, camera);
-  tell_scene(scene, mix, progress);
+  tell_scene(scene, mix, render.load, progress);
 
   view::ViewerParameters parameters;
   parameters.render = render.parameters;

@@ -25,6 +25,7 @@
 #include "common/files.hpp"
 #include "gltf/cameras.hpp"
 #include "loading/load_scene.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -167,6 +168,7 @@ class Walk {
   RunRecord record_of(const Camera& camera) const {
     RunRecord record;
     record.scene = scene_.source.filename().string();
+    record.ground = loading::ground_reflectance(options_.render.load);
     record.surfaces = surfaces_;
     record.camera = camera.name;
     record.integrator = "photon-map";
@@ -370,7 +372,7 @@ void run_walk(WalkOptions& options) {
   set_film_size(render.parameters.film, render.size, camera);
   const Camera base = in_world(scene, camera);
   std::vector<Device> devices = devices_for(render, progress);
-  tell_scene(scene, mix, progress);
+  tell_scene(scene, mix, render.load, progress);
   Walk(options, scene, mix, base, devices, progress).run();
 }
 

@@ -424,10 +424,12 @@ SkyHours sky_hours(const LightMix& mix, const SkySituation& situation) {
       time.month = month;
       time.day = 21;
       time.hour = hour;
-      const weather::SunPosition sun = weather::sun_position(*site, time);
+      const weather::WeatherHour* const row = year ? &weather::hour_at(*year, time) : nullptr;
+      const weather::SunPosition sun =
+          weather::sun_position(*site, row ? weather::middle_of(*row, time) : time);
       const int day = weather::day_of_year(time);
       const weather::SkyIrradiance irradiance =
-          year ? weather::hour_at(*year, time).irradiance : weather::clear_sky(sun.elevation, day);
+          row ? row->irradiance : weather::clear_sky(sun.elevation, day);
       const auto found = weather::sky_luminances(patches, sun, irradiance, day);
       hours.luminances.insert(hours.luminances.end(), found.begin(), found.end());
     }

@@ -98,7 +98,9 @@ std::shared_ptr<const MovingSky> MovingSky::of(const LightMix& mix, const SkySit
 }
 
 weather::SunPosition MovingSky::sun(const SkyMoment& moment) const {
-  return weather::sun_position(site_, moment.time());
+  const LocalTime time = moment.time();
+  return weather::sun_position(
+      site_, weather_ ? weather::middle_of(weather::hour_at(*weather_, time), time) : time);
 }
 
 weather::SkyIrradiance MovingSky::irradiance(const SkyMoment& moment) const {

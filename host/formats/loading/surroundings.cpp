@@ -25,20 +25,36 @@ constexpr double degrees = 180 / std::numbers::pi;
 constexpr int even_day =
     80;  ///< of a sky without a date: the Earth at its mean distance, or nearly
 
-/// The options with the weather of their hour: its site, and its sky where none is given.
-SceneLoadOptions with_weather(SceneLoadOptions options) {
-  SkySituation& situation = options.situation;
-  if (situation.weather.empty()) return options;
+/// Takes the row of the weather file that covers the situation's time, and the middle of its hour
+/// for that time.
+weather::SkyIrradiance take_row(const weather::WeatherYear& year, SkySituation& situation) {
+  const weather::WeatherHour& row = weather::hour_at(year, *situation.time);
+  situation.time = weather::middle_of(row, *situation.time);
+  return row.irradiance;
+}
+
+/// What the options ask for with the weather of their hour.
+struct Weathered {
+  SceneLoadOptions options;                           ///< with the file's site, and its sky
+  std::optional<weather::SkyIrradiance> of_row = {};  ///< where no sky was given
+};
+
+/// Takes the site of the weather file, and where no sky is given its sky and the middle of its
+/// hour.
+Weathered with_weather(const SceneLoadOptions& given) {
+  Weathered result{given};
+  SkySituation& situation = result.options.situation;
+  if (situation.weather.empty()) return result;
   if (!situation.time) {
     throw UsageError("--weather says nothing without an hour; give --time, too");
   }
   const weather::WeatherYear year = weather::read_weather(situation.weather);
   if (!situation.site) situation.site = year.site;
-  if (!options.sky) {
-    const weather::SkyIrradiance& irradiance = weather::hour_at(year, *situation.time).irradiance;
-    options.sky = Sky{SkyKind::perez, 0, irradiance.direct_normal, irradiance.diffuse_horizontal};
-  }
-  return options;
+  if (result.options.sky) return result;
+  result.of_row = take_row(year, situation);
+  result.options.sky =
+      Sky{SkyKind::perez, 0, result.of_row->direct_normal, result.of_row->diffuse_horizontal};
+  return result;
 }
 
 /// The sun as the time places it, without light. Nothing where no time is given.
@@ -52,16 +68,15 @@ std::optional<Sun> sun_by_time(const SkySituation& situation) {
   return Sun{position.azimuth * degrees, position.elevation * degrees, 0};
 }
 
-/// Adds the sky and the sun of its irradiances.
-void add_perez(const Sky& asked, const SkySituation& situation, const std::optional<Sun>& place,
-               SkySituationLights& lights) {
+/// Adds the sky and the sun of irradiances.
+void add_perez(const weather::SkyIrradiance& irradiance, const SkySituation& situation,
+               const std::optional<Sun>& place, SkySituationLights& lights) {
   if (!place) {
     throw UsageError("a Perez sky needs the sun's position; give --sun, or --site and --time");
   }
   const int day = situation.time ? weather::day_of_year(*situation.time) : even_day;
   SkyLight sky{SkyKind::perez};
-  sky.perez.emplace(place->elevation_degrees / degrees,
-                    weather::SkyIrradiance{asked.direct_normal, asked.diffuse_horizontal}, day);
+  sky.perez.emplace(place->elevation_degrees / degrees, irradiance, day);
   sky.illuminance = sky.perez->diffuse_illuminance();
   Sun shown = *place;
   shown.elevation_degrees =
@@ -78,7 +93,7 @@ void add_perez(const Sky& asked, const SkySituation& situation, const std::optio
 }  // namespace
 
 SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
-  const SceneLoadOptions options = with_weather(given);
+  const auto [options, of_row] = with_weather(given);
   const double north = options.situation.north_degrees;
   std::optional<Sun> place = sun_by_time(options.situation);
   SkySituationLights lights;
@@ -102,7 +117,9 @@ SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
   }
   if (!options.sky) return lights;
   if (options.sky->kind == SkyKind::perez) {
-    add_perez(*options.sky, options.situation, place, lights);
+    const weather::SkyIrradiance stated{options.sky->direct_normal,
+                                        options.sky->diffuse_horizontal};
+    add_perez(of_row.value_or(stated), options.situation, place, lights);
     return lights;
   }
   SkyLight sky{options.sky->kind, options.sky->illuminance};
@@ -265,13 +282,17 @@ void add_sky(const SkyLight& sky, const SceneLoadOptions& options, Scene& scene)
 }
 
 void add_ground(const SkySituationLights& lights, const SceneLoadOptions& options, Scene& scene) {
+  const bool as_default = options.ground == defaults::ground_reflectance;
   if (lights.sky && lights.sky->kind == SkyKind::patches) {
-    throw UsageError(fmt::format(
-        "ground: a sky of patches has ground of {:g} below the horizon; leave out ground",
-        defaults::ground_reflectance));
+    if (as_default) return;
+    throw UsageError(
+        fmt::format("ground: a sky of patches has ground of {:g} below the horizon; leave out "
+                    "ground, or turn it off by --light ground=off",
+                    defaults::ground_reflectance));
   }
   double lux = lights.sky ? lights.sky->illuminance : 0.0;
   if (lights.sun) lux += lights.sun->illuminance * std::max(0.0, direction_to(*lights.sun).y);
+  if (options.ground == 0 || (as_default && !(lux > 0))) return;
   if (!(lux > 0)) {
     throw UsageError("ground: nothing lights it; give --sky or --sun, or leave out ground");
   }
@@ -286,7 +307,32 @@ void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
   const SkySituationLights found = sun_and_sky(options);
   if (found.sun) add_sun(*found.sun, options, scene);
   if (found.sky) add_sky(*found.sky, options, scene);
-  if (options.ground > 0) add_ground(found, options, scene);
+  add_ground(found, options, scene);
+}
+
+std::optional<double> ground_reflectance(const SceneLoadOptions& options) {
+  if (!options.sky && !options.sun && !options.situation.time) return std::nullopt;
+  return options.ground;
+}
+
+std::vector<std::pair<std::string, std::string>> sky_facts(const SceneLoadOptions& options) {
+  std::vector<std::pair<std::string, std::string>> facts;
+  if (const auto ground = ground_reflectance(options)) {
+    facts.emplace_back("ground", fmt::format("reflectance {:g} below the horizon{}", *ground,
+                                             *ground > 0 ? "" : ", which is black"));
+  }
+  const SkySituation& situation = options.situation;
+  if (situation.weather.empty() || !situation.time || options.sky) return facts;
+  const weather::WeatherYear year = weather::read_weather(situation.weather);
+  const weather::WeatherHour& row = weather::hour_at(year, *situation.time);
+  const int hour = static_cast<int>(std::lround(row.hour + 0.5));
+  facts.emplace_back(
+      "weather",
+      fmt::format("{}, row {}/{} hour {}, which covers {}:00 to {}:00: {:g} W/m2 direct normal, "
+                  "{:g} W/m2 diffuse; the sun is that of {}:30",
+                  situation.weather.filename().string(), row.month, row.day, hour, hour - 1, hour,
+                  row.irradiance.direct_normal, row.irradiance.diffuse_horizontal, hour - 1));
+  return facts;
 }
 
 namespace {
@@ -295,7 +341,7 @@ weather::SkyIrradiance irradiance_of(SkySituation& situation, const std::optiona
   if (!situation.weather.empty()) {
     const weather::WeatherYear year = weather::read_weather(situation.weather);
     if (!situation.site) situation.site = year.site;
-    if (!sky) return weather::hour_at(year, *situation.time).irradiance;
+    if (!sky) return take_row(year, situation);
   }
   if (!situation.site) throw UsageError("--time needs a place; give --site or --weather");
   if (!sky) {

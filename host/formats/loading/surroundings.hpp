@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "photile/layered_picture.hpp"
@@ -30,8 +31,16 @@ struct SkySituationLights {
   std::optional<SkyLight> sky;
 };
 
+/// With the weather of a file, the sun is that of the middle of the hour that the row covers.
 /// Errors: UsageError where one option lacks another; those of read_weather.
 SkySituationLights sun_and_sky(const SceneLoadOptions& options);
+
+/// The reflectance of the ground that a sky or a sun of the options lights; none without these.
+std::optional<double> ground_reflectance(const SceneLoadOptions& options);
+
+/// What every result states of the sky: "ground" and its reflectance, "weather" and the row of the
+/// file that was taken. Empty without a sky or a sun of the options. Errors: those of read_weather.
+std::vector<std::pair<std::string, std::string>> sky_facts(const SceneLoadOptions& options);
 
 /// A sky that gives `illuminance` on a horizontal surface, black below the horizon, white.
 ///   to_sun  unit; of a clear sky, whose own light includes no disc of the sun
@@ -48,7 +57,8 @@ glm::dvec3 direction_to(const Sun& sun);
 /// Adds the lights "environment", "sun", "sky" and "ground" that the options ask for; triangles
 /// must be there. Errors: InputError for a picture that is missing, malformed, not in floating
 /// point, black or has texels that are NaN, infinite or negative; UsageError for a clear sky
-/// without a sun above the horizon, and for a ground that nothing lights or that patches have.
+/// without a sun above the horizon, and for a ground other than the default that nothing lights or
+/// where patches have their own.
 void add_surroundings(Scene& scene, const SceneLoadOptions& options);
 
 // The sky of another hour for a picture whose sky is patches.

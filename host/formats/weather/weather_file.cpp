@@ -150,4 +150,10 @@ const WeatherHour& hour_at(const WeatherYear& year, const LocalTime& time) {
   return *nearest;
 }
 
+LocalTime middle_of(const WeatherHour& hour, const LocalTime& asked) {
+  LocalTime middle = asked;
+  middle.hour = hour.hour;
+  return middle;
+}
+
 }  // namespace photile::weather

@@ -31,7 +31,12 @@ WeatherYear read_weather(const std::filesystem::path& file);
 /// Reads a file that may have fewer hours than a year, or none.
 WeatherYear read_weather_hours(const std::filesystem::path& file);
 
-/// The hour of the file in which a moment falls, whatever its year.
+/// The row of the file that covers a moment, whatever its year: the row of hour h covers what comes
+/// after h - 1 o'clock, up to h itself.
 const WeatherHour& hour_at(const WeatherYear& year, const LocalTime& time);
+
+/// The moment whose sun goes with a row: the middle of its hour, on the day that is asked for. What
+/// a station measures over an hour is not the light of a sun half an hour higher or lower.
+LocalTime middle_of(const WeatherHour& hour, const LocalTime& asked);
 
 }  // namespace photile::weather

@@ -23,12 +23,18 @@ measuring::SensorGrid eyes_of(std::span<const Observer> observers) {
   return grid;
 }
 
-std::vector<Measured> illuminance_at(const measuring::SensorGrid& eyes, const Scene& scene,
-                                     const LightMix& mix, std::span<Device> devices,
-                                     const MeasuringParameters& parameters, Progress& progress) {
-  const measuring::Readings readings =
-      measuring::measure_grids(scene, std::span(&eyes, 1), mix, devices, parameters, progress);
-  return measuring::means_of(readings.repeats_of(0));
+/// Per sensor and light whether any of that light is there.
+std::vector<std::vector<bool>> reached_by(const measuring::Readings& readings) {
+  const std::size_t lights = readings.lights().size();
+  std::vector<std::vector<bool>> reached(readings.sensors(), std::vector<bool>(lights));
+  for (std::size_t light = 0; light < lights; ++light) {
+    for (const std::vector<float>& repeat : readings.repeats_of(light + 1)) {
+      for (std::size_t sensor = 0; sensor < repeat.size(); ++sensor) {
+        if (repeat[sensor] > 0) reached[sensor][light] = true;
+      }
+    }
+  }
+  return reached;
 }
 
 /// A rating of a measured value, and its error by the slope there.
@@ -117,16 +123,20 @@ std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Obs
                                          std::span<Device> devices,
                                          const GlareParameters& parameters, const KeepPicture& keep,
                                          Progress& progress) {
-  const std::vector<Measured> illuminance =
-      illuminance_at(eyes_of(observers), scene, mix, devices, parameters.measuring, progress);
+  const measuring::SensorGrid eyes = eyes_of(observers);
+  const measuring::Readings readings = measuring::measure_grids(
+      scene, std::span(&eyes, 1), mix, devices, parameters.measuring, progress);
+  const std::vector<Measured> illuminance = measuring::means_of(readings.repeats_of(0));
   const RayScene rays(scene);
   const Luminaires luminaires(rays, parameters.samples);
+  const std::vector<std::vector<bool>> reached = reached_by(readings);
   std::vector<ObserverGlare> all(observers.size());
   progress.begin("luminaires", observers.size(), "observers");
   for (std::size_t i = 0; i < observers.size(); ++i) {
     ObserverGlare& glare = all[i];
     glare.observer = observers[i];
     glare.illuminance = illuminance[2 * i];
+    glare.reached_by = reached[2 * i];
     const Measured& indirect = illuminance[2 * i + 1];
     glare.background = {indirect.value / glm::pi<double>(),
                         indirect.standard_error / glm::pi<double>()};

@@ -30,8 +30,9 @@ struct GlareParameters {
 /// What one observer has before the eyes.
 struct ObserverGlare {
   Observer observer;
-  Measured illuminance;  ///< lux at the eye, on a plane that faces forward
-  Measured background;   ///< cd/m2: without what comes straight from luminaires, over pi
+  Measured illuminance;          ///< lux at the eye, on a plane that faces forward
+  Measured background;           ///< cd/m2: without what comes straight from luminaires, over pi
+  std::vector<bool> reached_by;  ///< per layer of the scene, whether its light is part of that
   std::vector<VisibleLuminaire> luminaires;
   std::optional<Measured> ugr;  ///< none where no luminaire is seen, or nothing lies behind them
   std::optional<double> ggr;    ///< where luminaires are larger than large_source_area

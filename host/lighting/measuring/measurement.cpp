@@ -130,36 +130,97 @@ Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readin
   return result;
 }
 
+void mark_dark_points(Measurement& measurement) {
+  const auto is_dark = [](const Measured& measured) { return measured.value == 0; };
+  const bool any_light =
+      std::any_of(measurement.begin(), measurement.end(), [&](const GridValues& grid) {
+        const auto& sensors = grid.total().sensors;
+        return !std::all_of(sensors.begin(), sensors.end(), is_dark);
+      });
+  if (!any_light) return;
+  for (GridValues& values : measurement) {
+    const auto& sensors = values.total().sensors;
+    values.grid.marks.resize(sensors.size());
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      if (is_dark(sensors[i]) && values.grid.marks[i].empty()) values.grid.marks[i] = "no light";
+    }
+  }
+}
+
 std::vector<std::string> doubts_of(const Measurement& measurement,
                                    std::span<const MixedLight> lights) {
   std::size_t points = 0, dark = 0;
+  std::vector<std::string> lines;
   for (const GridValues& grid : measurement) {
     const auto& sensors = grid.total().sensors;
     points += sensors.size();
     dark += static_cast<std::size_t>(std::count_if(sensors.begin(), sensors.end(),
                                                    [](const Measured& m) { return m.value == 0; }));
   }
-  std::vector<std::string> lines;
+  const bool any_on = std::any_of(lights.begin(), lights.end(),
+                                  [](const MixedLight& light) { return light.power > 0; });
   if (dark > 0 && dark < points) {
     lines.push_back(fmt::format(
         "{} of {} points have no light at all; they may lie outside the room or in things", dark,
         points));
-  }
-  const auto is_lit = [&](std::string_view light) {
-    return std::any_of(measurement.begin(), measurement.end(), [&](const GridValues& grid) {
-      return std::any_of(grid.lights.begin(), grid.lights.end(), [&](const LightValues& values) {
-        return values.light == light && std::any_of(values.sensors.begin(), values.sensors.end(),
-                                                    [](const Measured& m) { return m.value > 0; });
-      });
-    });
-  };
-  // With one light alone its values are those of all together.
-  for (const MixedLight& light : lights) {
-    if (lights.size() < 2 || dark == points || !(light.power > 0) || is_lit(light.name)) continue;
+  } else if (dark > 0) {
     lines.push_back(fmt::format(
-        "light '{}' reaches no point; it may hang outside the room, or above a closed ceiling",
-        light.name));
+        "none of the {} points has any light: {}", points,
+        any_on ? "they may lie outside the room or in things, or have another unit or another axis "
+                 "that points up than the scene"
+               : "all lights are off"));
   }
+  std::vector<bool> reaches;
+  for (const MixedLight& light : lights) {
+    reaches.push_back(
+        std::any_of(measurement.begin(), measurement.end(), [&](const GridValues& grid) {
+          return std::any_of(grid.lights.begin(), grid.lights.end(),
+                             [&](const LightValues& values) {
+                               // With one light alone its values are those of all together.
+                               return (values.light == light.name || grid.lights.size() == 1) &&
+                                      std::any_of(values.sensors.begin(), values.sensors.end(),
+                                                  [](const Measured& m) { return m.value > 0; });
+                             });
+        }));
+  }
+  for (std::string& line : lights_that_reach_nothing(lights, reaches, "point")) {
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> lights_that_reach_nothing(std::span<const MixedLight> lights,
+                                                   const std::vector<bool>& reaches,
+                                                   const std::string& what) {
+  constexpr std::size_t most_named = 10;
+  std::vector<std::string> lines;
+  std::size_t skies = 0, dark_skies = 0, unnamed = 0;
+  const auto is_sky = [](const MixedLight& light) {
+    return light.name == "sky" || light.name.starts_with("sky_");
+  };
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (!is_sky(lights[i]) || !(lights[i].power > 0)) continue;
+    ++skies;
+    dark_skies += reaches[i] ? 0 : 1;
+  }
+  const bool no_sky = skies > 0 && dark_skies == skies;
+  if (no_sky) {
+    lines.push_back(fmt::format("no light of the sky reaches any {}: {}", what, closed_to_the_sky));
+  }
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const MixedLight& light = lights[i];
+    const bool sun = light.name == "sun";
+    const bool told = light.name == "ground" || is_sky(light) || (sun && no_sky);
+    if (told || reaches[i] || !(light.power > 0)) continue;
+    if (lines.size() == most_named) {
+      ++unnamed;
+      continue;
+    }
+    lines.push_back(fmt::format("light '{}' reaches no {}; {}", light.name, what,
+                                sun ? "it may shine on another side of the building"
+                                    : "it may hang outside the room, or above a closed ceiling"));
+  }
+  if (unnamed > 0) lines.push_back(fmt::format("{} more lights reach no {}", unnamed, what));
   return lines;
 }
 

@@ -92,11 +92,27 @@ using Measurement = std::vector<GridValues>;  ///< lux
 /// The values of each grid. `readings` are those of all grids' sensors, one grid after the other.
 Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readings);
 
-/// What is no error and seldom meant, a line each: points without any light beside points with
-/// some, and lights that reach no point.
+/// Marks the points without any light, where others have some.
+void mark_dark_points(Measurement& measurement);
+
+/// What is no error and seldom meant, a line each: points without any light, and lights that reach
+/// no point.
 ///   lights   their powers; those of 0 are off
 std::vector<std::string> doubts_of(const Measurement& measurement,
                                    std::span<const MixedLight> lights);
+
+/// What keeps a sky out of a room, and what to do.
+inline constexpr const char* closed_to_the_sky =
+    "the room has no opening and no pane of glass; leave out what closes its windows, or make it "
+    "of glass (KHR_materials_transmission in glTF, d below 1 or illum 4 in MTL)";
+
+/// A line for each light that is on and reaches nothing; one for all of the sky. The ground is not
+/// named: a floor in the scene may hide it.
+///   reaches   whether each of the lights does
+///   what      "point", say: is what they do not reach
+std::vector<std::string> lights_that_reach_nothing(std::span<const MixedLight> lights,
+                                                   const std::vector<bool>& reaches,
+                                                   const std::string& what);
 
 /// The readings of all grids' sensors, one grid after the other. Errors: those of `gather`.
 Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, const LightMix& mix,

@@ -39,6 +39,33 @@ glm::dvec3 PlaneLayout::middle_of(std::uint32_t cell) const {
   return at({cell % in_row + 0.5, cell / in_row + 0.5});
 }
 
+namespace {
+
+void count(const std::string& reason, CountedReasons& counted) {
+  if (reason.empty()) return;
+  const auto found = std::find_if(counted.begin(), counted.end(),
+                                  [&](const auto& each) { return each.first == reason; });
+  if (found == counted.end()) {
+    counted.emplace_back(reason, 1);
+  } else {
+    ++found->second;
+  }
+}
+
+}  // namespace
+
+CountedReasons counted_blanks(const SensorGrid& grid) {
+  CountedReasons counted;
+  for (const BlankPoint& blank : grid.blanks) count(blank.reason, counted);
+  return counted;
+}
+
+CountedReasons counted_marks(const SensorGrid& grid) {
+  CountedReasons counted;
+  for (const std::string& mark : grid.marks) count(mark, counted);
+  return counted;
+}
+
 PlaneLayout in_world(const Scene& scene, PlaneLayout layout) {
   layout.origin = position_in_world(scene, layout.origin);
   layout.u = direction_in_world(scene, layout.u);

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "photile/sensors.hpp"
@@ -51,7 +52,16 @@ struct SensorGrid {
   std::vector<BlankPoint> blanks = {};  ///< in the order of the grid
   GridRole role = GridRole::task;
   std::string remark = {};  ///< what the user should know of its position; "" = nothing
+  bool chosen = false;      ///< by the program, which leaves out points that are in the way
+  /// Of each sensor why its value is doubtful, "" = it is not; empty = none is.
+  std::vector<std::string> marks = {};
 };
+
+/// Numbers of points by what is said of them, in the order of the first of each.
+using CountedReasons = std::vector<std::pair<std::string, std::size_t>>;
+/// Of the grid's blank points, and of its marks.
+CountedReasons counted_blanks(const SensorGrid& grid);
+CountedReasons counted_marks(const SensorGrid& grid);
 
 /// Sensors in the middles of the layout's cells.
 SensorGrid grid_on_plane(const std::string& name, PlaneLayout layout);

@@ -81,6 +81,7 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
                     scene.source.string(), plane.wall_band));
   }
   SensorGrid grid = grid_on_plane("working plane", in_world(scene, std::move(layout)));
+  grid.chosen = true;
   if (!room) {
     grid.remark =
         "the camera comes to no room with a ceiling: this is the widest floor of the scene; name a "
@@ -165,6 +166,7 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
   const trace::FlushDenormals flush_denormals;
   const SensorGrid all = grid_on_plane(name, layout);
   SensorGrid grid{name, {}, layout};
+  grid.chosen = true;
   grid.layout->cells.clear();
   const Scene& scene = rays.scene();
   for (std::size_t i = 0; i < all.sensors.size(); ++i) {

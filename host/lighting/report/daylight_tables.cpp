@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/foreign_text.hpp"
+#include "measuring/measurement.hpp"
 #include "report/tables.hpp"
 
 namespace photile::report {
@@ -85,6 +86,7 @@ Json grid_json(const GridDaylight& grid, const DaylightAsked& asked) {
              {"target_lux", asked.target_lux},
              {"occupied", {asked.occupancy.from, asked.occupancy.to}},
              {"occupied_hours", std::count(asked.occupied.begin(), asked.occupied.end(), true)},
+             {"ground_reflectance", asked.ground},
              {"mean_lux", room.mean_lux},
              {"mean_relative_error", mean_error(grid)},
              {"DA", room.autonomy},
@@ -137,11 +139,7 @@ std::string darkness_warning(double most_percent) {
                              "open ground at most",
                              most_percent)
                        : "no light of the sky reaches any point";
-  return fmt::format(
-      "warning: {}: the room has no opening and no pane of glass; leave out what closes its "
-      "windows, or "
-      "make it of glass (KHR_materials_transmission in glTF, d below 1 or illum 4 in MTL)",
-      reaches);
+  return fmt::format("warning: {}: {}", reaches, measuring::closed_to_the_sky);
 }
 
 std::string autonomy_text(const GridDaylight& grid, const DaylightAsked& asked,
@@ -168,7 +166,9 @@ std::vector<std::string> daylight_lines(const DaylightResults& results,
   for (std::size_t g = 0; g < results.grids.size(); ++g) {
     const GridDaylight& grid = results.grids[g];
     const daylight::RoomDaylight& room = grid.room;
-    lines.push_back(fmt::format("{}: {} points", grid.grid.name, grid.grid.sensors.size()));
+    lines.push_back(fmt::format(
+        "{}: {} points{}", grid.grid.name, grid.grid.sensors.size(),
+        grid.grid.blanks.empty() ? "" : fmt::format(", and {} blank", grid.grid.blanks.size())));
     lines.push_back(fmt::format("  annual mean      {:.4g} lux, +-{:.1f}% a point", room.mean_lux,
                                 100 * mean_error(grid)));
     const auto error = [&](auto&& member) {
@@ -211,17 +211,19 @@ std::vector<std::string> daylight_lines(const DaylightResults& results,
                                 std::count(closed.begin(), closed.end(), true),
                                 count_occupied(closed, asked.occupied)));
   }
+  lines.push_back(fmt::format("ground: reflectance {:g} below the horizon", asked.ground));
   return lines;
 }
 
-std::string daylight_csv(const DaylightResults& results) {
+std::string daylight_csv(const DaylightResults& results, const DaylightAsked& asked) {
   std::string text =
       "grid,point,x,y,z,dx,dy,dz,mean_lux,relative_error,da,cda,udi_below_100,udi_100_300,"
       "udi_300_3000,udi_above_3000,sun_hours,median_lux";
-  if (results.states.empty()) return text + "\n" + csv_rows(results.grids, "");
-  text += ",blinds\n" + csv_rows(results.grids, ",by schedule");
+  const std::string heading = ground_heading(asked.ground), ground = ground_field(asked.ground);
+  if (results.states.empty()) return text + heading + "\n" + csv_rows(results.grids, ground);
+  text += ",blinds" + heading + "\n" + csv_rows(results.grids, ",by schedule" + ground);
   for (const DaylightState& state : results.states)
-    text += csv_rows(state.grids, fmt::format(",{}", csv_field(state.name)));
+    text += csv_rows(state.grids, "," + csv_field(state.name) + ground);
   return text;
 }
 

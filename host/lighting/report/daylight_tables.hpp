@@ -9,6 +9,7 @@
 
 #include "daylight/daylight_metrics.hpp"
 #include "measuring/sensor_grid.hpp"
+#include "photile/defaults.hpp"
 
 namespace photile::report {
 
@@ -43,6 +44,7 @@ struct DaylightAsked {
   double target_lux = 300;
   daylight::Occupancy occupancy;
   std::vector<bool> occupied;  ///< by the hour
+  double ground = defaults::ground_reflectance;
 };
 
 /// What to say where next to no light of the sky reaches any point: less than 0.1%.
@@ -56,7 +58,7 @@ std::string autonomy_text(const GridDaylight& grid, const DaylightAsked& asked, 
 
 std::vector<std::string> daylight_lines(const DaylightResults& results, const DaylightAsked& asked);
 /// With a column for the state of the blinds where there are some.
-std::string daylight_csv(const DaylightResults& results);
+std::string daylight_csv(const DaylightResults& results, const DaylightAsked& asked);
 nlohmann::ordered_json daylight_json(const DaylightResults& results, const DaylightAsked& asked);
 
 }  // namespace photile::report

@@ -142,17 +142,20 @@ std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) 
   return lines;
 }
 
-std::string glare_csv(std::span<const glare::ObserverGlare> all) {
+std::string glare_csv(std::span<const glare::ObserverGlare> all, std::optional<double> ground) {
   std::string text =
-      "observer,x,y,z,dx,dy,dz,illuminance,illuminance_error,background_luminance,"
-      "background_error,ugr,ugr_error,ggr,dgp,dgp_error,dgp_low_light,dgi\n";
+      std::string(
+          "observer,x,y,z,dx,dy,dz,illuminance,illuminance_error,background_luminance,"
+          "background_error,ugr,ugr_error,ggr,dgp,dgp_error,dgp_low_light,dgi") +
+      ground_heading(ground) + "\n";
   for (const glare::ObserverGlare& each : all) {
     const glm::dvec3 &p = each.observer.position, &d = each.observer.forward;
-    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{},{},{},{}\n",
+    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{},{},{},{},{},{},{}{}\n",
                         csv_field(each.observer.name), p.x, p.y, p.z, d.x, d.y, d.z,
                         csv_measured(each.illuminance), csv_measured(each.background),
                         csv_measured(each.ugr), csv_number(each.ggr), csv_measured(each.dgp),
-                        csv_number(value_of(each.dgp_low_light)), csv_number(each.dgi));
+                        csv_number(value_of(each.dgp_low_light)), csv_number(each.dgi),
+                        ground_field(ground));
   }
   return text;
 }

@@ -60,6 +60,12 @@ class Plan {
     for (std::size_t i = 0; i < layout_.cells.size(); ++i) {
       values_[layout_.cells[i]] = light.sensors[i].value;
     }
+    for (const measuring::BlankPoint& blank : values.grid.blanks) {
+      crosses_.push_back(layout_.in_cells(blank.sensor.position));
+    }
+    for (std::size_t i = 0; i < values.grid.marks.size(); ++i) {
+      if (!values.grid.marks[i].empty()) crosses_.push_back(middle_of_cell(layout_.cells[i]));
+    }
     const double around = 2 * surroundings.reach;
     const double u = glm::length(layout_.u) + around, v = glm::length(layout_.v) + around;
     drawn_at_ = small_ ? 0 : drawing_scale(u, v);
@@ -97,6 +103,7 @@ class Plan {
     add_cells();
     if (options_.contours == Contours::none || options_.contours == Contours::lines) add_isolines();
     add_surroundings();
+    add_crosses();
     const glm::dvec2 low = at({0, 0}), high = at({layout_.columns, layout_.rows});
     add("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"none\" "
         "stroke=\"#000000\"/>\n",
@@ -146,6 +153,21 @@ class Plan {
       }
       if (numbered_) add_label(at(middle), values_[cell], 9, "normal");
     }
+  }
+
+  /// Where points are not measured, or doubtful.
+  void add_crosses() {
+    if (crosses_.empty()) return;
+    const double cell = glm::length(layout_.u) * per_metre_ / layout_.columns;
+    const double arm = std::clamp(0.3 * cell, 1.5, 8.0);
+    add("<path stroke=\"#000000\" stroke-width=\"{}\" fill=\"none\" class=\"crosses\" d=\"",
+        small_ ? 0.6 : 1.0);
+    for (const glm::dvec2& cross : crosses_) {
+      const glm::dvec2 place = at(cross);
+      add("M{0:.2f} {1:.2f}l{4:.2f} {4:.2f}M{0:.2f} {3:.2f}L{2:.2f} {1:.2f}", place.x - arm,
+          place.y - arm, place.x + arm, place.y + arm, 2 * arm);
+    }
+    add("\"/>\n");
   }
 
   /// A number that is legible on any colour. Its pale border is a text of its own: programs that
@@ -344,6 +366,7 @@ class Plan {
   double per_metre_ = 0, width_ = 0, height_ = 0, left_ = 0;  ///< pixels
   double drawn_at_ = 0;                                       ///< N of 1:N; 0 of a small plan
   bool numbered_ = false;                                     ///< whether cells have their values
+  std::vector<glm::dvec2> crosses_;                           ///< in cells
   std::vector<glm::dvec2> numbers_;                           ///< positions of them, and of levels
 };
 

@@ -318,7 +318,16 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
     around.lamps.push_back({light + 1, frame.cells_of(*place)});
   }
   const trace::PlanAxes axes;
-  const glm::dvec3 middle = layout.origin + 0.5 * (layout.u + layout.v);
+  glm::dvec3 middle = layout.origin + 0.5 * (layout.u + layout.v);
+  if (!layout.cells
+           .empty()) {  // the middle itself may lie in a cupboard: those points have no cell
+    const auto away = [&](std::uint32_t cell) {
+      return glm::distance(layout.middle_of(cell), middle);
+    };
+    middle = layout.middle_of(
+        *std::min_element(layout.cells.begin(), layout.cells.end(),
+                          [&](std::uint32_t a, std::uint32_t b) { return away(a) < away(b); }));
+  }
   if (const auto room = trace::Room::around(rays, axes, middle)) {
     const auto cells = [&](const glm::dvec2& plan) {
       return frame.cells_of(plan.x * axes.right + plan.y * axes.ahead);

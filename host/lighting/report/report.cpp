@@ -35,6 +35,20 @@ std::string grid_heading(const Page& page, const measuring::SensorGrid& grid) {
   return fmt::format("<h2>{}</h2>\n", escaped_xml(text));
 }
 
+/// How many points are not measured, or doubtful, and why.
+std::string remarks(const Page& page, const measuring::SensorGrid& grid) {
+  std::string html;
+  const auto add = [&](std::string_view text, const measuring::CountedReasons& counted) {
+    for (const auto& [reason, count] : counted) {
+      html += fmt::format("<p class=\"remark\">{}</p>\n",
+                          escaped_xml(page.with(text, count, page.said(reason))));
+    }
+  };
+  add("\u00d7 {} points are not measured: {}.", measuring::counted_blanks(grid));
+  add("\u00d7 {} points are measured, but marked: {}.", measuring::counted_marks(grid));
+  return html;
+}
+
 /// Figures of all lights together and of each, and their plans.
 std::string grid_page(const Page& page, const measuring::GridValues& values,
                       const FalseColour& colours, const PlanSurroundings& surroundings) {
@@ -50,6 +64,7 @@ std::string grid_page(const Page& page, const measuring::GridValues& values,
                                  {"", "E<sub>m</sub> " + page.said("lux"), "E<sub>min</sub>",
                                   "E<sub>max</sub>", "U<sub>o</sub>", "U<sub>d</sub>"},
                                  rows);
+  html += remarks(page, values.grid);
   const measuring::GridStatistics& s = values.total().statistics;
   if (s.minimum_at_most - s.minimum.value > s.minimum.standard_error) {
     html += fmt::format(
@@ -123,6 +138,13 @@ std::string report_html(const measuring::Measurement& measurement, const ReportT
   for (const DataSheet& sheet : text.sheets) {
     rest += fmt::format("<div class=\"sheet\">\n<h3>{}</h3>\n{}{}</div>\n",
                         escaped_xml(sheet.heading), sheet.drawing, page.list(sheet.rows));
+  }
+  if (!text.warnings.empty()) {
+    rest += page.heading("Warnings") + "<ul>\n";
+    for (const std::string& line : text.warnings) {
+      rest += fmt::format("<li>{}</li>\n", escaped_xml(line));
+    }
+    rest += "</ul>\n";
   }
   return html + rest + page.heading("How it was measured") + page.list(text.facts) +
          "</section>\n</body>\n</html>\n";

@@ -63,6 +63,7 @@ struct ReportText {
   std::vector<DataSheet> sheets = {};
   std::vector<ReportMap> maps = {};
   double rendering = 0;  ///< the least Ra that all luminaires' files state; 0 = some states none
+  std::vector<std::string> warnings = {};  ///< what the program doubts of the scene and its points
   std::string language = "en";
   std::string subject = "Illuminance";  ///< of a report without a project's name
 };

@@ -37,6 +37,11 @@ Json plane_json(const measuring::PlaneLayout& layout) {
 
 namespace {
 
+/// Why a value is doubtful, or "".
+std::string mark_of(const measuring::SensorGrid& grid, std::size_t sensor) {
+  return sensor < grid.marks.size() ? grid.marks[sensor] : "";
+}
+
 Json sensor_json(const measuring::GridValues& values, std::size_t sensor) {
   const Sensor& place = values.grid.sensors[sensor];
   const Measured& total = values.total().sensors[sensor];
@@ -44,6 +49,7 @@ Json sensor_json(const measuring::GridValues& values, std::size_t sensor) {
              {"direction", vector_json(place.normal)},
              {"lux", total.value},
              {"standard_error", total.standard_error}};
+  if (const std::string mark = mark_of(values.grid, sensor); !mark.empty()) entry["mark"] = mark;
   for (std::size_t i = 1; i < values.lights.size(); ++i) {
     const Measured& part = values.lights[i].sensors[sensor];
     entry["lights"][values.lights[i].light] = {{"lux", part.value},
@@ -100,9 +106,22 @@ std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& ro
   return lines;
 }
 
-std::string measurement_csv(const measuring::Measurement& measurement, const std::string& unit) {
+std::string ground_heading(std::optional<double> ground) {
+  return ground ? ",ground_reflectance" : "";
+}
+
+std::string ground_field(std::optional<double> ground) {
+  return ground ? fmt::format(",{:g}", *ground) : "";
+}
+
+std::string measurement_csv(const measuring::Measurement& measurement, const std::string& unit,
+                            std::optional<double> ground) {
   std::string text = fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
   const auto& lights = measurement.front().lights;
+  const bool any_mark =
+      std::any_of(measurement.begin(), measurement.end(), [](const measuring::GridValues& values) {
+        return !measuring::counted_marks(values.grid).empty();
+      });
   const bool any_blank =
       std::any_of(measurement.begin(), measurement.end(),
                   [](const measuring::GridValues& values) { return !values.grid.blanks.empty(); });
@@ -111,7 +130,9 @@ std::string measurement_csv(const measuring::Measurement& measurement, const std
                         csv_field("standard_error " + lights[i].light));
   }
   if (any_blank) text += ",blank";
-  text += "\n";
+  if (any_mark) text += ",mark";
+  text += ground_heading(ground) + "\n";
+  const std::string end = ground_field(ground) + "\n";
   for (const measuring::GridValues& values : measurement) {
     std::size_t point = 0;
     const auto start = [&](const Sensor& sensor) {
@@ -123,7 +144,8 @@ std::string measurement_csv(const measuring::Measurement& measurement, const std
     for (std::size_t sensor = 0; sensor <= values.grid.sensors.size(); ++sensor) {
       for (; blank != values.grid.blanks.end() && blank->before == sensor; ++blank) {
         start(blank->sensor);
-        text += std::string(2 * values.lights.size() + 1, ',') + csv_field(blank->reason) + "\n";
+        text += std::string(2 * values.lights.size() + 1, ',') + csv_field(blank->reason) +
+                (any_mark ? "," : "") + end;
       }
       if (sensor == values.grid.sensors.size()) break;
       start(values.grid.sensors[sensor]);
@@ -131,7 +153,9 @@ std::string measurement_csv(const measuring::Measurement& measurement, const std
         text += fmt::format(",{:.6g},{:.3g}", light.sensors[sensor].value,
                             light.sensors[sensor].standard_error);
       }
-      text += any_blank ? ",\n" : "\n";
+      if (any_blank) text += ",";
+      if (any_mark) text += "," + csv_field(mark_of(values.grid, sensor));
+      text += end;
     }
   }
   return text;
@@ -180,6 +204,9 @@ std::vector<std::string> measurement_lines(const measuring::Measurement& measure
       heading += fmt::format(", and {} blank", values.grid.blanks.size());
     }
     lines.push_back(heading);
+    for (const auto& [mark, count] : measuring::counted_marks(values.grid)) {
+      lines.push_back(fmt::format("  {} marked: {}", count, mark));
+    }
     for (const measuring::LightValues& light : values.lights) {
       const measuring::GridStatistics& s = light.statistics;
       std::string line =

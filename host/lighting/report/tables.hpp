@@ -9,6 +9,7 @@
 #include <glm/glm.hpp>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,7 +25,9 @@ std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all);
 
 /// A line for each observer: name, position, direction, illuminance and background with their
 /// standard errors, ratings. Fields of what is not known are empty.
-std::string glare_csv(std::span<const glare::ObserverGlare> all);
+///   ground   reflectance of the ground under the sky, a further column; none without a sky
+std::string glare_csv(std::span<const glare::ObserverGlare> all,
+                      std::optional<double> ground = std::nullopt);
 
 /// The ratings with the luminaires and the sources of pictures.
 nlohmann::ordered_json glare_json(std::span<const glare::ObserverGlare> all);
@@ -80,8 +83,14 @@ std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& ro
 
 /// A line for each sensor, with a heading: grid, point (from 0), x, y, z, dx, dy, dz, lux,
 /// standard_error; with several lights also `lux <light>` and `standard_error <light>` of each.
+///   ground   reflectance of the ground under the sky, a last column; none without a sky
 std::string measurement_csv(const measuring::Measurement& measurement,
-                            const std::string& unit = "lux");
+                            const std::string& unit = "lux",
+                            std::optional<double> ground = std::nullopt);
+
+/// The heading of that column, and its field; "" without.
+std::string ground_heading(std::optional<double> ground);
+std::string ground_field(std::optional<double> ground);
 
 /// Array of grids, each with `name`, `points`, `plane` (where it is one), `statistics` and
 /// `sensors`.

@@ -9,7 +9,7 @@ namespace photile::report {
 namespace {
 
 /// English and German. A further language is a further column, and a name in `languages`.
-constexpr std::array<std::array<std::string_view, 2>, 91> table{{
+constexpr std::array<std::array<std::string_view, 2>, 99> table{{
     {"Illuminance", "Beleuchtungsst\u00e4rke"},
     {"project", "Projekt"},
     {"client", "Auftraggeber"},
@@ -105,6 +105,15 @@ constexpr std::array<std::array<std::string_view, 2>, 91> table{{
     {"grid", "Raster"},
     {"weather", "Wetterdaten"},
     {"sky", "Himmel"},
+    {"ground", "Gel\u00e4nde"},
+    {"Warnings", "Warnungen"},
+    {"\u00d7 {} points are not measured: {}.", "\u00d7 {} Punkte sind nicht berechnet: {}."},
+    {"\u00d7 {} points are measured, but marked: {}.",
+     "\u00d7 {} Punkte sind berechnet, aber fraglich: {}."},
+    {"inside a solid or beyond the walls", "in einem K\u00f6rper oder hinter den W\u00e4nden"},
+    {"inside a thing or a closed room", "in einem Gegenstand oder geschlossenen Raum"},
+    {"less than 1 cm from a surface", "weniger als 1 cm von einer Fl\u00e4che"},
+    {"no light", "kein Licht"},
 }};
 
 }  // namespace

@@ -38,6 +38,19 @@ void add_plane(LightLayers::Layer& layer, std::size_t pixels) {
 
 }  // namespace
 
+std::vector<bool> image::lit_layers(const LightLayers& layers) {
+  std::vector<bool> lit(layers.layers.size(), false);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(layers.height); ++y) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(layers.width); ++x) {
+      image::for_each_light(layers, x, y,
+                            [&](std::size_t light, float illuminance, const glm::vec3& l) {
+                              if (illuminance > 0 || l != glm::vec3(0.0f)) lit[light] = true;
+                            });
+    }
+  }
+  return lit;
+}
+
 std::vector<std::string> image::layer_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const LightGroup& group : light_groups_of(scene).groups) names.push_back(group.name);

@@ -45,6 +45,9 @@ void for_each_pixel(std::size_t count, const Work& work) {
                     });
 }
 
+/// Per layer whether its light reaches any pixel.
+std::vector<bool> lit_layers(const LightLayers& layers);
+
 /// Of the layers of a scene's pictures, in order: a light, or a group of lights.
 std::vector<std::string> layer_names(const Scene& scene);
 
