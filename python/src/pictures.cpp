@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "image/white.hpp"
 #include "parts.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
@@ -113,6 +114,7 @@ std::shared_ptr<Picture> render_picture(const std::shared_ptr<Scene>& scene, con
     if (picture->layers.sparse()) picture->layers = picture->layers.dense();
     set_camera_attributes(picture->header, in_world(*scene, camera), picture->layers.width,
                           picture->layers.height);
+    image::keep_white(picture->header, image::white_of(picture->layers, picture->own));
     return picture;
   });
 }
@@ -124,10 +126,13 @@ std::shared_ptr<Picture> read_picture(const std::filesystem::path& file) {
   try {
     picture->own = read_light_mix(image);
     picture->layers = light_layers(image);
+    picture->header = image;
+    if (!image::kept_white(image)) {
+      image::keep_white(picture->header, image::white_of(picture->layers, picture->own));
+    }
   } catch (const InputError& error) {
     throw InputError(file.string() + ": " + error.what());
   }
-  picture->header = image;
   picture->from_file = true;
   return picture;
 }
@@ -162,15 +167,16 @@ DisplayView view_named(const std::string& name) {
   throw UsageError("view: '" + name + "' is not one of neutral, standard");
 }
 
-ToneMapping tone_mapping(const py::dict& display) {
+ToneMapping tone_mapping(const Picture& picture, const py::dict& display) {
   return {.automatic_exposure = field<bool>(display, "automatic"),
           .exposure = field<double>(display, "exposure"),
-          .view = view_named(field<std::string>(display, "view"))};
+          .view = view_named(field<std::string>(display, "view")),
+          .white = *image::kept_white(picture.header)};
 }
 
 /// Display-referred and linear, shape (height, width, 3).
 py::object displayed(const Picture& picture, const Changes& changes, const py::dict& display) {
-  const ToneMapping parameters = tone_mapping(display);
+  const ToneMapping parameters = tone_mapping(picture, display);
   std::vector<glm::vec3> pixels;
   {
     const Unlocked unlocked;
@@ -191,7 +197,7 @@ void save_exr(const Picture& picture, const std::filesystem::path& file, const C
 
 void save_png(const Picture& picture, const std::filesystem::path& file, const Changes& changes,
               const py::dict& display) {
-  const ToneMapping parameters = tone_mapping(display);
+  const ToneMapping parameters = tone_mapping(picture, display);
   const Unlocked unlocked;
   write_png(file, tone_map(picture.mixed(picture.mix_of(changes))->root(), parameters));
 }

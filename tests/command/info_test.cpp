@@ -146,6 +146,22 @@ TEST_CASE("info counts what the import dropped, and says so") {
   CHECK_THAT(text.output, Contains("warning: 1 triangles without area are dropped"));
 }
 
+TEST_CASE("info states what panes let through and reflect, however the file makes them") {
+  const FileFolder folder;
+  folder.write("box.mtl", box_mtl() + "newmtl pane\nKd 0 0 0\nd 0.1\n");
+  const std::string scene = folder.write(
+      "box.obj", box_obj() + "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nusemtl pane\nf -3 -2 -1\n");
+  CHECK_THAT(succeed({"info", scene}).output,
+             Contains("material: pane: pane, 1 triangle, transmittance 0.9, reflectance 0"));
+  const auto material = info(scene)["materials"].back();
+  CHECK(material["transmittance"].get<double>() == Approx(0.9));
+  CHECK_FALSE(info(scene)["materials"].front().contains("transmittance"));
+  CHECK_THAT(succeed({"info", scene, "--reflectance", "pane=0.08"}).output,
+             Contains("transmittance 0.9, reflectance 0.08"));
+  CHECK_THAT(only_error(run_photile({"info", scene, "--reflectance", "pane=0.2"}), usage),
+             Contains("at its brightest it reflects 0.1"));
+}
+
 TEST_CASE("info names rough glass, which it treats as smooth") {
   const FileFolder folder;
   folder.write("box.mtl", box_mtl() + "newmtl frosted\nillum 7\nNs 80\n");

@@ -183,40 +183,6 @@ TEST_CASE("moods are put on one sheet with one exposure") {
              Contains("--sheet"));
 }
 
-TEST_CASE("white balance makes the light of all lamps white in PNGs, and changes no EXR") {
-  const FileFolder folder;
-  const std::string picture = render_box(folder, "a.exr");
-  const std::vector<std::string> warm{"relight", picture,       "--light", "left=2700K",
-                                      "--light", "right=2700K", "-o"};
-  const auto write = [&](std::vector<std::string> words, const std::string& name,
-                         const std::string& balance) {
-    words.push_back(folder / name);
-    if (!balance.empty()) words.insert(words.end(), {"--set", "white_balance=" + balance});
-    succeed(words);
-    return read_image(folder / name);
-  };
-  const auto blue_over_red = [](const Image& image) {
-    double red = 0, blue = 0;
-    for (const float value : *image.find("R")) red += value;
-    for (const float value : *image.find("B")) blue += value;
-    return blue / red;
-  };
-  succeed({"relight", picture, "--light", "left=6504K", "--light", "right=6504K", "-o",
-           folder / "white.png"});
-  const double plain = blue_over_red(read_image(folder / "white.png"));
-  CHECK(blue_over_red(write(warm, "off.png", "off")) < 0.6 * plain);
-  CHECK(blue_over_red(write(warm, "on.png", "")) == Approx(plain).epsilon(0.05));
-  CHECK(write(warm, "off.exr", "off").channels == write(warm, "on.exr", "").channels);
-  // A sheet has the white of the lamps as rendered: a warm mood is seen to be warm.
-  succeed({"relight", picture, "--light", "left=6504K", "--light", "right=6504K", "-o",
-           folder / "white.exr"});
-  folder.write("white.moods.json", R"({"photile_moods": 1, "moods": {
-      "warm": {"left": {"kelvin": 2700}, "right": {"kelvin": 2700}}, "as it is": {}}})");
-  const std::vector<std::string> sheet{"relight", folder / "white.exr", "--sheet"};
-  CHECK(blue_over_red(write(sheet, "sheet.png", "")) ==
-        Approx(blue_over_red(write(sheet, "as_it_is.png", "off"))).epsilon(0.01));
-}
-
 TEST_CASE("layers of 11 bits are near to those of 24, in less room, and lossy ones in less still") {
   const FileFolder folder;
   const std::string whole = render_box(folder, "a.exr");

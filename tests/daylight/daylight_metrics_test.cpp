@@ -328,5 +328,17 @@ TEST_CASE("blinds are refused in a line where they cannot be") {
   CHECK_THROWS_WITH(close("*=0.1"), Contains("is no thin pane"));
 }
 
+TEST_CASE("blinds close panes that are partly there, as IFC has them") {
+  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
+  Material ifc = diffuse({0.0f, 0.5f, 0.75f});
+  ifc.name = "glazing";
+  ifc.opacity = 0.1f;
+  builder.add(ifc);
+  const Scene scene = builder.build();
+  const std::vector<BlindGroup> groups{BlindGroup::parse("glazing=0.05")};
+  CHECK(double{materials_with(scene, groups, 0).back().opacity} == Approx(0.1));
+  CHECK(double{materials_with(scene, groups, 1).back().opacity} == Approx(0.95));
+}
+
 }  // namespace
 }  // namespace photile::test

@@ -1,4 +1,5 @@
 // Pictures relit from their layers.
+#include "image/white.hpp"
 #include "photile/layered_picture.hpp"
 #include "picture_support.hpp"
 
@@ -55,6 +56,46 @@ TEST_CASE("relighting with a colour equals mixing with that colour") {
   const Image relit = relight(mix_layers(layers, mix), changes);
   change_lights(mix, changes);
   check_equal(relit, mix_layers(layers, mix));
+}
+
+TEST_CASE("a picture without a white of its own is given that of its lights before they change") {
+  const LightLayers layers = random_layers(9, 7, names);
+  LightMix mix = mix_of(5, 2, 0);
+  const auto of_luminance_1 = [](const glm::dvec3& color) {
+    return glm::vec3(color / luminance(color));
+  };
+  mix.lights[0].color = of_luminance_1({0.8, 1.0, 1.4});
+  mix.lights[1].color = of_luminance_1({1.8, 0.8, 0.3});
+  double sums[2]{};
+  for (std::size_t light = 0; light < 2; ++light) {
+    for (const float lux : layers.layers[light].illuminance) {
+      sums[light] += mix.lights[light].power * double{lux};
+    }
+  }
+  const glm::dvec3 light =
+      sums[0] * glm::dvec3(mix.lights[0].color) + sums[1] * glm::dvec3(mix.lights[1].color);
+  const Image before = mix_layers(layers, mix);
+  REQUIRE_FALSE(image::kept_white(before));
+  for (const char* change : {"lamp=6500K", "window=off", "window=x2"}) {
+    const auto white = image::kept_white(relight(before, parse({change})));
+    REQUIRE(white);
+    for (int channel = 0; channel < 3; ++channel) {
+      CHECK(double{(*white)[static_cast<std::size_t>(channel)]} ==
+            Approx(light[channel] / luminance(light)).epsilon(1e-5));
+    }
+  }
+}
+
+TEST_CASE("a white that is kept stays, and a damaged one is refused with what it is") {
+  Image picture = mix_layers(random_layers(9, 7, names), mix_of(5, 2, 1));
+  const image::White white{1.5f, 0.9f, 0.1f};
+  image::keep_white(picture, white);
+  CHECK(image::kept_white(relight(picture, parse({"lamp=2700K"}))) == white);
+  for (const char* damaged : {"", "1 1", "1 0 1", "1 nan 1", "white"}) {
+    picture.attributes["photile.white"] = damaged;
+    CHECK_THROWS_WITH(relight(picture, {}),
+                      Catch::Contains("photile.white") && Catch::Contains("three numbers above 0"));
+  }
 }
 
 TEST_CASE("a relit picture relights again as the first one would") {

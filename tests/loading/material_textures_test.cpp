@@ -107,7 +107,7 @@ TEST_CASE("alpha mode BLEND and alpha of lamps are approximations that are told"
     material["alphaMode"] = "BLEND";
     material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.5};
   };
-  CHECK(warns(square_with({}, blend), {"'glow'", "BLEND", "chance"}));
+  CHECK(warns(square_with({}, blend), {"'glow'", "BLEND", "straight through"}));
   const Scene lamp = square_with({}, [&](json& material) {
     blend(material);
     material["emissiveFactor"] = {1, 1, 1};

@@ -209,12 +209,12 @@ TEST_CASE("MTL glass of a Phong exponent that is no mirror's is named as rough")
   }
 }
 
-TEST_CASE("MTL transparency without Ni lets light through by chance, with a warning") {
+TEST_CASE("MTL transparency without Ni lets light straight through, with a warning") {
   Scene scene;
   const Material m = mtl_material("Kd 1 1 1\nd 0.5\n", &scene);
   CHECK(m.interaction == Interaction::opaque);
   CHECK(m.opacity == 0.5f);
-  CHECK(warns(scene, {"'m'", "chance"}));
+  CHECK(warns(scene, {"'m'", "straight through"}));
   CHECK_FALSE(mtl_material("Kd 1 1 1\nd 0\n", &scene).has_cutouts());
   CHECK(warns(scene, {"'m'", "opaque"}));
 }

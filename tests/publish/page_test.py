@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Pages of `photile publish` in Chromium, beside `photile render` and `photile measure`.
 
-Usage: page_test.py cornell_box|living_room|office|controls|many_lights PHOTILE SOURCE_FOLDER
+Usage: page_test.py cornell_box|living_room|office|controls|display|many_lights PHOTILE SOURCE_FOLDER
 """
 
 import base64
@@ -538,12 +538,12 @@ def check_pictures(browser, folder):
     browser.run(STAND, [3, 1.6, 4], [0, -0.6, -0.8])
     browser.rest()
     radiance = browser.radiance()
-    white = browser.run("return page.renderer.exposure / page.renderer.unit")
+    white = browser.run("return room.display.white.map((part) => page.renderer.exposure / page.renderer.unit / part)")
     picture = saved_picture(browser, folder)
     assert picture.shape[:2] == (SIZE[1], SIZE[0]), picture.shape
     places = [(40, 150), (160, 100), (280, 160), (100, 120)]
     for x, y in places:
-        near(picture[y, x], neutral_srgb(white * radiance[y, x].astype(float)), 3 / 255)
+        near(picture[y, x], neutral_srgb(np.array(white) * radiance[y, x].astype(float)), 3 / 255)
     browser.press("v")
     ends = browser.run("return [...document.querySelectorAll('#legend span')].map((e) => parseFloat(e.textContent.replace(',', '')))")
     assert not browser.run("return document.getElementById('legend').hidden")
@@ -573,6 +573,98 @@ def test_controls(browser, folder):
         check(browser)
     check_pictures(browser, folder)
     check_link(browser, page)
+
+
+# The light of a frame and what the canvas shows of it, rows from below.
+FRAME = """
+page.setExposure(arguments[0]);
+const {renderer} = page, {gl, screen} = renderer;
+renderer.draw(page.walker);
+const {width, height} = renderer.canvas;
+const shown = new Uint8Array(4 * width * height), light = new Float32Array(4 * width * height);
+gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, shown);
+gl.bindFramebuffer(gl.FRAMEBUFFER, screen.pixels);
+gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, light);
+gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+const text = (array) => {
+  const bytes = new Uint8Array(array.buffer);
+  let all = '';
+  for (let i = 0; i < bytes.length; i += 32768) all += String.fromCharCode(...bytes.subarray(i, i + 32768));
+  return btoa(all);
+};
+return [text(light), text(shown)];
+"""
+
+
+def check_transform(browser, folder, stops):
+    """The canvas shows the light of a frame as `photile relight` shows a picture of that light."""
+    light, shown = (np.frombuffer(base64.b64decode(text), kind).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
+                    for text, kind in zip(browser.run(FRAME, stops), (np.float32, np.uint8)))
+    file, png = folder / "frame.exr", folder / "frame.png"
+    names = ["R", "G", "B", *(f"ViewLayer.Combined_room.{channel}" for channel in "RGB")]
+    spec = oiio.ImageSpec(SIZE[0], SIZE[1], len(names), oiio.FLOAT)
+    spec.channelnames = names
+    spec.attribute("photile.white", " ".join(map(str, browser.run("return room.display.white"))))
+    output = oiio.ImageOutput.create(str(file))
+    assert output.open(str(file), spec)
+    output.write_image(np.ascontiguousarray(np.concatenate([light, light], 2)))
+    output.close()
+    photile("relight", file, "-o", png, "--set", "auto_exposure=off", "--exposure", stops)
+    expected = np.asarray(oiio.ImageInput.open(str(png)).read_image(format=oiio.UINT8))[:, :, :3]
+    difference = np.abs(shown.astype(int) - expected.astype(int))
+    print(f"{stops:+} stops: {100 * (difference > 0).mean():.2f}% of the values differ, by {difference.max()} at most")
+    assert difference.max() <= 1
+    assert expected.max() > 250 and expected.min() < 200  # of lamps, and of the room
+
+
+def automatic_exposure(light):
+    """The rule of docs/pictures.md."""
+    luminance = light @ [0.2126, 0.7152, 0.0722]
+    luminance = luminance[luminance > 0]
+    median = np.median(luminance)
+    counted = luminance[(luminance <= 20 * median) & (luminance >= median / 20)]
+    return 0.36 / np.exp(np.log(counted).mean())
+
+
+def test_display(browser, folder):
+    """A page shows a warm room with the white and the exposure of `photile render`, by the same transform."""
+    scene = obj_room(folder)
+    # A pane before the far wall lets 0.7 through and reflects a little, as the glass of IFC does.
+    (folder / "hall.mtl").write_text((folder / "hall.mtl").read_text().replace("Ke 80 90 100", "Ke 100 60 25") +
+                                     "newmtl pane\nKd 0.1 0.2 0.3\nd 0.3\n")
+    scene.write_text(scene.read_text() + "v 2 0.5 0.5\nv 4 0.5 0.5\nv 4 2.5 0.5\nv 2 2.5 0.5\n"
+                                         "usemtl pane\nf -4 -3 -2 -1\n")
+    made = ["--quality", "draft", "--photons", "50k", "-q"]
+    page, rendered = folder / "hall.html", folder / "hall.exr"
+    photile("publish", scene, "-o", page, "--texel", "0.1", *made)
+    browser.open(page)
+    camera = browser.run("return room.cameras[0]")
+    photile("render", scene, "-o", rendered, *made)
+    display = browser.run("return room.display")
+    white = oiio.ImageInput.open(str(rendered)).spec().getattribute("photile.white")
+    near(np.array(display["white"]) / np.array(list(map(float, white.split()))), 1, 0.003)
+    assert display["white"][0] > 1.1 > 0.8 > display["white"][2], display
+    near(display["exposure"] / automatic_exposure(radiance_of(rendered).reshape(-1, 3)), 1, 0.01)
+    # Of other lamps the white is the same.
+    other = folder / "other.html"
+    photile("publish", scene, "-o", other, "--texel", "0.1", *made, "--light", "*=2000K", "--light", "left=off")
+    browser.open(other)
+    near(np.array(browser.run("return room.display.white")) / display["white"], 1, 0.003)
+
+    browser.open(page)
+    at = ["--eye", "3,1.6,4.5", "--look-at", "3,2.275,0"]
+    photile("render", scene, "-o", rendered, "-o", folder / "hall.png", "--size", "%dx%d" % SIZE,
+            "--field-of-view", math.degrees(camera["angle"]), *at, *made)
+    browser.run("page.walker.stand({...room.cameras[0], position: [3, 1.6, 4.5], forward: normalized([0, 0.15, -1])})")
+    browser.rest()
+    for stops in (-3, 0, 2.5):
+        check_transform(browser, folder, stops)
+    # Through the pane, whose image is in the middle, as beside it.
+    page_light, light = browser.radiance().astype(float), radiance_of(rendered)
+    for what, part in (("behind the pane", np.s_[125:155, 135:185]), ("beside it", np.s_[125:155, 60:90])):
+        ratio = page_light[part].mean((0, 1)) / light[part].mean((0, 1))
+        print(f"{what}: {ratio} of the light of the picture")
+        near(ratio, 1, 0.04)
 
 
 def test_many_lights(browser, folder):

@@ -226,6 +226,25 @@ TEST_CASE("A window parts rays by Fresnel's shares, where it is not left to chan
   CHECK(shares / samples == Approx(1).epsilon(1e-6));
 }
 
+TEST_CASE("A surface that is partly there parts rays, where it is not left to chance") {
+  SceneBuilder builder;
+  Material curtain = diffuse(glm::vec3(0.5f));
+  curtain.opacity = 0.3f;
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(curtain));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  const PrimaryHits hits =
+      trace_primary_hits(RayScene(builder.build()), camera_above(),
+                         {.width = 8, .height = 8, .samples_per_pixel = 4, .split_at_glass = true},
+                         0, 8)
+          .hits;
+  REQUIRE(hits.size() == 2 * 8 * 8 * 4);  // each sample sees both
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const double there = hits.position[i].z > 0.5f ? 0.3 : 0.7;
+    CHECK(double{hits.throughput[i].x} * 4 == Approx(there).epsilon(1e-6));
+    CHECK(double{hits.fraction[i]} == Approx(there).epsilon(1e-6));
+  }
+}
+
 TEST_CASE("A lamp under water is seen from above by its radiance over the squared index") {
   const bool closed = GENERATE(false, true);  // the lamp is in the glass, or below it
   SceneBuilder builder;

@@ -5,6 +5,7 @@
 #include "bake/baked_light.hpp"
 #include "geometry/disjoint_sets.hpp"
 #include "photile/camera.hpp"
+#include "scene/panes.hpp"
 #include "surface/surface_mesh.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
@@ -84,8 +85,7 @@ std::vector<std::uint8_t> met_sides(const RayScene& rays, const std::vector<Path
       std::atomic_ref(met[point.oriented_face()]).store(1, std::memory_order_relaxed);
       const Material& material = trace::material_of(scene, point);
       const trace::RandomBlock block = numbers(bounce + 2);
-      const bool passes =
-          (material.interaction == Interaction::glass || material.has_cutouts()) && block.bit(2);
+      const bool passes = (scene::is_glazing(material) || material.has_cutouts()) && block.bit(2);
       if (!passes) {
         direction =
             trace::Frame(point.normal)

@@ -33,7 +33,7 @@ struct CompareOptions {
   std::string picture;             ///< file, "" = none
   std::string json;                ///< file, "" = none
   double scale = 0;                ///< 0 = automatic
-  ToneMapping tone_mapping;
+  PictureOptions display;          ///< one white: that of the first, where its lights are known
 };
 
 /// After the name of what is compared.
@@ -205,14 +205,13 @@ void run_compare(const CompareOptions& options) {
   throw_if_stop_requested();
   if (!options.picture.empty()) {
     const auto unit = first.whole.attributes.find("photile.units");
-    PictureOptions display;  // one white: that of the first, where its lights are known
-    display.tone_mapping = options.tone_mapping;
     write_png(options.picture,
               report::draw_comparison(
                   first.whole, second.whole,
                   {first.name, second.name,
                    unit == first.whole.attributes.end() ? "luminance" : unit->second, options.scale,
-                   first.layers ? shown_as(display, *first.layers) : options.tone_mapping}));
+                   first.layers ? shown_as(options.display, *first.layers)
+                                : shown_as(options.display, first.whole)}));
   }
   if (moods) {
     const report::LevelComparison levels =
@@ -256,7 +255,8 @@ void add_compare_command(CLI::App& photile) {
   group.add("--json", options->json, "FILE", "write the errors as JSON");
   group.add("-s,--scale", options->scale, "X",
             "largest difference of the legend; default: from the pictures", positive_number());
-  add_tone_mapping_options(group, options->tone_mapping);
+  add_tone_mapping_options(group, options->display.tone_mapping);
+  add_white_option(group, options->display.white);
   command->callback([options] { run_compare(*options); });
 }
 

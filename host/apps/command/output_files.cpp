@@ -11,7 +11,7 @@
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "image/layer_set.hpp"
-#include "image/light_layers.hpp"
+#include "image/white.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "report/false_colour.hpp"
@@ -50,6 +50,26 @@ void add_view_option(const OptionGroup& group, DisplayView& view) {
                "display transform: Khronos PBR Neutral, in which highlights roll off, or the sRGB "
                "curve alone",
                [&view](DisplayView chosen) { view = chosen; });
+}
+
+WhiteOption WhiteOption::parse(const std::string& text) {
+  const auto kelvin = text.ends_with('K')
+                          ? parse_number<double>(std::string_view(text).substr(0, text.size() - 1))
+                          : std::nullopt;
+  if (!kelvin || !(*kelvin >= limits::min_color_temperature) ||
+      *kelvin > limits::max_color_temperature) {
+    throw UsageError(fmt::format("--white {}: use a colour temperature from {:.0f}K to {:.0f}K",
+                                 text, limits::min_color_temperature,
+                                 limits::max_color_temperature));
+  }
+  return {image::white_of_temperature(*kelvin)};
+}
+
+void add_white_option(const OptionGroup& group, WhiteOption& white) {
+  group.call(
+      "--white", [&white](const std::string& text) { white = WhiteOption::parse(text); }, "KELVINK",
+      "colour temperature of the light that is shown as white; default: that of the lamps as the "
+      "scene has them");
 }
 
 void add_tone_mapping_options(const OptionGroup& group, ToneMapping& parameters) {
@@ -117,6 +137,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
                 "picture to write, .exr, .png or .hdr; repeatable",
                 file_ending_in({".exr", ".png", ".hdr"}));
   add_tone_mapping_options(output, options.tone_mapping);
+  add_white_option(output, options.white);
   output.add("--illuminance", options.illuminance, "FILE.png",
              "lux on the surfaces that are seen, in false colour with a legend",
              file_ending_in({".png"}));
@@ -124,24 +145,24 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
              file_ending_in({".png"}));
 }
 
+ToneMapping shown_as(const PictureOptions& options, const PictureHeader& picture) {
+  ToneMapping shown = options.tone_mapping;
+  const std::optional<image::White> white =
+      options.white.white ? options.white.white : image::kept_white(picture);
+  if (options.white_balance && white) shown.white = *white;
+  return shown;
+}
+
 ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& picture) {
   ToneMapping shown = options.tone_mapping;
-  if (!options.white_balance) return shown;
-  std::vector<double> sums;
-  for (std::size_t light = 0; light < picture.lights(); ++light) {
-    const LightRows rows = picture.read(light, 0, picture.header().height);
-    double sum = 0;
-    const auto add = [&](double lux) {
-      if (std::isfinite(lux) && lux > 0) sum += lux;
-    };
-    for (const float lux : rows.illuminance) add(static_cast<double>(lux));
-    for (std::size_t i = 0; rows.illuminance.empty() && i < rows.rgb[0].size(); ++i) {
-      add(luminance(glm::dvec3(rows.rgb[0][i], rows.rgb[1][i], rows.rgb[2][i])));
-    }
-    sums.push_back(sum);
-  }
-  shown.white = image::white_of_light(sums, image::read_light_records(picture.header()).mix);
+  if (options.white_balance) shown.white = options.white.of(picture);
   return shown;
+}
+
+image::White white_of_scene(const PictureOptions& options, const LightLayers& layers,
+                            const Scene& scene, double lumen_per_watt) {
+  if (options.white.white) return *options.white.white;
+  return image::white_of(layers, LightMix::of(scene, lumen_per_watt));
 }
 
 std::vector<std::filesystem::path> PictureOutputs::files() const {
@@ -152,8 +173,9 @@ std::vector<std::filesystem::path> PictureOutputs::files() const {
   return all;
 }
 
-void PictureOutputs::write(const LayeredPicture& picture, Progress& notes,
+void PictureOutputs::write(LayeredPicture& picture, Progress& notes,
                            const std::filesystem::path& source) const {
+  about_file(source, [&] { image::keep_white(picture.header(), options_.white.of(picture)); });
   // First, for the picture may lack them.
   std::vector<float> lux, candela;
   Image root, displayed;

@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "image/white.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/progress.hpp"
@@ -42,6 +44,19 @@ namespace photile::app {
 /// Adds --view.
 void add_view_option(const OptionGroup& group, DisplayView& view);
 
+/// What --white asks for.
+struct WhiteOption {
+  std::optional<image::White> white;  ///< none = that of the lamps
+
+  static WhiteOption parse(const std::string& text);
+  image::White of(const LayeredPicture& picture) const {
+    return white ? *white : image::white_of(picture);
+  }
+};
+
+/// Adds --white.
+void add_white_option(const OptionGroup& group, WhiteOption& white);
+
 /// Adds --exposure and --view.
 void add_tone_mapping_options(const OptionGroup& group, ToneMapping& parameters);
 
@@ -68,15 +83,22 @@ struct PictureOptions {
   std::string luminance;             ///< the same
   FalseColourOptions false_colour;   ///< of both
   ToneMapping tone_mapping;
+  WhiteOption white;
   bool white_balance = true;
   LayerPrecision precision = LayerPrecision::whole;  ///< of EXRs
 };
 
-/// How a picture is shown: with the white balance that is asked for, the light on the surfaces that
-/// are seen, or where the picture has no illuminance by their luminance.
+/// How a picture is shown: with the white that --white names, else that which is kept with it, or
+/// else that of its lights, where it has any.
+ToneMapping shown_as(const PictureOptions& options, const PictureHeader& picture);
 ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& picture);
 
-/// Adds -o, --exposure, --view, --illuminance and --luminance to a subcommand.
+/// The white that rendered pictures keep: what --white names, or that of the lamps as the scene has
+/// them, whatever --light and --mood make of them.
+image::White white_of_scene(const PictureOptions& options, const LightLayers& layers,
+                            const Scene& scene, double lumen_per_watt);
+
+/// Adds -o, --exposure, --view, --white, --illuminance and --luminance to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
 /// Files to be written, each in the format that its name ends in.
@@ -87,13 +109,13 @@ class PictureOutputs {
   bool empty() const { return files().empty(); }
   std::vector<std::filesystem::path> files() const;
 
-  /// Writes every file: `picture` as EXR, its tone-mapped root as PNG, its root in
-  /// Radiance's format, its illuminance and its
-  /// luminance in false colour. `notes` are told what a drawing lacks.
+  /// Keeps the white with `picture` and writes every file: `picture` as EXR, its tone-mapped root
+  /// as PNG, its root in Radiance's format, its illuminance and its luminance in false colour.
+  /// `notes` are told what a drawing lacks.
   /// Errors: OutputError; the file that it names is then as it was before. Those of `picture`, of
   /// measuring::illuminance_of and luminance_of; then nothing is written.
   ///   source   the file that the picture is from, named where it lacks something
-  void write(const LayeredPicture& picture, Progress& notes = Progress::none(),
+  void write(LayeredPicture& picture, Progress& notes = Progress::none(),
              const std::filesystem::path& source = {}) const;
 
  private:

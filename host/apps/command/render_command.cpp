@@ -191,13 +191,13 @@ class Denoising {
   std::optional<DenoisingGuides> guides_;  ///< once they are needed
 };
 
-/// Writes the file that --glare names, and tells what is marked. `reflections` are the part of
-/// `layers` that came by reflection. Errors: OutputError.
-void write_glare(const RenderOptions& options, const LightLayers& layers,
-                 const LightLayers& reflections, const LightMix& mix, Progress& progress) {
+/// Writes the file that --glare names, and tells what is marked. `picture` is that of `layers`,
+/// `reflections` are the part of them that came by reflection. Errors: OutputError.
+void write_glare(const RenderOptions& options, const LayeredPicture& picture,
+                 const LightLayers& layers, const LightLayers& reflections, const LightMix& mix,
+                 Progress& progress) {
   const image::Glare glare = image::find_glare(layers, reflections, mix, options.glare_limit);
-  const auto picture = mixed_picture(layers, mix);
-  const Image displayed = tone_map(picture->root(), shown_as(options.pictures, *picture));
+  const Image displayed = tone_map(picture.root(), shown_as(options.pictures, picture));
   std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
   image::draw_marks(glare.marks, rgb);
   view::write_screenshot(options.glare, layers.width, layers.height, rgb);
@@ -274,17 +274,23 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
       }));
     }
     const LightLayers& layers = denoised ? *denoised : rendered;
+    const image::White white =
+        white_of_scene(options.pictures, rendered, scene, record.mix.lumen_per_watt);
     record.stages.push_back(timed_stage("write pictures", progress, [&] {
       const auto picture_of = [&](const LightLayers& film) {
         std::unique_ptr<LayeredPicture> picture = mixed_picture(film, record.mix);
         set_camera_attributes(picture->header(), in_world(scene, camera), film.width, film.height);
         set_run_attributes(picture->header(), record);
+        image::keep_white(picture->header(), white);
         return picture;
       };
       reaches = image::lit_layers(layers);
-      outputs.write(*picture_of(layers), progress);
+      const auto picture = picture_of(layers);
+      outputs.write(*picture, progress);
       if (!options.errors.empty()) write_exr(options.errors, *picture_of(errors));
-      if (views.reflections) write_glare(options, layers, reflections, record.mix, progress);
+      if (views.reflections) {
+        write_glare(options, *picture, layers, reflections, record.mix, progress);
+      }
     }));
   };
   if (options.goal.is_given()) {

@@ -14,6 +14,7 @@
 #include "measuring/measurement.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
+#include "scene/panes.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
 
@@ -27,6 +28,9 @@ std::string reflectance_text(const Scene& scene, const Material& material) {
   const auto reflectance = scene::reflectance_of(scene, material);
   if (!reflectance) return "";
   std::string text = fmt::format(", reflectance {:.3g}", reflectance->whole);
+  if (const auto transmittance = scene::pane_transmittance(material)) {
+    return fmt::format(", transmittance {:.3g}{}", luminance(*transmittance), text);
+  }
   if (!material.glossy()) return text;
   const bool changed = std::abs(reflectance->whole - reflectance->matt) >= 0.005;
   if (!changed || !(reflectance->matt > 0)) return text;
@@ -43,6 +47,7 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
 }
 
 const char* interaction_name(const Material& material) {
+  if (material.interaction != Interaction::glass && scene::is_pane(material)) return "pane";
   switch (material.interaction) {
     case Interaction::opaque:
       return material.glossy() ? "glossy" : "diffuse";
@@ -136,6 +141,9 @@ json material_json(const Scene& scene, const Material& material, std::size_t tri
   if (const auto reflectance = scene::reflectance_of(scene, material)) {
     entry["reflectance"] = reflectance->whole;
     entry["matt_reflectance"] = reflectance->matt;
+  }
+  if (const auto transmittance = scene::pane_transmittance(material)) {
+    entry["transmittance"] = luminance(*transmittance);
   }
   const auto add_texture = [&](const char* member, std::uint32_t texture) {
     if (texture != none) entry[member] = scene.textures[texture].name();

@@ -253,8 +253,8 @@ NamedSettings device_settings(DeviceOptions& options) {
 
 NamedSetting white_balance_setting(PictureOptions& options) {
   return bound_switch("white_balance", "Display", options.white_balance,
-                      "the mean colour of the light on the surfaces that are seen becomes white, "
-                      "on displays and in PNGs");
+                      "the white of a picture, that of --white or of the lamps, is shown as white, "
+                      "on displays and in PNGs; off: colours as they are");
 }
 
 NamedSettings display_settings(PictureOptions& options) {

@@ -95,6 +95,7 @@ void run_view(ViewOptions& options) {
   parameters.outputs = options.outputs;
   parameters.view = options.view;
   parameters.fills_screen = render.size.empty();
+  parameters.white = render.pictures.white.white;
   parameters.white_balance = render.pictures.white_balance;
   parameters.moods = render.mood.file;
   parameters.prepared = load_maps(scene, render, progress);
@@ -133,6 +134,7 @@ void add_view_command(CLI::App& photile) {
   window.add("--outputs", options->outputs, "FOLDER", "folder of what F12 and Ctrl+S keep")
       ->capture_default_str();
   add_view_option(window, options->view);
+  add_white_option(window, options->render.pictures.white);
   add_picture_settings(*command, options->render,
                        {white_balance_setting(options->render.pictures)});
   command->get_option("--size")->description(

@@ -203,27 +203,31 @@ class Walk {
     const bool there = leads() && to_exr_ && is_finished(file, settings_of(camera_at(0)));
     const bool read = as_first_says({there}).front();
     LightLayers layers;
-    if (options_.quick) {
-      expose(read ? read_image(file) : draw(0), options_.render.pictures.tone_mapping);
-    } else if (read) {
-      expose(*relit_picture(file, {}));
-    } else {
-      expose(*picture_of(0, layers));
-    }
+    expose(read ? read_image(file) : options_.quick ? draw(0) : picture_of(0, layers)->root());
   }
 
-  void expose(const LayeredPicture& first) {
-    expose(first.root(), shown_as(options_.render.pictures, first));
-  }
-  void expose(const Image& first, const ToneMapping& shown) {
+  void expose(const Image& first) {
     const Image* const only = &first;
-    shown_as_ = with_one_exposure(shown, std::span(&only, 1));
+    shown_as_ = with_one_exposure(shown_as(options_.render.pictures, first), std::span(&only, 1));
   }
 
   void make_maps() {
     std::optional<TracedPhotons> prepared = load_maps(scene_, options_.render, progress_);
     renderer_.emplace(scene_, devices_, options_.render.parameters, prepared ? &*prepared : nullptr,
                       keep_maps(scene_, options_.render, progress_), progress_);
+    find_white();
+  }
+
+  /// That of the first frame, whichever frames are made here: a few pixels of it tell enough.
+  void find_white() {
+    constexpr int rows = 96, samples = 4;
+    Film film = options_.render.parameters.film;
+    film.width = std::max(1, film.width * rows / film.height);
+    film.height = rows;
+    film.samples_per_pixel = samples;
+    QuietProgress quiet(progress_);
+    const RenderResult first = renderer_->render(camera_at(0), film, quiet);
+    white_ = white_of_scene(options_.render.pictures, first.layers, scene_, mix_.lumen_per_watt);
   }
 
   /// Renders a frame to its file and returns its R, G, B.
@@ -231,7 +235,7 @@ class Walk {
     LightLayers layers;
     const auto picture = picture_of(frame, layers);
     if (!leads()) return {};
-    if (!shown_as_) expose(*picture);
+    if (!shown_as_) expose(picture->root());
     if (to_exr_) write_exr(names_.of(number(frame)), *picture);
     for (const std::string& line : picture->overflows()) {
       progress_.warn(fmt::format("frame {}: {}", number(frame), line));
@@ -255,6 +259,7 @@ class Walk {
     set_camera_attributes(picture->header(), in_world(scene_, camera), film.width, film.height);
     set_run_attributes(picture->header(), record);
     set_settings(picture->header(), settings);
+    image::keep_white(picture->header(), white_);
     return picture;
   }
 
@@ -284,6 +289,7 @@ class Walk {
     set_camera_attributes(image, in_world(scene_, camera), film.width, film.height);
     set_run_attributes(image, record_of(camera));
     set_settings(image, settings_of(camera));
+    image::keep_white(image, white_);
     return image;
   }
 
@@ -296,8 +302,7 @@ class Walk {
     if (shown_as_ && !on_sheet && !to_png) return;
     const std::filesystem::path file = names_.of(number(frame));
     if (!root) root = read_image(file);
-    if (!shown_as_ && options_.quick) expose(*root, options_.render.pictures.tone_mapping);
-    if (!shown_as_) expose(*relit_picture(file, {}));
+    if (!shown_as_) expose(*root);
     if (!on_sheet && !to_png) return;
     const Image displayed = tone_map(*root, *shown_as_);
     if (to_png) write_png(png_names_->of(number(frame)), displayed);
@@ -318,6 +323,7 @@ class Walk {
   const std::string scene_digest_, surfaces_;
   std::optional<SceneRenderer> renderer_;
   std::optional<walk::ContactSheet> sheet_;
+  image::White white_{1, 1, 1};  ///< that all frames keep
   std::optional<ToneMapping> shown_as_;
   std::future<void> shown_;  ///< the frame before; last: it uses all of the above
 };
@@ -394,6 +400,7 @@ void add_walk_command(CLI::App& photile) {
   output.add("--png", options->png, "PATTERN.png", "frames as PNG, with the exposure of the first",
              file_ending_in({".png"}));
   add_tone_mapping_options(output, options->render.pictures.tone_mapping);
+  add_white_option(output, options->render.pictures.white);
   output.add("--contact-sheet", options->sheet, "FILE.png", "all frames on one PNG",
              file_ending_in({".png"}));
   CLI::Option* path = motion.add("--camera-path", options->path, "FILE",

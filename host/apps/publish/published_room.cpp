@@ -11,6 +11,7 @@
 
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "image/display.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
@@ -60,6 +61,20 @@ json palette() {
   return table;
 }
 
+/// The display transform: the page has no numbers of its own.
+json display_of(const ToneMapping& display) {
+  const image::DisplayTransform& numbers = image::display_transform;
+  return {{"exposure", std::exp2(display.exposure)},
+          {"white", display.white},
+          {"view", name_of(display.view)},
+          {"key", numbers.key},
+          {"outliers", numbers.outlier_factor},
+          {"f90", numbers.f90},
+          {"ks", numbers.ks},
+          {"kd", numbers.kd},
+          {"leastOfLight", numbers.least_of_light}};
+}
+
 json camera_of(const Camera& camera) {
   return {{"name", camera.name.empty() ? "view" : camera.name},
           {"position", numbers(camera.position)},
@@ -85,12 +100,13 @@ class PageWriter {
     d["atlas"] = {{"width", room_.baked.width()}, {"height", room_.baked.height()},
                   {"texel", room_.baked.texel()}, {"used", room_.baked.used_texels()},
                   {"block", error_block},         {"errorSteps", error_steps}};
+    d["display"] = display_of(room_.display);
     d["temperatures"] = kelvins();
     d["palette"] = palette();
     for (const Camera& camera : scene_.cameras) {
       if (camera.projection == Projection::perspective) d["cameras"].push_back(camera_of(camera));
     }
-    if (!d.contains("cameras")) d["cameras"] = {camera_of(scene_.cameras.front())};
+    if (!d.contains("cameras")) d["cameras"] = {camera_of(opening_camera(scene_))};
     d["probe"] = d["cameras"][0]["position"];
     d["presets"] = presets();
     d["simplified"] = simplified();
@@ -213,6 +229,7 @@ class PageWriter {
                  {"count", part.count},
                  {"texture", nullptr},
                  {"emits", part.textures.emission != none},
+                 {"clear", part.clear},
                  {"cutout", part.textures.opacity != none}};
       if (part.textures != RoomTextures{}) {
         const auto [place, is_new] = number_of.insert({part.textures, number_of.size()});
@@ -272,7 +289,9 @@ class PageWriter {
                                       {"alpha", alpha},
                                       {"specular", numbers(material.specular)},
                                       {"roughness", material.roughness},
-                                      {"f90", material.f90}});
+                                      {"f90", material.f90},
+                                      {"index", material.index_of_refraction},
+                                      {"thin", material.thin}});
   }
 
   void add_surroundings() {
@@ -365,7 +384,7 @@ class PageWriter {
     }
     if (some([](const Material& m) { return m.interaction == Interaction::glass; })) {
       list.emplace_back(
-          "glass is clear and bends no light, but what it casts is in the light maps");
+          "glass is smooth and bends no light, but what it casts is in the light maps");
     }
     if (std::any_of(scene_.lights.begin(), scene_.lights.end(), [](const Light& light) {
           return light.distribution != none && !light.triangles.empty();
@@ -401,6 +420,13 @@ std::string inline_json(const json& document) {
 }
 
 }  // namespace
+
+const Camera& opening_camera(const Scene& scene) {
+  const auto found = std::find_if(
+      scene.cameras.begin(), scene.cameras.end(),
+      [](const Camera& camera) { return camera.projection == Projection::perspective; });
+  return found == scene.cameras.end() ? scene.cameras.front() : *found;
+}
 
 SkyHours sky_hours(const LightMix& mix, const SkySituation& situation) {
   SkyHours hours;

@@ -7,6 +7,7 @@
 
 #include "bake/baked_light.hpp"
 #include "photile/estimator.hpp"
+#include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_options.hpp"
 #include "photile/scene.hpp"
@@ -34,6 +35,9 @@ struct SkyHours {
 /// Errors: those of read_weather.
 SkyHours sky_hours(const LightMix& mix, const SkySituation& situation);
 
+/// The camera that the page opens with: the first with a perspective, where there is one.
+const Camera& opening_camera(const Scene& scene);
+
 struct PublishedRoom {
   const Scene& scene;
   const bake::BakedLight& baked;
@@ -42,6 +46,7 @@ struct PublishedRoom {
   double relative_error = 0;     ///< ... which all err by this part
   std::vector<Preset> presets;
   SkyHours hours;
+  ToneMapping display;  ///< of the picture by `photile render` from the first camera, as stops
   std::string title;
   std::string version;
 };

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "common/content_hash.hpp"
+#include "scene/panes.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::publish {
@@ -37,17 +38,18 @@ RoomTextures textures_of(const Scene& scene, const Material& material, std::uint
 }  // namespace
 
 RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked) {
-  std::map<std::pair<Interaction, RoomTextures>, std::vector<std::uint32_t>> sides;
+  std::map<std::tuple<bool, Interaction, RoomTextures>, std::vector<std::uint32_t>> sides;
   for (const std::uint32_t side : baked.sides()) {
     const Material& material = scene.materials[scene.triangle_material[triangle_of(side)]];
-    sides[{material.interaction, textures_of(scene, material, light_of(scene, side))}].push_back(
-        side);
+    const bool clear = scene::is_glazing(material);
+    sides[{clear, material.interaction, textures_of(scene, material, light_of(scene, side))}]
+        .push_back(side);
   }
   RoomMesh mesh;
   tsl::robin_map<RoomVertex, std::uint32_t, BytesHash> number_of;
   for (const auto& [key, members] : sides) {
-    const auto& [interaction, textures] = key;
-    RoomPart part{interaction, textures, static_cast<std::uint32_t>(mesh.indices.size()), 0};
+    const auto& [clear, interaction, textures] = key;
+    RoomPart part{interaction, clear, textures, static_cast<std::uint32_t>(mesh.indices.size()), 0};
     const bool coordinates = textures != RoomTextures{};
     for (const std::uint32_t side : members) {
       const std::uint32_t triangle = triangle_of(side);

@@ -35,6 +35,7 @@ struct RoomTextures {
 /// Triangles that are drawn by one call.
 struct RoomPart {
   Interaction interaction = Interaction::opaque;
+  bool clear = false;  ///< drawn over what lies behind: glass, and panes of any kind
   RoomTextures textures;
   std::uint32_t first = 0, count = 0;  ///< of the indices
 };
@@ -42,7 +43,7 @@ struct RoomPart {
 struct RoomMesh {
   std::vector<RoomVertex> vertices;
   std::vector<std::uint32_t> indices;  ///< three a triangle, counterclockwise from where it is seen
-  std::vector<RoomPart> parts;         ///< opaque ones first, glass last
+  std::vector<RoomPart> parts;         ///< clear ones last
 };
 
 /// The baked sides, each as seen from its own side.

@@ -8,6 +8,7 @@
 #include "image/display.hpp"
 #include "image/glare.hpp"
 #include "image/light_layers.hpp"
+#include "image/white.hpp"
 #include "photile/image.hpp"
 #include "photile/light_layers.hpp"
 #include "report/false_colour.hpp"
@@ -151,20 +152,10 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
 }
 
 std::array<float, 3> white_of(const Frame& frame, const LightMix& mix) {
-  std::vector<double> sums(mix.lights.size());
-  const auto width = static_cast<std::size_t>(frame.layers.width),
-             height = static_cast<std::size_t>(frame.layers.height);
-  for (std::size_t pixel = 0; frame.mixed.empty() && pixel < width * height; ++pixel) {
-    for_each_light(frame.layers, pixel % width, pixel / width,
-                   [&](std::size_t light, float illuminance, const glm::vec3&) {
-                     if (std::isfinite(illuminance)) sums[light] += double{illuminance};
-                   });
-  }
-  for (std::size_t light = 0; light < sums.size(); ++light) {
-    if (!frame.mixed.empty()) sums[light] = 1;
-    sums[light] *= mix.lumens_of(mix.lights[light]);
-  }
-  return image::white_of_light(sums, mix);
+  if (frame.mixed.empty()) return image::white_of(frame.layers, mix);
+  std::vector<double> powers;
+  for (const MixedLight& light : mix.lights) powers.push_back(mix.lumens_of(light));
+  return image::white_of_light(powers, mix);
 }
 
 double automatic_stops(const Frame& frame, const LightMix& mix) {

@@ -85,8 +85,8 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
 /// Stops by which `render -o FILE.png` scales this picture of its own accord.
 double automatic_stops(const Frame& frame, const LightMix& mix);
 
-/// The white that `render -o FILE.png` balances this picture to. A quick frame does not know what
-/// each light gives: it has the mean colour of their powers.
+/// The white that `render` keeps with this picture, whose lamps the scene has as `mix`. A quick
+/// frame does not know what each light gives: it has the mean colour of their powers.
 std::array<float, 3> white_of(const Frame& frame, const LightMix& mix);
 
 /// Illuminance of the surface that each pixel sees, lux.

@@ -57,10 +57,11 @@ void write_screenshot(const std::filesystem::path& file, int width, int height,
 }
 
 void write_frame(const std::filesystem::path& file, const Scene& scene, const Frame& frame,
-                 const LightMix& mix) {
+                 const LightMix& mix, const image::White& white) {
   const auto picture = mixed_picture(frame.layers, mix);
   set_camera_attributes(picture->header(), in_world(scene, frame.camera), frame.layers.width,
                         frame.layers.height);
+  image::keep_white(picture->header(), white);
   write_exr(file, *picture);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "image/white.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
@@ -36,9 +37,10 @@ std::string keep_points(const std::filesystem::path& folder,
 void write_screenshot(const std::filesystem::path& file, int width, int height,
                       std::span<const std::uint8_t> rgb);
 
-/// The frame with its layers and its camera, as `render` writes EXR. Errors: OutputError.
+/// The frame with its layers, its camera and its white, as `render` writes EXR. Errors:
+/// OutputError.
 void write_frame(const std::filesystem::path& file, const Scene& scene, const Frame& frame,
-                 const LightMix& mix);
+                 const LightMix& mix, const image::White& white);
 
 /// A copy of the scene's file with its lamps in a mood. Returns what there is to tell: the name of
 /// the file and what could not be written, or what failed.

@@ -289,6 +289,7 @@ class Viewer {
     if (milliseconds_.size() > frames_in_graph) milliseconds_.pop_front();
     // Once, so that a lamp that is turned down is seen to be; of coarse pictures, each anew.
     if (!exposed_) set_exposure();
+    if (!white_is_set_) set_white();
     exposed_ = exposed_ || frame_->mixed.empty();
     window_.set_title(fmt::format("{} - photile: {} of {} samples, {:.4g}M paths",
                                   scene_->source.filename().string(), frame_->samples_per_pixel,
@@ -297,9 +298,16 @@ class Viewer {
     return true;
   }
 
-  void set_exposure() {
-    display_.automatic_stops = automatic_stops(*frame_, lights_.shown_mix());
-    if (parameters_.white_balance) display_.white = white_of(*frame_, lights_.shown_mix());
+  void set_exposure() { display_.automatic_stops = automatic_stops(*frame_, lights_.shown_mix()); }
+
+  /// That of the lamps as the scene has them: no change of a lamp moves it.
+  void set_white() {
+    const LightMix loaded = LightMix::of(*scene_, parameters_.load.lumen_per_watt);
+    LightBoard board(loaded, MovingSky::of(loaded, parameters_.situation));
+    board.daylight() = lights_.daylight();
+    white_ = parameters_.white ? *parameters_.white : white_of(*frame_, board.shown_mix());
+    if (parameters_.white_balance) display_.white = white_;
+    white_is_set_ = frame_->mixed.empty();
   }
 
   /// Before there is a picture an error ends the walkthrough; later ones are told.
@@ -349,7 +357,7 @@ class Viewer {
     keep_requested_ = false;
     message_ =
         beside_luminaires(keep_as(parameters_.outputs, "view", ".exr", [&](const auto& file) {
-          write_frame(file, *scene_, *frame_, lights_.shown_mix());
+          write_frame(file, *scene_, *frame_, lights_.shown_mix(), white_);
         }));
   }
 
@@ -386,6 +394,8 @@ class Viewer {
   SkyMoment shown_moment_;
   std::shared_ptr<const LayerMixdown> mixdown_;
   bool sky_moved_ = false;
+  image::White white_{1, 1, 1};  ///< that pictures keep
+  bool white_is_set_ = false;    ///< by a frame whose lights are known
   bool exposed_ = false, lights_restored_ = false, lights_keyed_ = false;
   bool seen_ = false;  ///< any frame
   bool panels_shown_ = true, screenshot_requested_ = false;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "image/white.hpp"
 #include "loading/luminaires.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/load_scene.hpp"
@@ -39,8 +40,9 @@ struct ViewerParameters {
   std::filesystem::path luminaire_file;               ///< that is edited; "" = none
   std::vector<loading::PlacedLuminaires> luminaires;  ///< as the scene has its entries
   DisplayView view = ToneMapping{}.view;
-  bool fills_screen = false;  ///< the window opens at most of it, whatever the film's size
-  bool white_balance = true;  ///< that of the first picture and of each anew exposed one
+  bool fills_screen = false;          ///< the window opens at most of it, whatever the film's size
+  std::optional<image::White> white;  ///< none = that of the lamps in the first picture
+  bool white_balance = true;          ///< whether it is shown as white
   Progress* notes = &Progress::none();  ///< is told what has no place in the window
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
   /// Is given the light maps of all photons at the end, where there are any; may be empty.

@@ -217,7 +217,7 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
   material.opacity = opacity;
   material.opacity_texture = texture;
   material.opacity_cutoff = static_cast<float>(cutoff);
-  if (!mask) warn("alpha mode BLEND lets light through by chance, without refraction or tint");
+  if (!mask) warn("alpha mode BLEND lets light straight through, without refraction or tint");
 }
 
 void Converter::set_normal_map(const tinygltf::Material& source, Material& material) {

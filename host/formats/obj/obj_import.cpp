@@ -159,7 +159,7 @@ void set_opacity(const tinyobj::material_t& source, bool emits, pictures::Textur
   material.opacity_texture = texture;
   if (opacity < 1.0f) {
     context.warnings.add("material", material.name,
-                         "transparency (d, Tr) lets light through by chance, without refraction; "
+                         "transparency (d, Tr) lets light straight through, without refraction; "
                          "an Ni would make it glass");
   }
 }

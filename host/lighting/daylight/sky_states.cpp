@@ -12,8 +12,8 @@
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "scene/panes.hpp"
 #include "trace/random_stream.hpp"
-#include "trace/scatter.hpp"
 
 namespace photile::daylight {
 
@@ -24,21 +24,19 @@ constexpr float glaring_lux = 1'000;
 constexpr double most_points = 0.02;
 
 void close(const BlindGroup& group, Material& material) {
-  if (material.interaction != Interaction::glass || !material.thin) {
+  const auto transmittance = scene::pane_transmittance(material);
+  if (!transmittance) {
     throw UsageError(fmt::format(
         "--blinds {}: '{}' is no thin pane of glass; give the scene with closed blinds as a file",
         group.glob, material.name));
   }
-  Material clear = material;
-  clear.transmission = glm::vec3(1.0f);
-  const auto most = static_cast<double>(trace::pane_transmittance(clear, 1.0f).y);
-  const double now = luminance(glm::dvec3(trace::pane_transmittance(material, 1.0f)));
+  const double now = luminance(*transmittance);
   if (group.transmittance > now + 1e-6) {
     throw UsageError(
         fmt::format("--blinds {}={:g}: '{}' lets {:.3g} through without them; give less",
                     group.glob, group.transmittance, material.name, now));
   }
-  material.transmission = glm::vec3(static_cast<float>(group.transmittance / most));
+  scene::set_transmittance(material, group.transmittance);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "measuring/floor.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "scene/panes.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
 #include "weather/perez_sky.hpp"
@@ -144,7 +145,7 @@ std::optional<Met> met_by(const RayScene& rays, const glm::dvec3& from,
   if (!hit) return std::nullopt;
   const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, ray);
   return Met{glm::dot(glm::dvec3(point.position) - from, direction),
-             trace::material_of(rays.scene(), point).interaction == Interaction::glass};
+             scene::is_glazing(trace::material_of(rays.scene(), point))};
 }
 
 trace::Room room_of(const RayScene& rays, const trace::PlanAxes& axes, const WorkingPlane& plane) {

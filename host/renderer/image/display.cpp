@@ -94,14 +94,7 @@ namespace photile {
 
 namespace {
 
-/// What the log-average luminance becomes: the key of bright rooms, twice a photographer's grey
-/// card (Reinhard et al. have 0.18 for most pictures and up to 0.72 for light ones). Walls and
-/// ceilings reflect more than half, and the neutral view takes 0.04 off all.
-constexpr double key = 0.36;
-
-/// Luminances farther than this factor from the median say nothing about the room: a light seen
-/// directly, a black background.
-constexpr double outlier_factor = 20.0;
+using image::display_transform;
 
 struct RootPlanes {
   const std::vector<float>&r, &g, &b;
@@ -128,7 +121,7 @@ glm::dvec3 standard(const glm::dvec3& rgb) {
 
 /// DisplayView::neutral of values from 0 to `brightest`. Names are those of the specification.
 glm::dvec3 neutral(const glm::dvec3& rgb) {
-  constexpr double f90 = 0.04, ks = 0.8 - f90, kd = 0.15;
+  const auto& [key, outliers, f90, ks, kd, least_of_light] = display_transform;
   const double x = std::min({rgb.r, rgb.g, rgb.b});
   const double f = x <= 2 * f90 ? x - x * x / (4 * f90) : f90;
   const glm::dvec3 base = rgb - f;
@@ -159,7 +152,6 @@ double largest_of(const glm::dvec3& rgb) { return std::max({rgb.r, rgb.g, rgb.b}
 ///   light   (x, y) of pixels in multiples of white
 template <class Light>
 glm::dvec3 shown(const Light& light, int width, int height, int x, int y, DisplayView view) {
-  constexpr double least_of_light = 4;  // multiples of white: highlights seldom are as bright
   const glm::dvec3 own = light(x, y);
   glm::dvec3 dark = own, bright = own;
   const double here = largest_of(own);
@@ -171,7 +163,7 @@ glm::dvec3 shown(const Light& light, int width, int height, int x, int y, Displa
       if (largest_of(other) > largest_of(bright)) bright = other;
     }
   const double least = std::max(0.0, largest_of(dark)), most = largest_of(bright);
-  if (!(most > least_of_light) || !(least < 1.0) || !std::isfinite(most))
+  if (!(most > display_transform.least_of_light) || !(least < 1.0) || !std::isfinite(most))
     return displayed(own, view);
   return glm::mix(displayed(dark, view), displayed(bright, view), (here - least) / (most - least));
 }
@@ -225,6 +217,7 @@ double automatic_exposure(std::span<const Image* const> scene_referred) {
   std::nth_element(luminances.begin(), middle, luminances.end());
   const double median = *middle;
 
+  const double outlier_factor = display_transform.outlier_factor;
   double sum_of_logs = 0.0;
   std::size_t count = 0;
   for (const double value : luminances) {
@@ -232,7 +225,7 @@ double automatic_exposure(std::span<const Image* const> scene_referred) {
     sum_of_logs += std::log(value);
     ++count;
   }
-  return key / std::exp(sum_of_logs / static_cast<double>(count));
+  return display_transform.key / std::exp(sum_of_logs / static_cast<double>(count));
 }
 
 ToneMapping with_one_exposure(ToneMapping parameters,

@@ -12,6 +12,24 @@
 
 namespace photile::image {
 
+/// The numbers of the display transform of `tone_map`, which the pages of `photile publish` are
+/// given, too (publish/page/display.js). Those of DisplayView::neutral have the specification's
+/// names.
+struct DisplayTransform {
+  /// What the log-average luminance becomes: the key of bright rooms, twice a photographer's grey
+  /// card (Reinhard et al. have 0.18 for most pictures and up to 0.72 for light ones). Walls and
+  /// ceilings reflect more than half, and the neutral view takes 0.04 off all.
+  double key = 0.36;
+  /// Luminances farther than this factor from the median say nothing about the room: a light seen
+  /// directly, a black background.
+  double outlier_factor = 20.0;
+  double f90 = 0.04, ks = 0.8 - f90, kd = 0.15;
+  /// Multiples of white from which on something beside a pixel is a lamp or a window, whose border
+  /// is mixed as it is displayed: highlights seldom are as bright.
+  double least_of_light = 4;
+};
+inline constexpr DisplayTransform display_transform;
+
 double srgb_from_linear(double linear);   ///< [0,1] to [0,1]
 double linear_from_srgb(double encoded);  ///< [0,1] to [0,1]
 

@@ -246,16 +246,4 @@ void image::combine_rows(const LightLayers& layers, std::span<const glm::vec3> s
   });
 }
 
-std::array<float, 3> image::white_of_light(std::span<const double> illuminance,
-                                           const LightMix& mix) {
-  glm::dvec3 sum(0.0);
-  for (std::size_t light = 0; light < illuminance.size(); ++light) {
-    sum += illuminance[light] * glm::dvec3(mix.lights[light].color * mix.lights[light].tint);
-  }
-  if (!(luminance(sum) > 0)) return {1, 1, 1};
-  constexpr double least = 0.05;
-  const glm::vec3 white(glm::max(sum / luminance(sum), least));
-  return {white.r, white.g, white.b};
-}
-
 }  // namespace photile

@@ -4,7 +4,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -50,11 +49,5 @@ std::vector<bool> lit_layers(const LightLayers& layers);
 
 /// Of the layers of a scene's pictures, in order: a light, or a group of lights.
 std::vector<std::string> layer_names(const Scene& scene);
-
-/// Linear Rec.709, at luminance 1, of the light of all lamps together: their own colours by what
-/// each gives. No primary is below a twentieth, so that dividing by it leaves noise in bounds.
-/// White where nothing is lit.
-///   illuminance   of each light, summed over the surfaces that are seen
-std::array<float, 3> white_of_light(std::span<const double> illuminance, const LightMix& mix);
 
 }  // namespace photile::image

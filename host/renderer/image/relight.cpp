@@ -7,6 +7,7 @@
 #include "image/layer_set.hpp"
 #include "image/light_change.hpp"
 #include "image/picture_file.hpp"
+#include "image/white.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
@@ -52,7 +53,7 @@ void scale(std::vector<float>& values, float factor) {
 
 /// What a layer's channels are multiplied with.
 struct Factors {
-  std::array<float, 3> rgb;
+  std::array<float, 3> rgb{1, 1, 1};
   float illuminance = 1.0f;
 };
 
@@ -68,19 +69,22 @@ Factors factors_of(const MixedLight& before, const MixedLight& now, bool illumin
   return factors;
 }
 
-class RelitPicture : public LayeredPicture {
+class RelitPicture final : public LayeredPicture {
  public:
   RelitPicture(std::unique_ptr<image::ChannelRows> source, const std::vector<LightChange>& changes)
       : source_(std::move(source)), before_(image::find_layers(source_->header())) {
     image::LightRecords now = before_.records;
     apply_to_picture(now, changes);
+    std::vector<Factors> factors;
     for (std::size_t i = 0; i < now.mix.lights.size(); ++i) {
       const bool illuminance = before_.channels[i].illuminance.has_value();
       layers_.push_back({now.mix.lights[i].name, illuminance});
-      factors_.push_back(factors_of(before_.records.mix.lights[i], now.mix.lights[i], illuminance));
+      factors.push_back(factors_of(before_.records.mix.lights[i], now.mix.lights[i], illuminance));
     }
     header_ = source_->header();
     header_.channel_names.clear();
+    if (!image::kept_white(header_) && !changes.empty()) keep_white_before();
+    factors_ = std::move(factors);
     image::write_light_records(header_, now);
   }
 
@@ -113,6 +117,13 @@ class RelitPicture : public LayeredPicture {
   }
 
  private:
+  /// That of the lights as the file has them, since no change of a light is to move it.
+  void keep_white_before() {
+    factors_.assign(before_.records.mix.lights.size(), Factors{});
+    image::write_light_records(header_, before_.records);
+    image::keep_white(header_, image::white_of(*this));
+  }
+
   /// Rows that are held at a time.
   static constexpr int rows_per_read = 64;
 

@@ -8,6 +8,7 @@
 #include "photile/device/bsdf.h"
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
+#include "scene/panes.hpp"
 
 namespace photile::scene {
 
@@ -88,8 +89,7 @@ void add_needs(const Material& material, SceneNeeds& needs) {
   needs.glossy |= material.glossy() || mapped;  // both ask where light comes from
   needs.textures |= material.textured();
   needs.specular_paths |= material.interaction != Interaction::opaque;
-  needs.see_through |=
-      material.has_cutouts() || (material.interaction == Interaction::glass && material.thin);
+  needs.see_through |= material.has_cutouts() || scene::is_pane(material);
 }
 
 /// Cosine above which two normals are the same but for the rounding of files: 0.15 degrees.
@@ -271,16 +271,23 @@ glm::dvec3 hemispherical_reflectance(const Reflectance& surface) {
 }
 
 std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Material& material) {
-  if (material.interaction == Interaction::glass) return std::nullopt;
+  if (material.interaction == Interaction::glass) {
+    if (!material.thin) return std::nullopt;
+    return MaterialReflectance{glass_reflectance(material), 0};
+  }
+  const double there = is_pane(material) ? double{material.opacity} : 1;
   if (material.interaction == Interaction::mirror) {
-    return MaterialReflectance{luminance(glm::dvec3(material.specular)), 0};
+    return MaterialReflectance{there * luminance(glm::dvec3(material.specular)), 0};
   }
   const Reflectance surface = mean_surface(scene, material, mean_texel(scene, material));
-  return MaterialReflectance{whole_of(surface), luminance(glm::dvec3(surface.albedo))};
+  return MaterialReflectance{there * whole_of(surface),
+                             there * luminance(glm::dvec3(surface.albedo))};
 }
 
-bool set_reflectance(Scene& scene, Material& material, double fraction) {
-  if (material.interaction == Interaction::glass) return false;
+namespace {
+
+/// set_reflectance of the part of a surface that is there.
+bool set_surface_reflectance(Scene& scene, Material& material, double fraction) {
   if (material.interaction == Interaction::mirror) {
     const double now = luminance(glm::dvec3(material.specular));
     if (!(now > 0)) return fraction == 0;
@@ -312,6 +319,25 @@ bool set_reflectance(Scene& scene, Material& material, double fraction) {
     (at(middle) < fraction ? low : high) = middle;
   }
   at(0.5 * (low + high));
+  return true;
+}
+
+}  // namespace
+
+bool set_reflectance(Scene& scene, Material& material, double fraction) {
+  if (material.interaction == Interaction::glass) {
+    return material.thin && set_glass_reflectance(material, fraction);
+  }
+  if (!is_pane(material)) return set_surface_reflectance(scene, material, fraction);
+  const double of_surface = fraction > 0 ? fraction / double{material.opacity} : 0;
+  if (of_surface > 1) return false;
+  if (set_surface_reflectance(scene, material, of_surface)) return true;
+  // A pane whose colour is too dark for it is grey.
+  Material grey = material;
+  grey.diffuse = glm::vec3(1.0f);
+  grey.diffuse_texture = grey.metallic_roughness = none;
+  if (!set_surface_reflectance(scene, grey, of_surface)) return false;
+  material = grey;
   return true;
 }
 

@@ -68,14 +68,15 @@ struct MaterialReflectance {
   double matt = 0;  ///< of the diffuse colour alone, as the file has it
 };
 
-/// With a texture for the mean, by area, of what the surface shows of it. None for glass.
+/// With a texture for the mean, by area, of what the surface shows of it. Of panes that of all their
+/// surface (panes.hpp). None for glass that bends light.
 std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Material& material);
 
 /// Scales the diffuse colour of an opaque material so that it reflects that fraction, and with it
 /// what varies by textures; a black one becomes grey. A mirror's colour is scaled as a whole.
-///   fraction   from 0 to 1
-/// Returns false where that cannot be: glass, a lobe that alone reflects more already, or a colour
-/// that would exceed 1 in a channel.
+///   fraction   from 0 to 1; of panes, that of all their surface
+/// Returns false where that cannot be: glass that bends light, a lobe that alone reflects more
+/// already, or a colour that would exceed 1 in a channel.
 bool set_reflectance(Scene& scene, Material& material, double fraction);
 
 }  // namespace photile::scene

@@ -50,6 +50,34 @@ void drop_lobe(const glm::vec3& base, EyeRecord& record) {
   lobe.roughness = 1.0f;
 }
 
+/// The next surface that a ray meets. A surface that is partly there lets the ray on by chance, or
+/// as a part of it that is appended to `split`, where that is given and counts enough.
+std::optional<SurfacePoint> meet(const RayScene::Impl& rays, EyeRay& ray,
+                                 const RandomStream& random, std::vector<EyeRay>* split) {
+  if (!split) {
+    return next_surface(rays, ray.origin, ray.direction, random, Purpose::eye_cutouts, ray.cutouts);
+  }
+  const Scene& scene = *rays.scene;
+  while (const auto hit = rays.intersect(ray.origin, ray.direction)) {
+    const SurfacePoint point = surface_hit(scene, *hit, ray.direction);
+    const float there = material_of(scene, point).has_cutouts() ? opacity(scene, point) : 1.0f;
+    const glm::vec3 beyond = point.origin_towards(ray.direction);
+    if (ray.fraction * std::min(there, 1.0f - there) >= defaults::least_glass_fraction) {
+      EyeRay passing = ray;
+      passing.origin = beyond;
+      passing.throughput *= 1.0f - there;
+      passing.fraction *= 1.0f - there;
+      split->push_back(passing);
+      ray.throughput *= there;
+      ray.fraction *= there;
+      return point;
+    }
+    if (!passes_cutout(scene, point, random, Purpose::eye_cutouts, ray.cutouts)) return point;
+    ray.origin = beyond;
+  }
+  return std::nullopt;
+}
+
 /// Makes `ray` the one that leaves a mirror or glass with this fraction of its light.
 void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scattered,
            float fraction, EyeRay& ray) {
@@ -92,8 +120,7 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
     const bool sees_lights = setup.emitted_radiance != nullptr && !seen_directly &&
                              (ray.unscattered || other == nullptr || !other->only);
     ++record.rays;
-    const auto met = next_surface(*setup.rays, ray.origin, ray.direction, random,
-                                  Purpose::eye_cutouts, ray.cutouts);
+    const auto met = meet(*setup.rays, ray, random, split);
     if (!met) {
       if (!sees_lights) return std::nullopt;
       setup.distant->for_each_shining(

@@ -113,9 +113,9 @@ struct LightTechnique {
 /// `record`. Lights that `other` would find as well are weighed by the power heuristic. Returns the
 /// surface if it has a lobe that rays are to follow, which is not in the hit then.
 ///   light_samples   of the hit, where EyeSetup::direct is set
-///   split  where given, glass whose lesser part counts enough (defaults::least_glass_fraction)
-///   does
-///           not choose between reflection and refraction: that part is appended here, to be
+///   split   where given, nothing is left to chance whose lesser part counts enough
+///           (defaults::least_glass_fraction), neither between reflection and refraction by glass
+///           nor whether a surface that is partly there is met: that part is appended here, to be
 ///           followed as well ("splitting": Arvo and Kirk, "Particle transport and image
 ///           synthesis", 1990)
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,

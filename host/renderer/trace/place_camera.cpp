@@ -11,6 +11,7 @@
 
 #include "geometry/box.hpp"
 #include "photile/defaults.hpp"
+#include "scene/panes.hpp"
 #include "scene/scene_queries.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
@@ -194,7 +195,7 @@ class RoomSearch {
     for (int i = 0; i < View::directions; ++i) {
       const auto wall = met(view.eye, View::direction(i));
       if (!wall) continue;
-      const bool glass = material_of(scene, *wall).interaction == Interaction::glass;
+      const bool glass = scene::is_glazing(material_of(scene, *wall));
       if (!any_ && !glass && !on_front(scene, *wall)) continue;
       const glm::dvec3 way = glm::dvec3(wall->position) - view.eye;
       if (!met(view.eye + 0.5 * way, up)) continue;

@@ -19,6 +19,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
+#include "scene/panes.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
@@ -55,7 +56,7 @@ std::optional<SurfacePoint> opaque_surface(const RayScene& rays, RayOrigin origi
     const auto hit = intersect(rays, origin, direction);
     if (!hit) return std::nullopt;
     const SurfacePoint point = surface_hit(scene, *hit, direction);
-    const bool glass = material_of(scene, point).interaction == Interaction::glass;
+    const bool glass = scene::is_glazing(material_of(scene, point));
     if (!glass && !(luminance(glm::dvec3(transmittance(scene, point, direction))) > 0.5)) {
       return point;
     }

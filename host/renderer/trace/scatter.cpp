@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/panes.hpp"
 #include "trace/opaque_bsdf.hpp"
 
 namespace photile::trace {
@@ -37,9 +38,6 @@ glm::vec3 refract(const glm::vec3& direction, const glm::vec3& normal, float cos
   return glm::normalize(eta * direction + (eta * cos_i - cos_t) * normal);
 }
 
-/// A pane has two faces and light bounces between them: R = F + (1 - F)^2 F / (1 - F^2).
-float pane_reflectance(float fresnel) { return 2.0f * fresnel / (1.0f + fresnel); }
-
 /// A smooth dielectric as a ray meets it.
 struct Boundary {
   Boundary(const Material& material, bool entering, const glm::vec3& direction,
@@ -48,7 +46,7 @@ struct Boundary {
         eta(entering || material.thin ? 1.0f / material.index_of_refraction
                                       : material.index_of_refraction),
         reflectance(fresnel_dielectric(cos_i, eta)) {
-    if (material.thin) reflectance = pane_reflectance(reflectance);
+    if (material.thin) reflectance = scene::pane_reflectance(reflectance);
   }
   glm::vec3 transmitted(const Material& material, const glm::vec3& direction,
                         const glm::vec3& normal) const {
@@ -90,7 +88,7 @@ float fresnel_dielectric(float cos_i, float eta) {
 glm::vec3 pane_transmittance(const Material& material, float cosine) {
   const float fresnel =
       fresnel_dielectric(std::min(1.0f, cosine), 1.0f / material.index_of_refraction);
-  return (1.0f - pane_reflectance(fresnel)) * material.transmission;
+  return (1.0f - scene::pane_reflectance(fresnel)) * material.transmission;
 }
 
 Scattered scatter_specular(const Scene& scene, const SurfacePoint& point,

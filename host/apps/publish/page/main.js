@@ -1,7 +1,7 @@
 // Puts the parts of the page together.
 
-/// Factor that brings the log-average luminance to mid grey, without lamps and black, as
-/// automatic_exposure of host/renderer/image/tone_map.cpp.
+/// Factor that brings the log-average luminance to the display's key, without lamps and black: the
+/// rule of automatic_exposure in host/renderer/image/display.cpp.
 function automaticExposure(radiance) {
   const luminances = [];
   for (let i = 0; i < radiance.length; i += 3) {
@@ -10,27 +10,10 @@ function automaticExposure(radiance) {
   }
   if (luminances.length === 0) return 1;
   const median = luminances.sort((a, b) => a - b)[Math.floor(luminances.length / 2)];
-  const counted = luminances.filter((value) => value <= 20 * median && value >= median / 20);
-  return 0.18 / Math.exp(counted.reduce((sum, value) => sum + Math.log(value), 0) / counted.length);
-}
-
-/// A first guess of the luminance of white, for the range of half floats.
-function roughWhite(renderer, weights) {
-  let sum = 0, count = 1;
-  const colour = [0, 0, 0];
-  const stride = Math.max(1, Math.floor(room.atlas.width * room.atlas.height / 4096)) | 1;
-  renderer.layers.forEach((texels, layer) => {
-    let own = 0;
-    count = 1;
-    for (let i = 0; i < texels.length; i += stride) {
-      unpack(texels[i], colour);
-      const value = luminanceOf(colour);
-      own += value;
-      if (value > 0) ++count;
-    }
-    sum += own / count * room.lights[layer].brightest * luminanceOf(weights[layer]);
-  });
-  return sum > 0 ? sum : 1;
+  const {key, outliers} = room.display;
+  const counted = luminances.filter((value) => value <= outliers * median &&
+                                               value >= median / outliers);
+  return key / Math.exp(counted.reduce((sum, value) => sum + Math.log(value), 0) / counted.length);
 }
 
 class Page {
@@ -65,7 +48,7 @@ class Page {
     this.makeDisplay();
     this.makeTools();
     this.walker.stand(room.cameras[0]);
-    this.setWhite();
+    this.begin();
     this.restore();
     this.panel.show();
     listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.point(x, y));
@@ -78,27 +61,28 @@ class Page {
     this.canvas.focus({preventScroll: true});
   }
 
-  /// Sets the luminance of white by what is in view, with the light as it is.
-  setWhite() {
-    const weights = this.lights.weights();
-    this.renderer.unit = roughWhite(this.renderer, weights);
-    this.renderer.mix(weights);
-    const aspect = clamp(this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), 0.5, 2);
-    const radiance = this.renderer.radiance(this.walker, Math.round(128 * aspect), 128);
-    this.renderer.unit = 1 / automaticExposure(radiance);
-    this.renderer.mix(weights);
+  /// Shows the published light as `photile render` does. The light of an hour has its own exposure.
+  begin() {
+    this.renderer.mix(this.lights.weights());
+    if (room.hours) {
+      this.renderer.unit = 1 / this.seenExposure();
+      this.renderer.mix(this.lights.weights());
+    }
     this.setExposure(0);
     this.setScale();
+  }
+
+  /// The exposure of what is in view.
+  seenExposure() {
+    const aspect = clamp(this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), 0.5, 2);
+    return automaticExposure(this.renderer.radiance(this.walker, Math.round(96 * aspect), 96));
   }
 
   /// Exposes for what is in view: steps of the slider from the published light.
   adapt() {
     this.renderer.mix(this.lights.weights());
     this.lightIsOld = false;
-    const aspect = clamp(this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), 0.5, 2);
-    const exposure = automaticExposure(
-        this.renderer.radiance(this.walker, Math.round(96 * aspect), 96));
-    this.setExposure(clamp(Math.log2(exposure * this.renderer.unit), -12, 14));
+    this.setExposure(clamp(Math.log2(this.seenExposure() * this.renderer.unit), -12, 14));
   }
 
   setExposure(stops) {
@@ -241,7 +225,7 @@ class Page {
         scaled(up, (1 - 2 * y / this.canvas.clientHeight) * tangent))));
     const hit = this.surfaces.meet(eye, direction, (triangle, facing) => {
       const part = this.partOf(triangle);
-      return part.interaction === 0 ? facing < 0 : part.interaction === 1;
+      return !part.clear && (part.interaction === 1 || facing < 0);
     });
     return hit && {...hit, place: add(eye, scaled(direction, hit.distance))};
   }

@@ -7,7 +7,7 @@ const probeSide = 128;
 class Renderer {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = canvas.getContext('webgl2', {antialias: true, alpha: false,
+    const gl = canvas.getContext('webgl2', {antialias: false, alpha: false,
                                             powerPreference: 'high-performance'});
     if (!gl) throw new Error('This browser offers no WebGL 2.');
     if (!gl.getExtension('EXT_color_buffer_float') &&
@@ -16,9 +16,9 @@ class Renderer {
     }
     this.gl = gl;
     this.exposure = 1;
-    this.mode = 0;
+    this.mode = 0;  // 0 the picture, 1 its light, 2 lux
     this.scale = [Math.log2(1), Math.log2(1000)];
-    this.unit = 1;  // radiance of white when the page was opened
+    this.unit = 1 / room.display.exposure;  // luminance of white when the page was opened
     this.drawCalls = 0;
   }
 
@@ -27,6 +27,7 @@ class Renderer {
     this.roomProgram = this.program(shaderRoom);
     this.skyProgram = this.program(shaderSky);
     this.mixProgram = this.program(shaderMix);
+    this.screen = new Screen(gl, this.program(shaderDisplay));
     this.emptyVertices = gl.createVertexArray();
     this.noProbe = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_CUBE_MAP, this.noProbe);
@@ -116,8 +117,8 @@ class Renderer {
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.indices, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
     this.materials = this.floatTexture(3, room.materials.length, Float32Array.from(
-        room.materials.flatMap((m) => [...m.diffuse, m.alpha, ...m.specular, m.roughness, m.f90, 0,
-                                       0, 0])));
+        room.materials.flatMap((m) => [...m.diffuse, m.alpha, ...m.specular, m.roughness, m.f90,
+                                       m.index, m.thin ? 1 : 0, 0])));
   }
 
   async loadTextures(archive) {
@@ -276,10 +277,9 @@ class Renderer {
     gl.uniform1i(location, unit);
   }
 
-  setDisplay(uniforms, mode) {
+  setFalseColours(uniforms, mode) {
     const gl = this.gl;
     gl.uniform1i(uniforms.uMode, mode);
-    gl.uniform1f(uniforms.uExposure, this.exposure);
     gl.uniform2f(uniforms.uScale, ...this.scale);
     gl.uniform1f(uniforms.uLux, room.lux * this.unit);
     this.bind(7, gl.TEXTURE_2D, this.palette, uniforms.uPalette);
@@ -297,22 +297,22 @@ class Renderer {
     const room_ = this.roomProgram;
     gl.useProgram(room_.program);
     const u = room_.uniforms;
-    this.setDisplay(u, mode);
+    this.setFalseColours(u, mode);
     gl.uniformMatrix4fv(u.uCamera, false, product(projection, viewMatrix(eye, right, up, back)));
     gl.uniform3f(u.uEye, ...eye);
     gl.uniform3f(u.uProbe, ...(this.probePlace ?? [0, 0, 0]));
     gl.uniform3f(u.uLow, ...room.low);
     gl.uniform3f(u.uHigh, ...room.high);
     gl.uniform1f(u.uProbeLevels, this.probe && !this.drawsProbe ? Math.log2(probeSide) + 1 : 0);
-    this.bind(0, gl.TEXTURE_2D, this.light, u.uLight);
     this.bind(2, gl.TEXTURE_2D, this.materials, u.uMaterials);
     this.bind(3, gl.TEXTURE_2D, this.emitters, u.uEmitters);
     this.bind(4, gl.TEXTURE_CUBE_MAP, this.drawsProbe || !this.probe ? this.noProbe : this.probe,
               u.uSurroundings);
     gl.bindVertexArray(this.vertices);
-    const drawParts = (accepts) => {
+    const drawParts = (clear, layers) => {
+      this.bind(0, gl.TEXTURE_2D, this.light, u.uLight);
       for (const part of room.parts) {
-        if (!accepts(part)) continue;
+        if (part.clear !== clear) continue;
         gl.uniform1i(u.uInteraction, part.interaction);
         gl.uniform1i(u.uTextured, part.texture === null ? 0 : part.emits ? 2 : 1);
         this.bind(1, gl.TEXTURE_2D, part.texture === null ? this.white : this.textures[part.texture],
@@ -320,20 +320,25 @@ class Renderer {
         if (part.interaction > 0) gl.disable(gl.CULL_FACE);
         else gl.enable(gl.CULL_FACE);
         if (part.cutout && mode !== 1) gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
-        gl.drawElements(gl.TRIANGLES, part.count, gl.UNSIGNED_INT, 4 * part.first);
-        ++this.drawCalls;
+        for (const layer of layers) {
+          gl.uniform1i(u.uLayer, layer);
+          if (layer === 1) gl.blendFunc(gl.ZERO, gl.SRC_COLOR);
+          if (layer === 2) gl.blendFunc(gl.ONE, gl.ONE);
+          gl.drawElements(gl.TRIANGLES, part.count, gl.UNSIGNED_INT, 4 * part.first);
+          ++this.drawCalls;
+        }
         gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
       }
     };
-    drawParts((part) => part.interaction < 2);
+    drawParts(false, [0]);
     this.drawSky(right, up, forward, projection, mode);
-    if (room.parts.some((part) => part.interaction === 2)) {
+    // Lux are those behind glass.
+    if (mode !== 2 && room.parts.some((part) => part.clear)) {
       gl.useProgram(room_.program);
       gl.bindVertexArray(this.vertices);
       gl.enable(gl.BLEND);
-      gl.blendFunc(gl.ONE, gl.SRC_ALPHA);
       gl.depthMask(false);
-      drawParts((part) => part.interaction === 2);
+      drawParts(true, [1, 2]);
       gl.depthMask(true);
       gl.disable(gl.BLEND);
     }
@@ -344,7 +349,7 @@ class Renderer {
     const gl = this.gl;
     const {program, uniforms: u} = this.skyProgram;
     gl.useProgram(program);
-    this.setDisplay(u, mode);
+    this.setFalseColours(u, mode);
     const across = scaled(right, 1 / projection[0]), high = scaled(up, 1 / projection[5]);
     gl.uniformMatrix4fv(u.uRays, false, new Float32Array([...across, 0, ...high, 0, ...forward, 0,
                                                           0, 0, 0, 0]));
@@ -428,13 +433,14 @@ class Renderer {
   }
 
   draw(walker) {
-    const gl = this.gl;
     this.drawCalls = 0;
     this.updateProbe();
     this.fit();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-    this.drawView(this.cameraOf(walker, this.canvas.width / this.canvas.height), this.mode);
+    const {width, height} = this.canvas;
+    this.screen.begin(width, height);
+    this.drawView(this.cameraOf(walker, width / height), this.mode);
+    this.screen.show(this.mode === 2 ? null : this.exposure);
+    ++this.drawCalls;
   }
 
   /// Radiance of each pixel, linear RGB, row 0 at the top, from `samples` x `samples` samples each.

@@ -1,40 +1,18 @@
 // The programs of the graphics processor. Colours are linear with Rec.709 primaries; light is in
-// units of white on the display at the exposure that the page was opened with.
+// units of white on the display at the exposure that the page was opened with. The room is drawn as
+// light, or as false colours, and Screen (display.js) shows it.
 
-/// Khronos PBR Neutral, as `photile render` has it (host/renderer/image/tone_map.cpp), false colours
-/// (host/lighting/report/palette.cpp), and the sRGB curve.
-const shaderDisplay = `
-const int asPicture = 0, asRadiance = 1, asIlluminance = 2;
+/// What the fragments of the room and of the sky are.
+const shaderFalseColour = `
+const int asIlluminance = 2;
 uniform int uMode;
-uniform float uExposure;      // that white is multiplied by
 uniform vec2 uScale;          // lux at the ends of the false colours' scale, logarithms to 2
 uniform float uLux;           // of a light of luminance 1
 uniform sampler2D uPalette;
 
-vec3 neutral(vec3 c) {
-  float x = min(c.r, min(c.g, c.b));
-  float f = x <= 0.08 ? x - 6.25 * x * x : 0.04;
-  c -= f;
-  float p = max(c.r, max(c.g, c.b));
-  if (p <= 0.76) return c;
-  float n = 1.0 - 0.24 * 0.24 / (p + 1.0 - 1.52);
-  float g = 1.0 / (0.15 * (p - n) + 1.0);
-  return mix(vec3(n), c * (n / p), g);
-}
-
-vec3 encoded(vec3 c) {
-  return mix(12.92 * c, 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055,
-             step(0.0031308, c));
-}
-
 vec3 falseColour(float lux) {
   float place = (log2(max(lux, 1e-9)) - uScale.x) / (uScale.y - uScale.x);
   return texture(uPalette, vec2(clamp(place, 0.0, 1.0), 0.5)).rgb;
-}
-
-vec3 shown(vec3 radiance) {
-  if (uMode == asRadiance) return radiance;
-  return encoded(clamp(neutral(min(radiance * uExposure, 1e5)), 0.0, 1.0));
 }
 `;
 
@@ -51,6 +29,7 @@ out vec3 vPosition, vNormal;
 out vec2 vUv, vLightUv;
 flat out vec4 vAlbedo, vSpecular;     // with the alpha cutoff, the GGX alpha
 flat out vec4 vEmission;              // with F90
+flat out vec2 vGlass;                 // index of refraction, 1 where it is thin
 void main() {
   vPosition = position;
   vNormal = normal;
@@ -60,6 +39,7 @@ void main() {
   vSpecular = texelFetch(uMaterials, ivec2(1, kind.x), 0);
   vEmission = vec4(texelFetch(uEmitters, ivec2(kind.y, 0), 0).rgb,
                    texelFetch(uMaterials, ivec2(2, kind.x), 0).r);
+  vGlass = texelFetch(uMaterials, ivec2(2, kind.x), 0).gb;
   gl_Position = uCamera * vec4(position, 1.0);
 }`,
   fragment: `#version 300 es
@@ -68,14 +48,17 @@ precision highp int;
 in vec3 vPosition, vNormal;
 in vec2 vUv, vLightUv;
 flat in vec4 vAlbedo, vSpecular, vEmission;
+flat in vec2 vGlass;
 uniform sampler2D uLight, uTexture;
 uniform highp samplerCube uSurroundings;
 uniform vec3 uEye, uProbe, uLow, uHigh;   // the probe's place, and the box that it stands for
 uniform float uProbeLevels;               // 0 while there is no probe
 uniform int uTextured;                    // 1 colour, 2 emission
 uniform int uInteraction;                 // 0 opaque, 1 mirror, 2 glass
+uniform int uLayer;                       // 0 what is there, 1 what passes it, 2 all but that
 out vec4 fragment;
-${shaderDisplay}
+${shaderFalseColour}
+const float largest = 60000.0;            // that half floats hold
 // What comes from a direction, from a cube map that stands for a box (Lagarde and Zanuttini, "Local
 // image-based lighting with parallax-corrected cubemaps", 2012).
 vec3 reflected(vec3 direction, float alpha) {
@@ -84,6 +67,15 @@ vec3 reflected(vec3 direction, float alpha) {
   vec3 far = max((uLow - vPosition) / safe, (uHigh - vPosition) / safe);
   vec3 place = vPosition + direction * min(far.x, min(far.y, far.z));
   return textureLod(uSurroundings, place - uProbe, sqrt(alpha) * (uProbeLevels - 2.0)).rgb;
+}
+
+// Of unpolarised light at a smooth boundary, and of a pane, between whose two faces light bounces
+// (host/renderer/trace/scatter.cpp).
+float fresnel(float cosine, float index) {
+  float within = sqrt(max(0.0, 1.0 - (1.0 - cosine * cosine) / (index * index)));
+  float perpendicular = (cosine - index * within) / (cosine + index * within);
+  float parallel = (index * cosine - within) / (index * cosine + within);
+  return 0.5 * (perpendicular * perpendicular + parallel * parallel);
 }
 
 void main() {
@@ -103,15 +95,16 @@ void main() {
     vec3 normal = normalize(vNormal);
     if (dot(normal, view) < 0.0) normal = -normal;
     float facing = clamp(dot(normal, view), 0.0, 1.0);
-    float grazing = pow(1.0 - facing, 5.0);
     vec3 direction = reflect(-view, normal);
-    if (uInteraction == 1) {
+    if (uInteraction == 1 && uMode == asIlluminance) {
+      radiance = vec3(0.05);
+    } else if (uInteraction == 1) {
       radiance = vSpecular.rgb * reflected(direction, 0.0);
     } else if (uInteraction == 2) {
-      float part = mix(0.04, 1.0, grazing);
-      vec3 mirrored = part * reflected(direction, 0.0);
-      fragment = vec4(uMode == asRadiance ? mirrored : encoded(min(mirrored * uExposure, 1.0)) * 0.6,
-                      (1.0 - part) * vAlbedo.r);
+      float part = fresnel(max(facing, 1e-4), vGlass.x);
+      if (vGlass.y > 0.0) part = 2.0 * part / (1.0 + part);
+      fragment = vec4(uLayer == 1 ? (1.0 - part) * vAlbedo.rgb
+                                  : min(part * reflected(direction, 0.0), largest), 1.0);
       return;
     } else {
       // The environment's part of a GGX lobe, fitted (Karis, "Physically based shading on mobile",
@@ -124,7 +117,9 @@ void main() {
       radiance = radiance * (1.0 - part) + part * reflected(direction, vSpecular.a);
     }
   }
-  fragment = vec4(shown(radiance), alpha);
+  radiance = min(radiance, largest);
+  fragment = uLayer == 0 ? vec4(radiance, alpha)
+             : vec4(uLayer == 1 ? vec3(1.0 - alpha) : alpha * radiance, 1.0);
 }`,
 };
 
@@ -147,7 +142,7 @@ uniform vec3 uEnvironmentLight;
 uniform vec4 uSuns[4];          // direction to it, cosine of its radius
 uniform vec3 uSunLights[4];
 out vec4 fragment;
-${shaderDisplay}
+${shaderFalseColour}
 void main() {
   vec3 d = normalize(vDirection);
   vec2 place = vec2(atan(d.x, -d.z) * 0.15915494309 + 0.5, acos(clamp(d.y, -1.0, 1.0)) * 0.31830988618);
@@ -156,7 +151,7 @@ void main() {
   for (int i = 0; i < 4; ++i) {
     if (dot(d, uSuns[i].xyz) > uSuns[i].w) radiance += uSunLights[i];
   }
-  fragment = vec4(uMode == asIlluminance ? vec3(0.05) : shown(radiance), 1.0);
+  fragment = vec4(uMode == asIlluminance ? vec3(0.05) : min(radiance, 60000.0), 1.0);
 }`,
 };
 
