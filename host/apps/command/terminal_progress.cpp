@@ -37,7 +37,11 @@ int terminal_width() {
   return known ? size.ws_col : 80;
 }
 
-void print_line(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+void print_line(const std::string& line) {
+  // Where both streams end in one place, what was printed before stands before.
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
 
 void print_error(const std::string& message) {
   const char* prefix = use_color() ? "photile: \033[1;31merror:\033[0m " : "photile: error: ";

@@ -21,7 +21,7 @@ bool stderr_is_terminal();
 /// Columns of the terminal on standard error; 80 where it does not say.
 int terminal_width();
 
-/// Writes `line` and a line feed to standard error.
+/// Writes `line` and a line feed to standard error, after all that standard output was given.
 void print_line(const std::string& line);
 
 /// Writes "photile: error: ..." as one line to standard error; in colour on a terminal unless the

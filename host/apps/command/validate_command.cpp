@@ -71,6 +71,7 @@ json measured_json(const Measured& measured) {
   return {{"value", measured.value},
           {"error", measured.error},
           {"noise", measured.noise},
+          {"seeds", measured.seeds},
           {"verdict", name_of(measured.verdict)}};
 }
 
@@ -100,7 +101,6 @@ json validation_json(std::span<const ValidationRow> rows,
                      const validation::ValidationParameters& parameters,
                      std::span<const Device> devices, double seconds) {
   json result{{"photile", version_number()},
-              {"seeds", validation::seeds},
               {"tolerance", validation::tolerance},
               {"seed", parameters.photons.seed},
               {"photons", parameters.photons.photons.emitted_photons},
@@ -205,7 +205,7 @@ void add_validate_command(CLI::App& photile) {
            count_between(1, std::numeric_limits<int>::max()))
       ->capture_default_str();
   group
-      .add("--seed", photons.seed, "N", "the first of 16 seeds",
+      .add("--seed", photons.seed, "N", "what all seeds follow from",
            count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
       ->capture_default_str();
   group.add("--device", options->device.selector, "SELECTOR",

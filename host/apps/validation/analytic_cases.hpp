@@ -39,6 +39,9 @@ struct AnalyticCase {
   /// The fraction of the requested neighbours that an estimate takes: the mean over many sensors is
   /// quiet with few, whose small discs see no curvature of the irradiance.
   double neighbour_fraction = 1;
+  /// As RenderParameters has it: where rays find the direct light, the photons are those that were
+  /// reflected, and none lies where it is not asked for.
+  int direct_rays = 0;
 };
 
 /// All cases, in the order of the documentation. Expected values are computed from form factors,

@@ -11,16 +11,19 @@ const glm::dvec3 up(0, 0, 1);
 /// A black floor of 4 x 4 m around the origin, in z = 0.
 const Rectangle floor_plan{{-2, -2, 0}, {4, 0, 0}, {0, 4, 0}};
 
-/// Points in a square about a point of the floor, or on a circle about the origin: far enough from
-/// one another that most of their photons are their own.
+/// Points in a square about a point of the floor, or on three circles about the origin whose mean
+/// radius is `distance`: far enough from one another that most of their photons are their own.
 std::vector<Sensor> places_at(double distance) {
-  constexpr int side = 5, count = side * side;
+  constexpr int side = 7, circles = 3, on_circle = 25;
+  constexpr double apart = 0.2;
   std::vector<Sensor> sensors;
-  for (int i = 0; i < count; ++i) {
-    const double angle = 2 * pi * i / count;
-    sensors.push_back({distance == 0 ? 0.2 * glm::dvec3(i % side - side / 2, i / side - side / 2, 0)
-                                     : distance * glm::dvec3(std::cos(angle), std::sin(angle), 0),
-                       up});
+  for (int i = 0; distance == 0 && i < side * side; ++i) {
+    sensors.push_back({apart * glm::dvec3(i % side - side / 2, i / side - side / 2, 0), up});
+  }
+  for (int i = 0; distance > 0 && i < circles * on_circle; ++i) {
+    const double angle = 2 * pi * i / on_circle;
+    const double radius = distance + apart * (i / on_circle - circles / 2);
+    sensors.push_back({radius * glm::dvec3(std::cos(angle), std::sin(angle), 0), up});
   }
   return sensors;
 }

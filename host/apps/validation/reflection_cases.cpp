@@ -143,15 +143,21 @@ double from_strip(const Sensor& sensor, double begin, double end) {
                           {0, side, 0});
 }
 
-/// Sensors across the middle of the room, in a line along y.
+/// Sensors across the room, in lines along y: one through `at`, and others beside it on the wall or
+/// on the ceiling.
 template <class F>
 Reading across(const std::string& place, const glm::dvec3& at, const glm::dvec3& normal,
                const F& illuminance) {
   Reading reading{place, {}, 0};
   constexpr int count = 35;
-  for (int i = 0; i < count; ++i) {
-    reading.sensors.push_back({{at.x, 0.3 + 0.1 * i, at.z}, normal});
-    reading.expected += illuminance(reading.sensors.back()) / count;
+  const glm::dvec3 beside = glm::cross(normal, glm::dvec3(0, 1, 0));
+  for (const double off : {-0.4, -0.2, 0.0, 0.2, 0.4}) {
+    for (int i = 0; i < count; ++i) {
+      reading.sensors.push_back({at + glm::dvec3(0, 0.3 + 0.1 * i, 0) + off * beside, normal});
+    }
+  }
+  for (const Sensor& sensor : reading.sensors) {
+    reading.expected += illuminance(sensor) / static_cast<double>(reading.sensors.size());
   }
   return reading;
 }
@@ -165,7 +171,7 @@ AnalyticCase reflection() {
                       "after CIE 171:2006, 5.6: rho E x form factor of the floor",
                       scene.build(),
                       {}};
-  for (const double z : {0.5, 1.0, 2.0}) {
+  for (const double z : {0.6, 1.4, 2.2}) {
     result.readings.push_back(
         across(fmt::format("wall, {} m high", z), {0, 0, z}, {1, 0, 0}, whole));
   }
@@ -174,6 +180,7 @@ AnalyticCase reflection() {
         across(fmt::format("ceiling, {} m from the wall", x), {x, 0, height}, {0, 0, -1}, whole));
   }
   result.photon_fraction = 2;  // a small part of the light is reflected here
+  result.direct_rays = 1;
   return result;
 }
 
@@ -186,17 +193,19 @@ AnalyticCase obstructed_reflection() {
       "after CIE 171:2006, 5.7: form factors of the floor before and behind a screen",
       scene.build(),
       {}};
-  for (const double z : {0.5, 1.5, 2.7}) {
+  for (const double z : {0.6, 1.4, 2.2}) {
     result.readings.push_back(
-        across(fmt::format("wall, {} m high", z), {0, 0, z}, {1, 0, 0}, [&](const Sensor& sensor) {
+        across(fmt::format("wall, {} m high", z), {0, 0, z}, {1, 0, 0}, [](const Sensor& sensor) {
           double light = from_strip(sensor, 0, screen);
           // Lines over the top of the screen meet the floor again behind it.
-          const double beyond = z > screen_height ? screen * z / (z - screen_height) : side;
+          const double above = sensor.position.z - screen_height;
+          const double beyond = above > 0 ? screen * sensor.position.z / above : side;
           if (beyond < side) light += from_strip(sensor, beyond, side);
           return light;
         }));
   }
   result.photon_fraction = 2;
+  result.direct_rays = 1;
   return result;
 }
 
@@ -257,7 +266,7 @@ AnalyticCase integrating_sphere() {
   }
   result.readings.push_back({"mean over the wall", spread_sensors(result.scene, 2000),
                              flux / (area * (1 - double{reflectance}))});
-  result.photon_fraction = 0.02;
+  result.photon_fraction = 0.04;
   result.neighbour_fraction = 0.05;
   return result;
 }

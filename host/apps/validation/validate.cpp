@@ -11,9 +11,6 @@
 namespace photile::validation {
 namespace {
 
-/// Student t of 15 degrees of freedom, two-sided 99%.
-constexpr double t_99 = 2.947;
-
 /// The readings' values from a film whose pixels are all their sensors, one after the other.
 std::vector<double> readings_of(const AnalyticCase& analytic, const LightLayers& layers) {
   const LightLayers::Layer& layer = layers.layers.at(0);
@@ -32,24 +29,36 @@ std::vector<double> readings_of(const AnalyticCase& analytic, const LightLayers&
   return values;
 }
 
-/// Measures with seeds that follow from one; `layers` gives the film for a seed.
+/// Measures with seeds that follow from one, until they tell whether all readings are within the
+/// tolerance; `layers` gives the film for a seed.
 template <class Layers>
-std::vector<Measured> over_seeds(const AnalyticCase& analytic, std::uint64_t seed,
+std::vector<Measured> over_seeds(const AnalyticCase& analytic, std::uint64_t seed, int most,
                                  const Layers& layers) {
   std::vector<std::vector<double>> values(analytic.readings.size());
-  for (int i = 0; i < seeds; ++i) {
-    const std::vector<double> read =
-        readings_of(analytic, layers(trace::seed_of_repeat(seed, static_cast<std::uint32_t>(i))));
-    for (std::size_t r = 0; r < read.size(); ++r) values[r].push_back(read[r]);
-  }
-  std::vector<Measured> result;
-  for (std::size_t r = 0; r < values.size(); ++r) {
-    result.push_back(measured(values[r], analytic.readings[r].expected));
+  std::vector<Measured> result(values.size());
+  for (int done = 0, wanted = fewest_seeds; done < wanted;) {
+    for (; done < wanted; ++done) {
+      const std::vector<double> read = readings_of(
+          analytic, layers(trace::seed_of_repeat(seed, static_cast<std::uint32_t>(done))));
+      for (std::size_t r = 0; r < read.size(); ++r) values[r].push_back(read[r]);
+    }
+    for (std::size_t r = 0; r < values.size(); ++r) {
+      result[r] = measured(values[r], analytic.readings[r].expected);
+    }
+    wanted = std::min(seeds_to_tell(result), most);
   }
   return result;
 }
 
 }  // namespace
+
+double student_t_99(int freedom) {
+  constexpr double z = 2.5758293035489004, z2 = z * z;  // of a normal deviate
+  const double n = 4.0 * freedom;
+  return z * (1 + (z2 + 1) / n + ((5 * z2 + 16) * z2 + 3) / (6 * n * n) +
+              (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (6 * n * n * n) +
+              ((((79 * z2 + 776) * z2 + 1482) * z2 - 1920) * z2 - 945) / (360 * n * n * n * n));
+}
 
 Measured measured(std::span<const double> values, double expected) {
   const auto count = static_cast<double>(values.size());
@@ -58,11 +67,26 @@ Measured measured(std::span<const double> values, double expected) {
   double squares = 0;
   for (const double value : values) squares += std::pow(value - result.value, 2);
   result.error = result.value / expected - 1;
-  result.noise = t_99 * std::sqrt(squares / (count - 1) / count) / expected;
+  result.seeds = static_cast<int>(values.size());
+  result.noise =
+      student_t_99(result.seeds - 1) * std::sqrt(squares / (count - 1) / count) / expected;
   result.verdict = std::abs(result.error) + result.noise <= tolerance  ? Verdict::within
                    : std::abs(result.error) - result.noise > tolerance ? Verdict::misses
                                                                        : Verdict::too_noisy;
   return result;
+}
+
+int seeds_to_tell(std::span<const Measured> readings) {
+  double wanted = 0;
+  for (const Measured& reading : readings) {
+    if (reading.verdict != Verdict::too_noisy) continue;
+    // The noise falls as the square root of the seeds, down to what the error leaves of the
+    // tolerance, or exceeds it by. A tenth more, since the error moves, too.
+    const double room = std::abs(tolerance - std::abs(reading.error));
+    const double times = std::clamp(1.1 * std::pow(reading.noise / room, 2), 1.1, 2.0);
+    wanted = std::max(wanted, std::ceil(times * reading.seeds));
+  }
+  return static_cast<int>(wanted);
 }
 
 std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Device> devices,
@@ -81,22 +105,25 @@ std::vector<ValidationRow> validate(const AnalyticCase& analytic, std::span<Devi
         limits::min_photons,
         static_cast<std::uint64_t>(analytic.photon_fraction *
                                    static_cast<double>(photons.photons.emitted_photons)));
+    photons.direct_rays = analytic.direct_rays;
     photons.neighbours = std::max(
         1, static_cast<int>(std::lround(analytic.neighbour_fraction * photons.neighbours)));
-    const auto all = over_seeds(analytic, seed_of_all, [&](std::uint64_t seed) {
-      photons.seed = seed;
-      RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);
-      photons.radius = result.used.radius;  // found once
-      return std::move(result.layers);
-    });
+    const auto all =
+        over_seeds(analytic, seed_of_all, parameters.most_seeds, [&](std::uint64_t seed) {
+          photons.seed = seed;
+          RenderResult result = measure(analytic.scene, sensors, devices, photons, progress);
+          photons.radius = result.used.radius;  // found once
+          return std::move(result.layers);
+        });
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].photons = all[r];
   }
   if (parameters.by_paths) {
     const int paths = std::clamp(parameters.paths / static_cast<int>(sensors.size()), 1,
                                  limits::max_samples_per_pixel);
-    const auto all = over_seeds(analytic, seed_of_all, [&](std::uint64_t seed) {
-      return measure_by_paths(analytic.scene, sensors, paths, seed, progress).layers;
-    });
+    const auto all =
+        over_seeds(analytic, seed_of_all, parameters.most_seeds, [&](std::uint64_t seed) {
+          return measure_by_paths(analytic.scene, sensors, paths, seed, progress).layers;
+        });
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].paths = all[r];
   }
   return rows;
