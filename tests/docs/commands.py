@@ -59,6 +59,7 @@ def commands_of(page):
     joined = re.sub(r"\\\n", " ", "\n".join(lines))
     found = []
     for line in joined.splitlines():
+        line = re.split(r" {3,}(?!#|-)", line)[0]  # a synopsis: what it does stands in a column beside it
         match = re.match(r"(?:\$ )?(?:[\w]+=\S+ )*(?:build/release/)?(photile [a-z-].*)", line)
         if match:
             found += on_all_machines(match[1])
@@ -134,7 +135,6 @@ LDT = """Maker
 1
 1
 0
-0
 3
 45
 none
@@ -198,7 +198,8 @@ def write_inputs(folder):
             {"time": 0.04, "position": [1.1, 1.6, 4], "look_at": [3, 1, 0]}]
     grid = {"name": "desks", "origin": [1, 0.75, 3], "u": [1.6, 0, 0], "v": [0, 0, -0.8], "spacing": 0.8}
     lamps = {"name": "panels", "file": "panel.ies", "position": "ceiling", "count": [2, 1], "spacing": [2, 2]}
-    for names, content in ((("p.json", "path.json"), path), (("desks.json",), grid),
+    moods = {"photile_moods": 1, "moods": {"evening": {"desk_lamp": {"power": 200}, "lamp": {"on": False}}}}
+    for names, content in ((("p.json", "path.json"), path), (("desks.json",), grid), (("office.moods.json",), moods),
                            (("lamps.json", "four.json"), lamps)):
         for name in names:
             (folder / name).write_text(json.dumps(content))
@@ -223,6 +224,9 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         write_inputs(folder)
+        # Pages on pictures begin with one.
+        subprocess.run([PHOTILE, *small(["photile", "render", "room.gltf", "-o", "room.exr", "-q"])[1:]], cwd=folder,
+                       check=True)
         for page in sys.argv[3:]:
             found = commands_of(SOURCE / page)
             for command in found:
