@@ -272,8 +272,8 @@ using Colour = std::array<std::uint8_t, 3>;
 Colour colour_at(const Image& png, int x, int y) {
   Colour colour{};
   for (std::size_t c = 0; c < 3; ++c) {
-    const float code = png.channels[c][static_cast<std::size_t>(y * png.width + x)];
-    colour[c] = static_cast<std::uint8_t>(std::lround(255 * static_cast<double>(code)));
+    const float light = png.channels[c][static_cast<std::size_t>(y * png.width + x)];
+    colour[c] = image::srgb8_from_linear(light);
   }
   return colour;
 }

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <random>
 
+#include "photile/image.hpp"
 #include "pictures/textures.hpp"
 #include "scene_files.hpp"
 #include "trace/distant_light.hpp"
@@ -66,6 +67,46 @@ Scene load_under(const SceneLoadOptions& options) {
   nlohmann::json document = square_document();
   document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   return load_gltf(document, options);
+}
+
+TEST_CASE("an environment has the radiance that its file says, at each place and in its unit") {
+  const SceneFolderOnDisk folder;
+  const auto hdr = [&](const std::string& lines, const std::string& format = "rgbe") {
+    std::string text = "#?RADIANCE\n" + lines + "FORMAT=32-bit_rle_" + format + "\n\n-Y 2 +X 4\n";
+    for (int i = 0; i < 8; ++i) text += "\xC8\xC8\xC8\x87";  // 200 / 256 x 2^7 = 100
+    return folder.write("e.hdr", text);
+  };
+  const auto lux = [&](const std::filesystem::path& file, bool watts = false) {
+    folder.write("square.bin", square_buffer());
+    folder.write("materials.mtl", "newmtl wall\nKd 0.5 0.5 0.5\n");
+    SceneLoadOptions options;
+    options.environment.file = file;
+    nlohmann::json document = square_document();
+    document["materials"][0]["emissiveFactor"] = {0, 0, 0};
+    const Scene scene =
+        load_scene(watts ? folder.write("s.obj", "mtllib materials.mtl\n" + unit_square +
+                                                     "usemtl wall\nf 1 2 3 4\n")
+                         : folder.write("s.gltf", document.dump()),
+                   options);
+    return illuminance(scene.environments.at(0), {0, 1, 0});
+  };
+  CHECK(lux(hdr("")) == Approx(100 * pi).epsilon(1e-2));
+  const double all = lux(hdr(""));
+  CHECK(lux(hdr("EXPOSURE=2\nEXPOSURE=5\n")) == Approx(all / 10));
+  CHECK(lux(hdr("COLORCORR= 2 2 2\n")) == Approx(all / 2));
+  CHECK(lux(hdr("", "xyze")) == Approx(all));
+  // XYZ is in cd/m2 (ra_xyze divides by its 179 lm/W), RGB in what the scene has.
+  CHECK(lux(hdr(""), true) == Approx(all));
+  CHECK(lux(hdr("", "xyze"), true) == Approx(all / SceneLoadOptions().lumen_per_watt));
+  CHECK_THROWS_WITH(lux(hdr("VIEW= -vth -vp 0 0 0\n")),
+                    Catch::Contains("e.hdr") && Catch::Contains("-vth"));
+  Image picture;
+  picture.width = 4;
+  picture.height = 2;
+  for (const char* channel : {"R", "G", "B"}) picture.add(channel).assign(8, 0.5f);
+  picture.numbers["whiteLuminance"] = 200;
+  write_exr(folder.path / "e.exr", picture);
+  CHECK(lux(folder.path / "e.exr") == Approx(all));
 }
 
 TEST_CASE("the middle of a map lies towards -z, its right half towards +x, its top towards +y",

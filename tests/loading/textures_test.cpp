@@ -112,6 +112,37 @@ TEST_CASE("pictures of 1 to 4 channels decode to the colours written, alpha left
   }
 }
 
+TEST_CASE("glTF takes colours as sRGB whatever a picture says, and MTL as the picture says") {
+  const SceneFolderOnDisk folder;
+  const std::filesystem::path file = folder.path / "t.png";
+  OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeDesc::UINT8);
+  spec["oiio:ColorSpace"] = "Linear";  // a gAMA of 1
+  const auto output = OIIO::ImageOutput::create(file.string());
+  REQUIRE(output->open(file.string(), spec));
+  const std::uint8_t texel[3] = {128, 128, 128};
+  REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, texel));
+  REQUIRE(output->close());
+  const auto value = [&](pictures::TextureContent content) {
+    return pictures::decode_texture("t.png", read_bytes(file), content).sample({0.5f, 0.5f}).g;
+  };
+  CHECK(value(pictures::TextureContent::srgb) == Approx(linear(128)));
+  CHECK(value(pictures::TextureContent::color) == Approx(128 / 255.0).epsilon(5e-3));  // 8 bits
+  const Scene scene = load_gltf(
+      [&] {
+        json document = square_document();
+        document["images"] = {{{"uri", file.string()}}};
+        document["textures"] = {{{"source", 0}}};
+        document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+        return document;
+      }(),
+      [] {
+        SceneLoadOptions options;
+        options.allow_outside = true;
+        return options;
+      }());
+  CHECK(scene.textures.at(0).sample({0.5f, 0.5f}).g == Approx(linear(128)));
+}
+
 TEST_CASE("linear pictures are clamped and come back within half an 8-bit step") {
   const SceneFolderOnDisk folder;
   const std::filesystem::path file = folder.path / "t.exr";

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command/command_line.hpp"
@@ -139,6 +140,24 @@ Compared from_file(const std::string& file) {
   return compared;
 }
 
+/// cd/m2 of the values (1, 1, 1); 0 where the picture does not say it.
+double white_luminance(const Image& picture) {
+  const auto white = picture.numbers.find("whiteLuminance");
+  return white == picture.numbers.end() || !(white->second > 0) ? 0 : double{white->second};
+}
+
+/// Brings the colours of `second` into the unit of the first, where both say what theirs is.
+void unify_units(const Image& first, Image& second) {
+  const double scale = white_luminance(second) / white_luminance(first);
+  if (!(scale > 0) || !std::isfinite(scale) || scale == 1.0) return;
+  for (std::size_t i = 0; i < second.channels.size(); ++i) {
+    const std::string& name = second.channel_names[i];
+    if (name.empty() || std::string_view("RGB").find(name.back()) == std::string_view::npos)
+      continue;
+    for (float& value : second.channels[i]) value = static_cast<float>(value * scale);
+  }
+}
+
 std::string ratio_text(double a, double b) {
   return b > 0 ? fmt::format("{:.3g}", a / b) : a > 0 ? "-" : "1";
 }
@@ -201,7 +220,8 @@ void run_compare(const CompareOptions& options) {
 
   const bool moods = !options.moods.empty();
   const Compared first = moods ? in_mood(options, options.moods[0]) : from_file(options.first);
-  const Compared second = moods ? in_mood(options, options.moods[1]) : from_file(options.second);
+  Compared second = moods ? in_mood(options, options.moods[1]) : from_file(options.second);
+  unify_units(first.whole, second.whole);
   throw_if_stop_requested();
   if (!options.picture.empty()) {
     const auto unit = first.whole.attributes.find("photile.units");

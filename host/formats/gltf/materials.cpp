@@ -168,7 +168,7 @@ void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness m
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   if (reference_of(pbr.baseColorTexture).given() && model.base_color != glm::dvec3(0.0)) {
     material.diffuse_texture = surface_texture(reference_of(pbr.baseColorTexture),
-                                               pictures::TextureContent::color, "mid grey (0.5)");
+                                               pictures::TextureContent::srgb, "mid grey (0.5)");
     if (material.diffuse_texture == none) model.base_color = glm::dvec3(scene::missing_albedo);
   }
   model.texture =
@@ -179,7 +179,7 @@ void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness m
                                              pictures::TextureContent::data, "the specular factor");
     model.specular_color_texture =
         surface_texture(reference_of(*specular, "specularColorTexture"),
-                        pictures::TextureContent::color, "the specular colour");
+                        pictures::TextureContent::srgb, "the specular colour");
   }
   scene::set_metallic_roughness(model, material);
   const bool varies = model.texture != none || model.specular_texture != none ||
@@ -202,7 +202,7 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
     opacity = static_cast<float>(std::clamp(pbr.baseColorFactor[3], 0.0, 1.0));
   }
   std::uint32_t texture = surface_texture(reference_of(pbr.baseColorTexture),
-                                          pictures::TextureContent::color, "the alpha factor");
+                                          pictures::TextureContent::srgb, "the alpha factor");
   if (texture != none && context_.scene.textures[texture].opaque()) texture = none;
   const bool mask = source.alphaMode == "MASK";
   // Above 1 nothing is there, however far above.
@@ -342,7 +342,7 @@ reading::Emission Converter::emission_of(const tinygltf::Material& source) {
   if (!reference_of(source.emissiveTexture).given() || emission.radiance == glm::dvec3(0.0))
     return emission;
   try {
-    emission.texture = load_texture(source.emissiveTexture.index, pictures::TextureContent::color);
+    emission.texture = load_texture(source.emissiveTexture.index, pictures::TextureContent::srgb);
   } catch (const files::ResourceError& error) {
     warn(std::string(error.what()) + "; the emissive factor is used alone");
   }

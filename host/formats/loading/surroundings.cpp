@@ -227,12 +227,14 @@ double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& opt
   return in_unit(lux, PowerUnit::lumen, scene.unit, options.lumen_per_watt);
 }
 
-void add_picture(const EnvironmentPicture& picture, Scene& scene) {
+void add_picture(const EnvironmentPicture& picture, const SceneLoadOptions& options, Scene& scene) {
   pictures::RadiancePicture read = pictures::read_radiance_picture(picture.file);
+  const double scale =
+      read.in_candela ? in_scene_unit(picture.scale, scene, options) : picture.scale;
   std::size_t lost = 0;
   bool black = true;
   for (glm::vec3& texel : read.texels) {
-    texel *= static_cast<float>(picture.scale);
+    texel *= static_cast<float>(scale);
     black = black && texel == glm::vec3(0.0f);
     lost += std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z) ? 0 : 1;
   }
@@ -303,7 +305,7 @@ void add_ground(const SkySituationLights& lights, const SceneLoadOptions& option
 }  // namespace
 
 void add_surroundings(Scene& scene, const SceneLoadOptions& options) {
-  if (!options.environment.file.empty()) add_picture(options.environment, scene);
+  if (!options.environment.file.empty()) add_picture(options.environment, options, scene);
   const SkySituationLights found = sun_and_sky(options);
   if (found.sun) add_sun(*found.sun, options, scene);
   if (found.sky) add_sky(*found.sky, options, scene);

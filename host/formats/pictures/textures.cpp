@@ -16,6 +16,7 @@
 #include "files/scene_files.hpp"
 #include "image/decoder.hpp"
 #include "image/display.hpp"
+#include "image/picture_metadata.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/surface_models.hpp"
@@ -30,14 +31,20 @@ using image::PictureShape;
 class OpenPicture {
  public:
   OpenPicture(const std::string& name, std::span<const unsigned char> bytes) {
-    guarded([&] { decoder_ = image::open_picture(name, bytes); });
+    guarded([&] { picture_ = image::open_picture(name, bytes); });
   }
 
-  const PictureShape& shape() const { return decoder_->shape(); }
+  const PictureShape& shape() const { return picture_->shape(); }
+  const image::PictureMetadata& metadata() const { return picture_->metadata(); }
   image::Pixels decode() {
     image::Pixels pixels;
-    guarded([&] { pixels = decoder_->decode(); });
+    guarded([&] { pixels = picture_->decode(); });
     return pixels;
+  }
+  std::vector<float> light() {
+    std::vector<float> light;
+    guarded([&] { light = picture_->light(); });
+    return light;
   }
 
  private:
@@ -52,7 +59,7 @@ class OpenPicture {
     }
   }
 
-  std::unique_ptr<image::Decoder> decoder_;
+  std::unique_ptr<image::EncodedPicture> picture_;
 };
 
 std::uint8_t byte_of(float value) {
@@ -76,6 +83,9 @@ std::uint8_t byte_of(std::uint16_t value) {
 std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture, TextureContent content) {
   const int channels = picture.shape().channels;
   const bool alpha_is_first = content == TextureContent::opacity;
+  const bool is_color = content == TextureContent::color || content == TextureContent::srgb;
+  const bool real = picture.shape().sample == image::Sample::real;
+  const bool own_space = content == TextureContent::color && !picture.metadata().color.is_srgb();
   const auto texels_of = [&](const auto& values) {
     using T = typename std::decay_t<decltype(values)>::value_type;
     std::vector<std::array<std::uint8_t, 4>> texels;
@@ -89,14 +99,14 @@ std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture, TextureCon
         texels.push_back({byte_of(r), byte_of(g), byte_of(b), byte_of(a)});
       } else {
         const auto encoded = [&](float value) {
-          return content == TextureContent::color ? image::srgb8_from_linear(value)
-                                                  : byte_of(value);
+          return is_color ? image::srgb8_from_linear(value) : byte_of(value);
         };
         texels.push_back({encoded(r), encoded(g), encoded(b), byte_of(a)});
       }
     }
     return texels;
   };
+  if (is_color && (real || own_space)) return texels_of(picture.light());
   return std::visit(texels_of, picture.decode());
 }
 
@@ -112,25 +122,35 @@ Texture decode_texture(const std::string& name, std::span<const unsigned char> b
   }
 }
 
-RadiancePicture decode_radiance(const std::string& name, std::span<const unsigned char> bytes) {
-  OpenPicture picture(name, bytes);
+namespace {
+
+RadiancePicture radiance_of(OpenPicture& picture) {
   const PictureShape& shape = picture.shape();
   if (shape.sample != image::Sample::real) {
     throw files::ResourceError("its pixels are no floating-point numbers");
   }
-  const auto pixels = std::get<std::vector<float>>(picture.decode());
-  RadiancePicture result{shape.width, shape.height, {}};
+  const std::vector<float> pixels = picture.light();
+  const double white = picture.metadata().white_luminance;
+  RadiancePicture result{shape.width, shape.height, white > 0, {}};
+  const float scale = white > 0 ? static_cast<float>(white) : 1.0f;
   result.texels.reserve(pixels.size() / static_cast<std::size_t>(shape.channels));
   for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(shape.channels)) {
     const std::array<float, 4> pixel = rgba(&pixels[i], shape.channels, 1.0f);
-    result.texels.emplace_back(pixel[0], pixel[1], pixel[2]);
+    result.texels.push_back(scale * glm::vec3(pixel[0], pixel[1], pixel[2]));
   }
   return result;
 }
 
+}  // namespace
+
+RadiancePicture decode_radiance(const std::string& name, std::span<const unsigned char> bytes) {
+  OpenPicture picture(name, bytes);
+  return radiance_of(picture);
+}
+
 RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes) {
-  const Texture encoded = decode_texture(name, bytes);
-  RadiancePicture result{encoded.width(), encoded.height(), {}};
+  const Texture encoded = decode_texture(name, bytes, TextureContent::srgb);
+  RadiancePicture result{encoded.width(), encoded.height(), false, {}};
   const glm::vec2 size(encoded.width(), encoded.height());
   for (int y = 0; y < encoded.height(); ++y) {
     for (int x = 0; x < encoded.width(); ++x) {
@@ -170,7 +190,11 @@ RadiancePicture read_radiance_picture(const std::filesystem::path& file) {
   try {
     const std::vector<unsigned char> bytes =
         files::read_regular_file(file, limits::max_external_bytes);
-    RadiancePicture picture = decode_radiance(file.string(), bytes);
+    OpenPicture opened(file.string(), bytes);
+    if (const std::string& projection = opened.metadata().projection; !projection.empty()) {
+      throw files::ResourceError("it says that it is " + projection);
+    }
+    RadiancePicture picture = radiance_of(opened);
     check_texels(picture);
     return picture;
   } catch (const files::ResourceError& error) {

@@ -17,28 +17,32 @@
 
 namespace photile::pictures {
 
-/// A picture of radiance, whatever its unit.
+/// A picture of radiance.
 struct RadiancePicture {
   int width = 0, height = 0;
+  /// Texels are cd/m2, since the picture says so; else their unit is whatever its reader takes.
+  bool in_candela = false;
   std::vector<glm::vec3> texels;  ///< linear RGB, row 0 at the top; finite and not negative
 };
 
-/// Reads a picture in floating point (.hdr, .exr, .tif). Size and channels are checked against
-/// limits.hpp before any pixel is decoded. Errors: InputError naming the file and, where texels are
-/// NaN, infinite or negative, their number and the first of them.
+/// Reads an equirectangular picture in floating point (.hdr, .exr, .tif). Size and channels are
+/// checked against limits.hpp before any pixel is decoded. Errors: InputError naming the file and,
+/// where texels are NaN, infinite or negative, their number and the first of them; also where the
+/// picture says that it is of another projection.
 RadiancePicture read_radiance_picture(const std::filesystem::path& file);
 
 /// What the channels of a texture mean.
 enum class TextureContent {
   color,   ///< colours and alpha
+  srgb,    ///< the same, in sRGB whatever the picture says of its colours
   data,    ///< normals or factors
   opacity  ///< alpha, or the first channel of a picture that has none
 };
 
 /// Decodes an encoded picture. Size and channels are checked against limits.hpp before any pixel is
-/// decoded. Linear pictures (EXR, HDR) are clamped to [0,1]; colours are encoded as 8-bit sRGB, all
-/// else as it is. `name` names the texture and, by its extension, formats that have no signature.
-/// Errors: ResourceError naming the picture and the reason.
+/// decoded. Linear pictures (EXR, HDR) are clamped to [0,1]; colours are encoded as 8-bit sRGB of
+/// Rec.709, all else as it is. `name` names the texture and, by its extension, formats that have no
+/// signature. Errors: ResourceError naming the picture and the reason.
 Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes,
                        TextureContent content = TextureContent::color);
 

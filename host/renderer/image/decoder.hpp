@@ -40,11 +40,12 @@ struct PictureShape {
   }
 };
 
-/// Rows x width x channels, row 0 at the top, as stored: no curve is undone, no colour multiplied
-/// with alpha. The alternative is that of PictureShape::sample.
+/// Rows x width x channels, with the values as they are stored: no curve is undone, no colour
+/// multiplied with alpha. The alternative is that of PictureShape::sample.
 using Pixels =
     std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>>;
 
+/// The pixels of a file in the order in which it has them.
 class Decoder {
  public:
   virtual ~Decoder() = default;
@@ -59,14 +60,39 @@ class Decoder {
   PictureShape shape_;
 };
 
+struct PictureMetadata;
+
+/// A picture in its place: upright, row 0 at the top.
+class EncodedPicture {
+ public:
+  /// As open_picture.
+  EncodedPicture(const std::string& name, Encoded bytes);
+  ~EncodedPicture();
+
+  const PictureShape& shape() const { return shape_; }
+  const PictureMetadata& metadata() const { return *metadata_; }
+
+  /// Once: the values as they are stored, for what is no colour. Errors: DecodeError,
+  /// std::bad_alloc.
+  Pixels decode();
+
+  /// Once: linear Rec.709, and alpha as it is. A picture of real values has been multiplied with
+  /// what its header says; integers are fractions of the largest, freed of their transfer curve.
+  /// Errors: those of decode(); DecodeError where the picture's colour space is not read.
+  std::vector<float> light();
+
+ private:
+  std::vector<unsigned char> rewritten_;  ///< for the decoder
+  std::unique_ptr<Decoder> decoder_;
+  std::unique_ptr<PictureMetadata> metadata_;
+  PictureShape shape_;
+};
+
 /// Opens a picture: an EXR by photile's own reader, all else by OpenImageIO, which is loaded for
 /// the first of them. Only headers are read, and what they announce is within limits.hpp. `bytes`
-/// must outlive the decoder; `name` tells, by its extension, formats that have no signature.
+/// must outlive the picture; `name` tells, by its extension, formats that have no signature.
 /// Errors: DecodeError; UsageError where OpenImageIO's module is not installed.
-std::unique_ptr<Decoder> open_picture(const std::string& name, Encoded bytes);
-
-/// Opens the first part of an EXR. Errors: DecodeError.
-std::unique_ptr<Decoder> open_exr(Encoded bytes);
+std::unique_ptr<EncodedPicture> open_picture(const std::string& name, Encoded bytes);
 
 }  // namespace photile::image
 

@@ -5,7 +5,9 @@
 #include <OpenEXR/ImfIO.h>
 
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,20 +26,29 @@ class ExrInput {
   ~ExrInput();
 
   struct Part {
-    int width = 0, height = 0;
+    int width = 0, height = 0;          ///< of the display window
     std::string name;                   ///< "" where the file gives none
     std::vector<std::string> channels;  ///< R, G, B, A of the root first, the others by name
+    /// Where the colours have other primaries than Rec.709's.
+    std::optional<glm::dmat3> to_rec709;
+    double white_luminance = 0;  ///< cd/m2 of RGB (1,1,1); 0 where the file does not say it
+    bool is_cube_map = false;
   };
   const std::vector<Part>& parts() const { return parts_; }
   const Imf::Header& header(std::size_t part) const;
 
-  /// Rows [first, end) of the first channels of a part: channels x rows x width.
+  /// Rows [first, end) of the display window, of some channels of a part, in Rec.709: channels x
+  /// rows x width. Pixels of the display window that the data window leaves out are 0.
   /// Errors: those of OpenEXR where the file is damaged.
-  void read(std::size_t part, int first, int end, std::size_t channels, std::vector<float>& planes);
+  ///   channels   into Part::channels; all three of a colour whose primaries are others
+  void read(std::size_t part, int first, int end, std::span<const std::size_t> channels,
+            std::vector<float>& planes);
 
  private:
   struct File;
   void find_parts(std::uint64_t bytes);
+  void read_stored(std::size_t part, int first, int end, std::span<const std::size_t> channels,
+                   std::vector<float>& planes);
 
   std::unique_ptr<Imf::IStream> stream_;
   std::unique_ptr<File> file_;

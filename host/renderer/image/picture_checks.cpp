@@ -11,35 +11,31 @@
 #include <utility>
 #include <vector>
 
-#include "common/ascii_text.hpp"
 #include "image/decoder.hpp"
+#include "image/picture_metadata.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::image {
 
-namespace {
-
-enum class Order { little, big };
-
-/// The number in `count` bytes. Errors: DecodeError where the file ends before them.
-std::uint32_t number_at(Encoded bytes, std::size_t offset, std::size_t count,
-                        Order order = Order::little) {
+std::uint32_t number_at(Encoded bytes, std::size_t offset, std::size_t count, ByteOrder order) {
   if (offset > bytes.size() || count > bytes.size() - offset) {
     throw DecodeError("the file ends too early");
   }
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    value = value << 8 | bytes[offset + (order == Order::big ? i : count - 1 - i)];
+    value = value << 8 | bytes[offset + (order == ByteOrder::big ? i : count - 1 - i)];
   }
   return value;
 }
+
+namespace {
 
 /// libpng takes the memory that a text is said to have, up to two gigabytes.
 void check_png(Encoded bytes) {
   constexpr std::size_t frame = 12;  // length, type and checksum
   for (std::size_t offset = 8; offset < bytes.size();) {
-    const std::size_t length = number_at(bytes, offset, 4, Order::big);
-    if (number_at(bytes, offset + 4, 4, Order::big) == 0x49454E44) return;  // IEND
+    const std::size_t length = number_at(bytes, offset, 4, ByteOrder::big);
+    if (number_at(bytes, offset + 4, 4, ByteOrder::big) == 0x49454E44) return;  // IEND
     if (length + frame > bytes.size() - offset) throw DecodeError("the file ends too early");
     offset += length + frame;
   }
@@ -57,7 +53,7 @@ void check_gif(Encoded bytes) {
 
 void check_webp(Encoded bytes) {
   constexpr std::uint32_t most = 0x3FFF;
-  switch (number_at(bytes, 12, 4, Order::big)) {
+  switch (number_at(bytes, 12, 4, ByteOrder::big)) {
     case 0x56503820:  // "VP8 "
       return check_canvas(number_at(bytes, 26, 2) & most, number_at(bytes, 28, 2) & most, bytes);
     case 0x5650384C: {  // "VP8L"
@@ -93,47 +89,22 @@ void check_targa(Encoded bytes) {
 
 /// Without the tag the format has one bit a sample, and the reader takes eight.
 void check_tiff(Encoded bytes) {
-  const Order order = number_at(bytes, 0, 1) == 'M' ? Order::big : Order::little;
-  const std::size_t directory = number_at(bytes, 4, 4, order);
-  const std::size_t entries = number_at(bytes, directory, 2, order);
-  for (std::size_t i = 0; i < entries; ++i) {
-    constexpr std::uint32_t bits_per_sample = 258;
-    if (number_at(bytes, directory + 2 + 12 * i, 2, order) == bits_per_sample) return;
-  }
+  constexpr std::uint32_t bits_per_sample = 258;
+  if (tiff_entry(bytes, bits_per_sample)) return;
   throw DecodeError("the number of bits per sample is missing; save it with 8");
 }
 
-/// Rows from the top in RGB are read. Runs hold zeros at 15.9 pixels a byte, and so less than in an
-/// EXR has to be refused.
+/// Runs hold zeros at 15.9 pixels a byte, and so less than in an EXR has to be refused.
 void check_radiance(Encoded bytes) {
   constexpr std::uint64_t max_pixels_per_byte = limits::max_exr_pixels_per_byte / 2;
-  std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto line = [&] {
-    const std::size_t end = rest.find('\n');
-    if (end == std::string_view::npos) throw DecodeError("the header is damaged");
-    const std::string_view text = rest.substr(0, end);
-    rest.remove_prefix(end + 1);
-    return text;
-  };
-  bool rgbe = false;
-  for (std::string_view text = line(); !text.empty(); text = line()) {
-    rgbe |= text == "FORMAT=32-bit_rle_rgbe";
-  }
-  if (!rgbe) throw DecodeError("is not of the format 32-bit_rle_rgbe; convert it with ra_rgbe");
-  const std::string_view size = line();
-  const std::size_t across = size.find(" +X ");
-  if (!size.starts_with("-Y ") || across == std::string_view::npos) {
-    throw DecodeError("only rows from the top are read");
-  }
-  const auto height = parse_number<std::uint32_t>(trimmed(size.substr(3, across - 3))),
-             width = parse_number<std::uint32_t>(trimmed(size.substr(across + 4)));
-  if (!width || !height) throw DecodeError("the size is damaged");
-  const std::uint64_t pixels = std::uint64_t{*width} * *height;
-  if (3 * sizeof(float) * pixels > unchecked_bytes && pixels >= rest.size() * max_pixels_per_byte) {
+  const RadianceHeader header = read_radiance_header(bytes);
+  const std::uint64_t pixels = std::uint64_t{header.rows} * header.columns;
+  const std::size_t rest = bytes.size() - header.end;
+  if (3 * sizeof(float) * pixels > unchecked_bytes && pixels >= rest * max_pixels_per_byte) {
     throw DecodeError(fmt::format(
         "is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels a byte; scale "
         "it down",
-        rest.size(), *width, *height, max_pixels_per_byte));
+        rest, header.columns, header.rows, max_pixels_per_byte));
   }
 }
 

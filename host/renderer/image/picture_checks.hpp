@@ -14,6 +14,12 @@
 
 namespace photile::image {
 
+enum class ByteOrder { little, big };
+
+/// The number in `count` bytes. Errors: DecodeError where the file ends before them.
+std::uint32_t number_at(Encoded bytes, std::size_t offset, std::size_t count,
+                        ByteOrder order = ByteOrder::little);
+
 /// Why a picture cannot be read whatever is done with it, or "".
 std::string beyond_limits(int width, int height, std::size_t channels);
 

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
-#include <limits>
 #include <new>
+#include <numeric>
 
 #include "common/files.hpp"
 #include "image/decoder.hpp"
@@ -93,21 +93,14 @@ std::vector<unsigned char> bytes_of(const fs::path& file) {
   return bytes;
 }
 
-/// Interleaved values as planes of floats; integers as fractions of the largest.
-std::vector<float> planes_of(const Pixels& pixels, std::size_t channels) {
-  return std::visit(
-      [&](const auto& values) {
-        using T = typename std::decay_t<decltype(values)>::value_type;
-        constexpr bool real = std::is_same_v<T, float>;
-        constexpr float white = real ? 1.0f : static_cast<float>(std::numeric_limits<T>::max());
-        std::vector<float> planes(values.size());
-        const std::size_t pixels = values.size() / channels;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          planes[i % channels * pixels + i / channels] = static_cast<float>(values[i]) / white;
-        }
-        return planes;
-      },
-      pixels);
+/// Interleaved values as planes.
+std::vector<float> planes_of(const std::vector<float>& values, std::size_t channels) {
+  std::vector<float> planes(values.size());
+  const std::size_t pixels = values.size() / channels;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    planes[i % channels * pixels + i / channels] = values[i];
+  }
+  return planes;
 }
 
 }  // namespace
@@ -145,15 +138,19 @@ void PictureFile::open_exr() {
 /// Their pixels are decoded at once, when some are asked for.
 void PictureFile::open_other() {
   const std::vector<unsigned char> bytes = bytes_of(file_);
-  const std::unique_ptr<Decoder> decoder = open_picture(file_.string(), bytes);
-  const PictureShape& shape = decoder->shape();
+  const std::unique_ptr<EncodedPicture> picture = open_picture(file_.string(), bytes);
+  const PictureShape& shape = picture->shape();
   std::vector<std::string> names{"Y", "A"};
   if (shape.channels > 2) names = {"R", "G", "B", "A"};
   while (static_cast<int>(names.size()) < shape.channels) {
     names.push_back(fmt::format("channel{}", names.size()));
   }
   names.resize(static_cast<std::size_t>(shape.channels));
-  add_part({shape.width, shape.height, "", names});
+  ExrInput::Part part;
+  part.width = shape.width;
+  part.height = shape.height;
+  part.channels = names;
+  add_part(part);
 }
 
 void PictureFile::add_part(const ExrInput::Part& part) {
@@ -237,10 +234,12 @@ void PictureFile::decode(int part, int first, int end) {
   block_.part = -1;  // nothing is kept of a failure
   if (exr_) {
     const auto index = static_cast<std::size_t>(part);
-    exr_->read(index, first, end, exr_->parts()[index].channels.size(), block_.planes);
+    std::vector<std::size_t> channels(exr_->parts()[index].channels.size());
+    std::iota(channels.begin(), channels.end(), std::size_t{0});
+    exr_->read(index, first, end, channels, block_.planes);
   } else {
     const std::vector<unsigned char> bytes = bytes_of(file_);
-    block_.planes = planes_of(open_picture(file_.string(), bytes)->decode(), largest_part_);
+    block_.planes = planes_of(open_picture(file_.string(), bytes)->light(), largest_part_);
     first = 0;
     end = header_.height;
   }
