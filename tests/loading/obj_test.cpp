@@ -171,7 +171,7 @@ TEST_CASE("MTL Kd + Ks above 1 is scaled to 1 with a warning") {
   Scene scene;
   const Material m = mtl_material("Kd 0.9 0.2 0.1\nKs 0.6 0.1 0.1\nNs 30\nillum 2\n", &scene);
   CHECK(m.diffuse.r == Approx(0.6));
-  CHECK(m.specular.r == Approx(0.4));
+  CHECK(m.specular.r == Approx(0.4).epsilon(1e-4));
   CHECK(m.diffuse.g == Approx(0.2 / 1.5));
   CHECK(warns(scene, {"'m'", "exceeds 1"}));
 }
@@ -232,6 +232,104 @@ TEST_CASE("a missing MTL texture is named and becomes mid grey") {
   CHECK(m.diffuse == glm::vec3(0.5f));
   CHECK(m.diffuse_texture == none);
   CHECK(warns(scene, {"'m'", "absent.png", "grey"}));
+}
+
+/// A picture of one texel, written by hand (PPM).
+std::string one_texel(const std::string& rgb) { return "P6\n1 1\n255\n" + rgb; }
+
+TEST_CASE("an MTL texture without Kd has its own colours, whatever materials come before") {
+  const SceneFolderOnDisk folder;
+  folder.write("my texture.ppm", one_texel("\xBC\xBC\xBC"));
+  const std::string before = GENERATE("", "newmtl other\nKd 0.25 0.25 0.25\n");
+  const std::string map = GENERATE("map_Kd my texture.ppm", "MAP_KD\t-s 1 1 1 my texture.ppm",
+                                   "map_Kd -o 0 0 -mm 0 1 \"my texture.ppm\"");
+  folder.write("materials.mtl", before + "newmtl lamp\nKd 0 0 0\nKe 1 1 1\nnewmtl photo\n" + map);
+  const Scene scene = load_scene(
+      folder.write("s.obj", "mtllib materials.mtl\n" + unit_square +
+                                "usemtl photo\nf 1/1 2/2 3/3\nusemtl lamp\nf 1/1 3/3 4/4\n"));
+  const Material& photo = scene.materials.at(0);
+  CHECK(photo.diffuse == glm::vec3(1.0f));
+  REQUIRE(photo.diffuse_texture != none);
+  CHECK(scene.textures[photo.diffuse_texture].sample({0.5f, 0.5f}).g == Approx(0.50289));
+}
+
+TEST_CASE("MTL colours of one number, in any case and of CIE XYZ are read") {
+  CHECK(mtl_material("Kd 0.25\n").diffuse == glm::vec3(0.25f));
+  CHECK(mtl_material("KD 0.25 0.5 0.125 # oak\n").diffuse == glm::vec3(0.25f, 0.5f, 0.125f));
+  CHECK(mtl_material("\tkd\t.25\t+0.5\t1e-1\r\n").diffuse.r == 0.25f);
+  CHECK(mtl_material("Kd 0.25 \\\n 0.5 0.125").diffuse.b == 0.125f);
+  // Y is the luminance, of whatever colour, and one number is grey.
+  CHECK(luminance(glm::dvec3(mtl_material("Kd xyz 0.3 0.4 0.2\n").diffuse)) ==
+        Approx(0.4).epsilon(1e-4));
+  const glm::vec3 grey = mtl_material("Kd xyz 0.5\n").diffuse;
+  CHECK(grey.r == Approx(0.5));
+  CHECK(grey.b == Approx(0.5));
+  CHECK(mtl_material("illum 7\nTf 0.5\n").transmission == glm::vec3(0.5f));
+}
+
+TEST_CASE("an MTL material without Kd is mid grey, with a warning, or emits") {
+  Scene scene;
+  CHECK(mtl_material("Ns 10\n", &scene).diffuse == glm::vec3(0.5f));
+  CHECK(warns(scene, {"'m'", "no Kd", "grey"}));
+  CHECK(mtl_material("Ke 1 1 1\n", &scene).diffuse == glm::vec3(0.0f));
+  CHECK_FALSE(warns(scene, {"'m'", "Kd"}));
+  mtl_material("Kd 1 1 1\nmap_Ke glow.png\n", &scene);
+  CHECK(warns(scene, {"'m'", "map_Ke", "without a Ke"}));
+  mtl_material("Kd 1.5 0.5 0.5\n", &scene);
+  CHECK(warns(scene, {"line 4", "more than all light"}));
+}
+
+TEST_CASE("MTL numbers that are none are refused with their line") {
+  for (const std::string statement : {"Kd",
+                                      "Kd 0.5 0.5",
+                                      "Kd 0.5 0.5 0.5 1",
+                                      "Kd red",
+                                      "Kd 0,5 0,5 0,5",
+                                      "Kd nan nan nan",
+                                      "Kd inf 0 0",
+                                      "Kd -0.5 0 0",
+                                      "Kd spectral oak.rfl",
+                                      "Kd 0.5x",
+                                      "Kd 1e400",
+                                      "Ks 0.5 0.5",
+                                      "Ke -1 0 0",
+                                      "Ke 1 1 1,",
+                                      "Tf glass",
+                                      "Ns",
+                                      "Ns shiny",
+                                      "Ns 1 2",
+                                      "Ns -1",
+                                      "Ni 1,5",
+                                      "d",
+                                      "d 2",
+                                      "d -1",
+                                      "Tr x",
+                                      "illum",
+                                      "illum 2.5",
+                                      "illum 11",
+                                      "illum mirror",
+                                      "Pr 2",
+                                      "Pm metal",
+                                      "map_Kd",
+                                      "map_Kd -mm 0 2 a.png",
+                                      "map_Kd -s a.png",
+                                      "newmtl"}) {
+    CAPTURE(statement);
+    const std::string error = input_error_of([&] { mtl_material("Kd 1 1 1\n" + statement); });
+    CHECK(error.find("materials.mtl, line 5: ") != std::string::npos);
+    CHECK(error.find('\n') == std::string::npos);
+  }
+  CHECK_THAT(input_error_of([] { mtl_material("Kd 0,5\n"); }), Catch::Contains("decimal point"));
+  // What says nothing of light may be anything.
+  CHECK(mtl_material("Kd 0.5 0.5 0.5\nKa nan\nsharpness x\n").diffuse == glm::vec3(0.5f));
+}
+
+TEST_CASE("MTL options of a texture that change nothing read are named in a warning") {
+  Scene scene;
+  mtl_material("Kd 1 1 1\nmap_Kd -s 2 2 1 -o 0.5 -clamp on a.png\n", &scene);
+  CHECK(warns(scene, {"'m'", "-s of its map_kd"}));
+  CHECK(warns(scene, {"'m'", "-o of its map_kd"}));
+  CHECK(warns(scene, {"'m'", "-clamp of its map_kd"}));
 }
 
 TEST_CASE("MTL textures other than map_Kd are named in a warning") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "files/scene_files.hpp"
 #include "obj/obj_reader.hpp"
@@ -22,62 +23,51 @@ namespace {
 
 constexpr double default_index_of_refraction = 1.5;  // where MTL asks for glass without an Ni
 
-glm::dvec3 color(const tinyobj::real_t (&rgb)[3]) {
-  glm::dvec3 result(rgb[0], rgb[1], rgb[2]);
-  for (int c = 0; c < 3; ++c) {
-    if (!std::isfinite(result[c])) result[c] = 0.0;
-  }
-  return result;
+/// Of what a material says, or black.
+glm::vec3 reflectance(const std::optional<glm::dvec3>& color) {
+  return glm::vec3(color.value_or(glm::dvec3(0.0)));
 }
 
-glm::vec3 reflectance(const tinyobj::real_t (&rgb)[3]) {
-  return glm::vec3(glm::clamp(color(rgb), 0.0, 1.0));
+bool emits(const MtlMaterial& source) {
+  return source.Ke.value_or(glm::dvec3(0.0)) != glm::dvec3(0.0);
 }
 
-void warn_about_ignored(const tinyobj::material_t& source, files::Warnings& warnings) {
-  const auto warn = [&](const std::string& message) {
-    warnings.add("material", source.name, message);
-  };
-  const std::array<std::pair<const std::string*, const char*>, 8> textures{{
-      {&source.specular_texname, "map_Ks"},
-      {&source.specular_highlight_texname, "map_Ns"},
-      {&source.bump_texname, "bump"},
-      {&source.displacement_texname, "disp"},
-      {&source.reflection_texname, "refl"},
-      {&source.roughness_texname, "map_Pr"},
-      {&source.metallic_texname, "map_Pm"},
-      {&source.sheen_texname, "map_Ps"},
-  }};
-  for (const auto& [name, statement] : textures) {
-    if (!name->empty())
-      warn(std::string("texture ") + statement + " is ignored; its factor is used");
+/// Kd, or the factor of a texture without one, or what a material without any has.
+glm::vec3 diffuse_of(const MtlMaterial& source, files::Warnings& warnings) {
+  if (source.Kd) {
+    if (*source.Kd == glm::dvec3(0.0) && !source.map_Kd.empty()) {
+      warnings.add("material", source.name, "its Kd of 0 makes its map_Kd black");
+    }
+    return glm::vec3(*source.Kd);
   }
-  if (source.sheen > 0 || source.clearcoat_thickness > 0 || source.anisotropy > 0) {
-    warn("sheen, clear coat and anisotropy are ignored");
-  }
+  if (!source.map_Kd.empty()) return glm::vec3(1.0f);
+  if (emits(source)) return glm::vec3(0.0f);
+  warnings.add("material", source.name, "has no Kd; mid grey (0.5)");
+  return glm::vec3(scene::missing_albedo);
 }
 
-bool is_glass(const tinyobj::material_t& source) {
+bool is_glass(const MtlMaterial& source) {
   constexpr std::array<int, 4> models{4, 6, 7, 9};
   if (std::find(models.begin(), models.end(), source.illum) != models.end()) return true;
-  return source.dissolve < 1 && source.ior > 1 && source.alpha_texname.empty();
+  return source.d.value_or(1) < 1 && source.Ni.value_or(1) > 1 && source.map_d.empty();
 }
 
-void set_glass(const tinyobj::material_t& source, Material& material, files::Warnings& warnings) {
+void set_glass(const MtlMaterial& source, Material& material, files::Warnings& warnings) {
   // MTL files have an Ns of 0 or 1 where nobody thought of one.
-  if (source.shininess > 1 && source.shininess < scene::mirror_phong_exponent) {
+  const double exponent = source.Ns.value_or(0);
+  if (exponent > 1 && exponent < scene::mirror_phong_exponent) {
     warnings.add("material", source.name,
-                 fmt::format("rough glass (Ns {:.4g}) is treated as smooth", source.shininess));
+                 fmt::format("rough glass (Ns {:.4g}) is treated as smooth", exponent));
   }
   material.interaction = Interaction::glass;
   material.specular = glm::vec3(1.0f);
-  const bool has_index = std::isfinite(source.ior) && source.ior > 1;
-  material.index_of_refraction =
-      static_cast<float>(has_index ? std::min(source.ior, limits::max_index_of_refraction)
-                                   : default_index_of_refraction);
-  // Tf is black where the file does not give it, and black glass would be of no use.
-  const glm::vec3 tint = reflectance(source.transmittance);
-  material.transmission = tint == glm::vec3(0.0f) ? glm::vec3(1.0f) : tint;
+  const double index = source.Ni.value_or(default_index_of_refraction);
+  material.index_of_refraction = static_cast<float>(
+      index > 1 ? std::min(index, limits::max_index_of_refraction) : default_index_of_refraction);
+  material.transmission = glm::vec3(source.Tf.value_or(glm::dvec3(1.0)));
+  if (material.transmission == glm::vec3(0.0f)) {
+    warnings.add("material", source.name, "its Tf of 0 lets no light through");
+  }
 }
 
 void set_mirror(const glm::vec3& specular, Material& material) {
@@ -85,31 +75,31 @@ void set_mirror(const glm::vec3& specular, Material& material) {
   material.specular = specular;
 }
 
-void set_surface(const tinyobj::material_t& source, bool lambertian, Material& material,
+void set_surface(const MtlMaterial& source, bool lambertian, Material& material,
                  files::Warnings& warnings) {
-  const bool has_texture = !source.diffuse_texname.empty();
-  if (source.roughness > 0 || source.metallic > 0) {
+  if (source.Pr.value_or(0) > 0 || source.Pm.value_or(0) > 0) {
     MetallicRoughness model;
-    model.base_color = color(source.diffuse);
-    model.metallic = source.metallic;
-    model.roughness = source.roughness;
+    model.base_color = diffuse_of(source, warnings);
+    model.metallic = source.Pm.value_or(0);
+    model.roughness = source.Pr.value_or(0);
     if (lambertian) model.specular_factor = 0;
     scene::set_metallic_roughness(model, material);
     return;
   }
   if (is_glass(source)) return set_glass(source, material, warnings);
-  const glm::vec3 diffuse = reflectance(source.diffuse), specular = reflectance(source.specular);
+  const glm::vec3 specular = reflectance(source.Ks);
+  const double exponent = source.Ns.value_or(0);
   const bool reflective_model = source.illum == 3 || source.illum == 5;
   const bool specular_model = source.illum == 2 || reflective_model;
-  const bool black_diffuse = diffuse == glm::vec3(0.0f) && !has_texture;
+  const bool black_diffuse = reflectance(source.Kd) == glm::vec3(0.0f) && source.map_Kd.empty();
   if (reflective_model && specular != glm::vec3(0.0f) &&
-      (source.shininess >= scene::mirror_phong_exponent || black_diffuse)) {
+      (exponent >= scene::mirror_phong_exponent || black_diffuse)) {
     return set_mirror(specular, material);
   }
-  material.diffuse = diffuse;
+  material.diffuse = diffuse_of(source, warnings);
   if (specular_model && !lambertian) {
     material.specular = specular;
-    material.roughness = scene::ggx_alpha_from_phong_exponent(source.shininess);
+    material.roughness = scene::ggx_alpha_from_phong_exponent(exponent);
     if (scene::conserve_energy(material)) {
       warnings.add("material", source.name, "Kd + Ks exceeds 1; both are scaled");
     }
@@ -138,17 +128,17 @@ std::uint32_t texture_or_none(const std::string& name, pictures::TextureContent 
 }
 
 /// d, Tr and map_d. Emission knows no cutouts: what shines stays whole.
-void set_opacity(const tinyobj::material_t& source, bool emits, pictures::TextureStore& textures,
+void set_opacity(const MtlMaterial& source, bool emits, pictures::TextureStore& textures,
                  Material& material, reading::ImportContext& context) {
   if (material.interaction == Interaction::glass) return;
   // Some programs write Tr as they write d, and what is not there at all would not be in the file.
-  const bool given = source.dissolve > 0 && source.dissolve < 1;
-  const float opacity = given ? static_cast<float>(source.dissolve) : 1.0f;
-  if (!(source.dissolve > 0)) {
+  const double d = source.d.value_or(1);
+  const float opacity = d > 0 ? static_cast<float>(d) : 1.0f;
+  if (d == 0) {
     context.warnings.add("material", material.name, "d 0 (Tr 1) is treated as opaque");
   }
-  const std::uint32_t texture = texture_or_none(
-      source.alpha_texname, pictures::TextureContent::opacity, "d", material, textures, context);
+  const std::uint32_t texture = texture_or_none(source.map_d, pictures::TextureContent::opacity,
+                                                "d", material, textures, context);
   if (texture == none && opacity >= 1.0f) return;
   if (emits) {
     context.warnings.add("material", material.name,
@@ -164,13 +154,19 @@ void set_opacity(const tinyobj::material_t& source, bool emits, pictures::Textur
   }
 }
 
-reading::Emission emission_of(const tinyobj::material_t& source, pictures::TextureStore& textures,
+reading::Emission emission_of(const MtlMaterial& source, pictures::TextureStore& textures,
                               reading::ImportContext& context) {
-  reading::Emission emission{color(source.emission) *
+  reading::Emission emission{source.Ke.value_or(glm::dvec3(0.0)) *
                              static_cast<double>(context.options.emissive_scale)};
-  if (source.emissive_texname.empty() || emission.radiance == glm::dvec3(0.0)) return emission;
+  if (source.map_Ke.empty()) return emission;
+  if (!source.Ke) {
+    context.warnings.add("material", source.name,
+                         "its map_Ke emits nothing without a Ke, which is its radiance where the "
+                         "texture is white");
+  }
+  if (emission.radiance == glm::dvec3(0.0)) return emission;
   try {
-    emission.texture = texture_named(source.emissive_texname, textures);
+    emission.texture = texture_named(source.map_Ke, textures);
   } catch (const files::ResourceError& error) {
     context.warnings.add("material", source.name,
                          std::string(error.what()) + "; its Ke is used alone");
@@ -190,28 +186,26 @@ reading::Emission emission_of(const tinyobj::material_t& source, pictures::Textu
 /// | anything else                                  | Lambertian Kd                             |
 /// | map_d; or d < 1 without Ni                     | opacity: cutouts, by chance in between      |
 /// | norm                                           | a normal map, -bm its scale               |
-void add_mtl_material(const tinyobj::material_t& source, pictures::TextureStore& textures,
+/// | map_Kd without Kd                              | the texture as it is                      |
+/// | neither of them, nor Ke                        | mid grey                                  |
+void add_mtl_material(const MtlMaterial& source, pictures::TextureStore& textures,
                       reading::ImportContext& context) {
   Material material;
   material.name = source.name;
   set_surface(source, context.options.lambertian, material, context.warnings);
-  warn_about_ignored(source, context.warnings);
-  if (!source.diffuse_texname.empty() && material.interaction == Interaction::opaque) {
+  if (!source.map_Kd.empty() && material.interaction == Interaction::opaque) {
     try {
-      material.diffuse_texture = texture_named(source.diffuse_texname, textures);
+      material.diffuse_texture = texture_named(source.map_Kd, textures);
     } catch (const files::ResourceError& error) {
       pictures::use_missing_texture_colour(material);
       context.warnings.add("material", source.name,
                            std::string(error.what()) + "; mid grey (0.5) is used instead");
     }
   }
-  material.normal_texture = texture_or_none(source.normal_texname, pictures::TextureContent::data,
+  material.normal_texture = texture_or_none(source.norm, pictures::TextureContent::data,
                                             "no normal map", material, textures, context);
-  const double scale = source.normal_texopt.bump_multiplier;
-  if (std::isfinite(scale)) {
-    material.normal_scale =
-        static_cast<float>(std::clamp(scale, -limits::max_normal_scale, limits::max_normal_scale));
-  }
+  material.normal_scale = static_cast<float>(
+      std::clamp(source.norm_scale, -limits::max_normal_scale, limits::max_normal_scale));
   const reading::Emission emission = emission_of(source, textures, context);
   set_opacity(source, emission.radiance != glm::dvec3(0.0), textures, material, context);
   context.scene.materials.push_back(std::move(material));
@@ -237,14 +231,16 @@ void report_findings(const ObjTextFindings& findings, files::Warnings& warnings)
 /// Adds the materials that faces use. Returns the scene's material of each usemtl name, and one
 /// more for faces without any.
 std::vector<std::uint32_t> add_materials(const ObjFile& file,
-                                         const std::vector<tinyobj::material_t>& defined,
+                                         const std::vector<MtlMaterial>& defined,
                                          reading::ImportContext& context) {
   if (file.material_names.size() + 1 > limits::max_materials) {
     throw context.error(fmt::format("more than {} materials", limits::max_materials));
   }
-  std::map<std::string, const tinyobj::material_t*> library;
-  for (const tinyobj::material_t& material : defined) {
-    library.emplace(material.name, &material);
+  std::map<std::string, const MtlMaterial*> library;
+  for (const MtlMaterial& material : defined) {
+    if (!library.emplace(material.name, &material).second) {
+      context.warnings.add("material", material.name, "defined more than once; the first counts");
+    }
   }
   pictures::TextureStore textures(context.scene, context.folder);
   std::vector<std::uint32_t> index;

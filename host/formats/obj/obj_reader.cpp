@@ -7,9 +7,9 @@
 #include <istream>
 #include <map>
 #include <set>
-#include <sstream>
 #include <streambuf>
 #include <string_view>
+#include <utility>
 
 #include "common/ascii_text.hpp"
 #include "files/scene_files.hpp"
@@ -173,7 +173,8 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-/// Cuts the first word off `line`.
+}  // namespace
+
 std::string_view take_word(std::string_view& line) {
   line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
   const std::string_view word = line.substr(0, line.find_first_of(blanks));
@@ -188,6 +189,8 @@ void join_continued_lines(std::string& text) {
     if (end < text.size() && text[end] == '\n') std::fill(&text[at], &text[end] + 1, ' ');
   }
 }
+
+namespace {
 
 bool starts_a_number(std::string_view word) {
   if (!word.empty() && (word[0] == '+' || word[0] == '-')) word.remove_prefix(1);
@@ -267,31 +270,23 @@ std::vector<std::string> names_in(const std::string& statement, const files::Sce
   return names_between_blanks(statement);
 }
 
-void read_library(const std::string& name, std::vector<tinyobj::material_t>& materials,
+void read_library(const std::string& name, std::vector<MtlMaterial>& materials,
                   reading::ImportContext& context) {
   const std::vector<unsigned char> bytes = context.folder.read(name);
   std::string text(bytes.begin(), bytes.end());
   if (text.find('\0') != std::string::npos) {
     throw files::ResourceError("'" + name + "': NUL bytes: this is no plain text (UTF-16?)");
   }
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte-order mark
-  std::istringstream stream(std::move(text));
-  std::map<std::string, int> index;
-  std::string warning, error;
-  tinyobj::LoadMtl(&index, &materials, &stream, &warning, &error);
-  std::istringstream lines(warning + error);
-  for (std::string line; std::getline(lines, line);) {
-    if (!trimmed(line).empty()) {
-      context.warnings.add(fmt::format("{}: {}", name, trimmed(line)));
-    }
+  for (MtlMaterial& material : read_mtl(name, std::move(text), context)) {
+    materials.push_back(std::move(material));
   }
 }
 
 }  // namespace
 
-std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
-                                                    reading::ImportContext& context) {
-  std::vector<tinyobj::material_t> materials;
+std::vector<MtlMaterial> read_obj_libraries(const std::vector<std::string>& statements,
+                                            reading::ImportContext& context) {
+  std::vector<MtlMaterial> materials;
   std::set<std::string> known;
   for (const std::string& statement : statements) {
     for (const std::string& name : names_in(statement, context.folder)) {
@@ -303,9 +298,6 @@ std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::strin
             fmt::format("material library {}; its materials become mid grey (0.5)", error.what()));
       }
     }
-  }
-  for (tinyobj::material_t& material : materials) {
-    material.name = std::string(trimmed(material.name));
   }
   return materials;
 }

@@ -8,9 +8,11 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
+#include "obj/mtl_reader.hpp"
 #include "reading/import_context.hpp"
 
 namespace photile::obj {
@@ -46,6 +48,12 @@ struct ObjTextFindings {
   std::vector<std::string> libraries;  ///< what follows each mtllib
 };
 
+/// Cuts the first word off a line; "" where there is none.
+std::string_view take_word(std::string_view& line);
+
+/// Joins lines that end in a backslash with the next, in place.
+void join_continued_lines(std::string& text);
+
 /// Looks through OBJ text. Lines that end in a backslash are joined with the next in place, which
 /// the OBJ format asks for and tinyobjloader does not do. Errors: ResourceError when the bytes are
 /// no text; Interrupted.
@@ -55,9 +63,9 @@ ObjTextFindings examine_obj_text(std::string& text, reading::ImportContext& cont
 /// order. A statement may name several files. Names with blanks are written with backslashes before
 /// them or, by most exporters, without: the file that the whole statement names comes first.
 ///   statements   what follows each `mtllib`
-/// Libraries that cannot be read are named in a warning.
-std::vector<tinyobj::material_t> read_obj_libraries(const std::vector<std::string>& statements,
-                                                    reading::ImportContext& context);
+/// Libraries that cannot be read are named in a warning. Errors: those of read_mtl.
+std::vector<MtlMaterial> read_obj_libraries(const std::vector<std::string>& statements,
+                                            reading::ImportContext& context);
 
 /// Fills the context's scene from its OBJ file. Errors: InputError.
 void import_obj(reading::ImportContext& context);
