@@ -11,6 +11,7 @@ namespace {
 
 using Catch::Contains;
 using nlohmann::json;
+using namespace std::string_literals;
 
 /// The square with its positions by a sparse accessor: of two, both replaced.
 json sparse_document() {
@@ -108,6 +109,52 @@ TEST_CASE("numbers of extras and extensions are whatever their authors want") {
   json document = sparse_document();
   document["extras"] = {{"count", -1.5}, {"mesh", "front"}, {"list", {{{"nodes", {-1, "a"}}}}}};
   document["nodes"][0]["extensions"]["VENDOR_x"] = {{"source", -1}, {"attributes", {{"A", 0.5}}}};
+  CHECK(refusal_of_text(document.dump()).empty());
+}
+
+TEST_CASE("numbers that decide on light and shape are numbers, as many as the format has") {
+  const auto refusal = [](const std::string& place, const std::string& value) {
+    json document = square_document();
+    document["nodes"][0]["scale"] = {1, 1, 1};
+    document["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["scale"] = {1,
+                                                                                                 1};
+    document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"color", {1, 1, 1}}}};
+    document[json::json_pointer(place)] = json::parse(value);
+    return refusal_of_text(document.dump());
+  };
+  const std::string strength =
+      "/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength";
+  for (const std::string& place :
+       {"/materials/0/pbrMetallicRoughness/roughnessFactor"s, "/materials/0/alphaCutoff"s, strength,
+        "/extensions/KHR_lights_punctual/lights/0/intensity"s, "/cameras/0/perspective/yfov"s}) {
+    const std::string value = GENERATE("null", "true", R"("1")", "[]", "[1]", "{}");
+    CAPTURE(place, value);
+    CHECK_THAT(refusal(place, value), Contains("malformed glTF") && Contains(", not a number"));
+  }
+  CHECK_THAT(refusal(strength, R"("1")"),
+             Contains("materials[0].extensions.KHR_materials_emissive_strength.emissiveStrength "
+                      "is a text, not a number"));
+  for (const auto& [place, count] : std::vector<std::pair<std::string, int>>{
+           {"/materials/0/pbrMetallicRoughness/baseColorFactor", 4},
+           {"/materials/0/emissiveFactor", 3},
+           {"/materials/0/normalTexture/extensions/KHR_texture_transform/scale", 2},
+           {"/nodes/0/scale", 3},
+           {"/nodes/0/matrix", 16},
+           {"/extensions/KHR_lights_punctual/lights/0/color", 3}}) {
+    const std::string value =
+        GENERATE("null", "0.5", R"("1")", "{}", "[]", "[1]", "[1, 1, 1, 1, 1]");
+    CAPTURE(place, value);
+    CHECK_THAT(refusal(place, value), Contains(", not a list of " + std::to_string(count)));
+    json wrong = json::array();
+    for (int i = 0; i < count; ++i) wrong.push_back(i == 1 ? json("1") : json(1));
+    CHECK_THAT(refusal(place, wrong.dump()), Contains("has a text, not a list of"));
+  }
+  CHECK_THAT(refusal("/nodes/0/extensions/KHR_node_visibility/visible", "0"),
+             Contains("is a number, not true or false"));
+  // What is no part of the format may be anything.
+  json document = square_document();
+  document["materials"][0]["extras"]["alphaCutoff"] = nullptr;
+  document["nodes"][0]["extras"]["scale"] = "large";
   CHECK(refusal_of_text(document.dump()).empty());
 }
 

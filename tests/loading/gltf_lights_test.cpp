@@ -63,6 +63,43 @@ TEST_CASE("a point light emits 4 pi lumens per candela, whatever its node's scal
   CHECK(warns(scene, {"'lamp'", "range"}));
 }
 
+TEST_CASE("what a file makes invisible is left out, with all below it") {
+  nlohmann::json document = lit_by({{"type", "point"}, {"intensity", 10}});
+  document["extensionsUsed"].push_back("KHR_node_visibility");
+  document["extensionsRequired"] = {"KHR_node_visibility"};
+  document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  document["nodes"].push_back({{"name", "group"}, {"children", {1, 3}}});
+  document["nodes"].push_back({{"name", "eye"}, {"camera", 0}});
+  document["scenes"][0]["nodes"] = {0, 2};
+  const auto with = [&](const nlohmann::json& visible) {
+    document["nodes"][2]["extensions"]["KHR_node_visibility"] = visible;
+    return load_gltf(document);
+  };
+  for (const auto& visible : {nlohmann::json::object(), nlohmann::json{{"visible", true}}}) {
+    const Scene shown = with(visible);
+    CHECK(shown.lights.size() == 1);
+    CHECK(shown.cameras.at(0).name == "eye");
+    CHECK_FALSE(warns(shown, {"visib"}));
+  }
+  document["materials"][0]["emissiveFactor"] = {1, 1, 1};
+  const Scene hidden = with({{"visible", false}});
+  REQUIRE(hidden.lights.size() == 1);
+  CHECK(hidden.lights[0].name == "panel");
+  for (const Camera& camera : hidden.cameras) CHECK(camera.name != "eye");
+  CHECK(warns(hidden, {"'group'", "KHR_node_visibility", "all below"}));
+}
+
+TEST_CASE("extensions that are not understood are named with what has them") {
+  nlohmann::json document = square_document();
+  document["extensionsUsed"] = {"KHR_materials_unlit", "EXT_mesh_gpu_instancing", "VENDOR_x"};
+  document["materials"][0]["extensions"]["KHR_materials_unlit"] = nlohmann::json::object();
+  document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = nlohmann::json::object();
+  const Scene scene = load_gltf(document);
+  CHECK(warns(scene, {"material 'glow'", "KHR_materials_unlit", "lit as all others"}));
+  CHECK(warns(scene, {"node 'panel'", "EXT_mesh_gpu_instancing", "copies are missing"}));
+  CHECK(warns(scene, {"VENDOR_x", "ignored"}));
+}
+
 TEST_CASE("the colour of a light multiplies its intensity by its luminance") {
   const Scene scene =
       load_gltf(lit_by({{"type", "point"}, {"intensity", 10}, {"color", {0.5, 0, 0}}}));

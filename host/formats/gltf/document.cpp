@@ -180,6 +180,49 @@ constexpr std::array<std::string_view, 11> indices{"camera",   "index",  "indice
                                                    "sampler",  "source", "skin"};
 constexpr std::array<std::string_view, 3> lists{"children", "joints", "nodes"};
 
+/// A member that decides on light, shape or view.
+struct ValueMember {
+  static constexpr int number = 0, boolean = -1;
+  std::string_view owner, name;  ///< the owner: as its file's member or list is called
+  int what;                      ///< or of how many numbers a list has to be
+};
+constexpr std::array values{
+    ValueMember{"nodes", "matrix", 16},
+    ValueMember{"nodes", "translation", 3},
+    ValueMember{"nodes", "rotation", 4},
+    ValueMember{"nodes", "scale", 3},
+    ValueMember{"KHR_node_visibility", "visible", ValueMember::boolean},
+    ValueMember{"perspective", "yfov", ValueMember::number},
+    ValueMember{"perspective", "aspectRatio", ValueMember::number},
+    ValueMember{"materials", "emissiveFactor", 3},
+    ValueMember{"materials", "alphaCutoff", ValueMember::number},
+    ValueMember{"materials", "doubleSided", ValueMember::boolean},
+    ValueMember{"pbrMetallicRoughness", "baseColorFactor", 4},
+    ValueMember{"pbrMetallicRoughness", "metallicFactor", ValueMember::number},
+    ValueMember{"pbrMetallicRoughness", "roughnessFactor", ValueMember::number},
+    ValueMember{"normalTexture", "scale", ValueMember::number},
+    ValueMember{"lights", "color", 3},
+    ValueMember{"lights", "intensity", ValueMember::number},
+    ValueMember{"lights", "rotation", 4},
+    ValueMember{"lights", "size", ValueMember::number},
+    ValueMember{"rect", "aspect", ValueMember::number},
+    ValueMember{"spot", "innerConeAngle", ValueMember::number},
+    ValueMember{"spot", "outerConeAngle", ValueMember::number},
+    ValueMember{"EXT_lights_ies", "multiplier", ValueMember::number},
+    ValueMember{"EXT_lights_ies", "color", 3},
+    ValueMember{"KHR_materials_emissive_strength", "emissiveStrength", ValueMember::number},
+    ValueMember{"KHR_materials_ior", "ior", ValueMember::number},
+    ValueMember{"KHR_materials_specular", "specularFactor", ValueMember::number},
+    ValueMember{"KHR_materials_specular", "specularColorFactor", 3},
+    ValueMember{"KHR_materials_transmission", "transmissionFactor", ValueMember::number},
+    ValueMember{"KHR_materials_volume", "thicknessFactor", ValueMember::number},
+    ValueMember{"KHR_materials_volume", "attenuationDistance", ValueMember::number},
+    ValueMember{"KHR_materials_volume", "attenuationColor", 3},
+    ValueMember{"KHR_texture_transform", "offset", 2},
+    ValueMember{"KHR_texture_transform", "scale", 2},
+    ValueMember{"KHR_texture_transform", "rotation", ValueMember::number},
+};
+
 constexpr std::int64_t most_int = std::numeric_limits<int>::max();
 constexpr std::uint64_t most_exact = std::uint64_t{1} << std::numeric_limits<double>::digits;
 constexpr std::uint64_t most_size = std::numeric_limits<std::uint64_t>::max();
@@ -201,30 +244,41 @@ class JsonCheck {
   std::string problem;
   std::vector<std::string> required;  ///< extensions
 
-  bool null() { return value(!is_whole(), "null"); }
-  bool boolean(bool) { return value(!is_whole(), "true or false"); }
+  bool null() { return is_value("null") && value(!is_whole(), "null"); }
+  bool boolean(bool) { return is_value("true or false") && value(!is_whole(), "true or false"); }
   bool number_integer(number_integer_t number) {
+    if (!is_value(a_number)) return false;
     const bool fits = levels_.empty() || levels_.back().most == most_size || number >= -most_int;
     return value(fits && !is_whole(), number);
   }
-  bool number_float(number_float_t number, const string_t&) { return value(!is_whole(), number); }
+  bool number_float(number_float_t number, const string_t&) {
+    return is_value(a_number) && value(!is_whole(), number);
+  }
   bool number_unsigned(number_unsigned_t number) {
+    if (!is_value(a_number)) return false;
     return value(levels_.empty() || number <= levels_.back().most, number);
   }
   bool string(string_t& text) {
     const bool listed = levels_.size() == 2 && levels_.back().array;
     if (listed && levels_.front().key == "extensionsRequired") required.push_back(text);
-    return value(!is_whole(), "a text");
+    return is_value("a text") && value(!is_whole(), "a text");
   }
   bool binary(binary_t&) { return value(!is_whole(), "binary"); }
 
   bool start_object(std::size_t) { return enter(false); }
   bool start_array(std::size_t) { return enter(true); }
   bool end_object() { return leave(); }
-  bool end_array() { return leave(); }
+  bool end_array() {
+    const Level& level = levels_.back();
+    if (level.requested && level.elements != static_cast<std::uint64_t>(level.requested->what)) {
+      return is_value(fmt::format("a list of {} numbers", level.elements));
+    }
+    return leave();
+  }
   bool key(string_t& name) {
     Level& level = levels_.back();
     level.key = name;
+    level.requested = requested_of(level);
     if (!level.free) set_requested(level);
     return true;
   }
@@ -237,6 +291,8 @@ class JsonCheck {
   }
 
  private:
+  static constexpr std::string_view a_number = "a number", a_list = "a list";
+
   /// An array or object that is open.
   struct Level {
     bool array, free;            ///< free: not of the format itself
@@ -245,7 +301,43 @@ class JsonCheck {
     /// Whether what comes is a whole number, and up to which.
     bool whole = false;
     std::uint64_t most = most_size;
+    /// What the member that comes has to be; of an array, the member that it is.
+    const ValueMember* requested = nullptr;
+    bool extras = false;  ///< or within some
   };
+
+  const ValueMember* requested_of(const Level& level) const {
+    if (level.extras || levels_.size() < 2) return nullptr;
+    // In a list, the owner is called as the list.
+    const bool listed = levels_[levels_.size() - 2].array && levels_.size() > 2;
+    const std::string& owner = levels_[levels_.size() - (listed ? 3 : 2)].key;
+    const auto* const found = std::find_if(values.begin(), values.end(), [&](const auto& each) {
+      return each.name == level.key && each.owner == owner;
+    });
+    return found == values.end() ? nullptr : &*found;
+  }
+
+  /// Whether what comes, or the list that ends, is what its member has to be.
+  bool is_value(std::string_view shown) {
+    if (levels_.empty() || levels_.back().requested == nullptr) return true;
+    const Level& level = levels_.back();
+    const int what = level.requested->what;
+    const bool is_number = shown == a_number;
+    if (what == ValueMember::boolean ? shown == "true or false"
+                                     : is_number && (level.array || what == ValueMember::number)) {
+      return true;
+    }
+    if (!level.array && what > 0 && shown == a_list) return true;
+    std::string path = place();
+    if (level.array) path.erase(path.rfind('['));
+    problem =
+        fmt::format("malformed glTF: {} {} {}, not {}", path,
+                    level.array && !shown.starts_with(a_list) ? "has" : "is", shown,
+                    what == ValueMember::boolean  ? "true or false"
+                    : what == ValueMember::number ? std::string(a_number)
+                                                  : fmt::format("a list of {} numbers", what));
+    return false;
+  }
 
   /// The member of the n-th level from the innermost, which are objects.
   std::string_view member(std::size_t n) const {
@@ -293,7 +385,8 @@ class JsonCheck {
   }
 
   bool enter(bool array) {
-    if (is_whole()) return value(false, array ? "a list" : "an object");
+    if (!is_value(array ? a_list : "an object")) return false;
+    if (is_whole()) return value(false, array ? a_list : "an object");
     begin_value();
     if (levels_.size() == 2 && !check_count()) return false;
     Level level{.array = array, .free = false};
@@ -301,6 +394,8 @@ class JsonCheck {
       const Level& around = levels_.back();
       const bool foreign = !around.array && (around.key == "extras" || around.key == "extensions");
       level.free = around.free || foreign;
+      level.extras = around.extras || (!around.array && around.key == "extras");
+      if (array && !around.array) level.requested = around.requested;
       const bool list = array && !level.free && !around.array && is_one_of(lists, around.key);
       if (list) level.most = most_int;
     }

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "gltf/document.hpp"
+#include "gltf/meshes.hpp"
+#include "gltf/nodes.hpp"
 
 namespace photile::gltf {
 namespace {
 
-constexpr std::array<std::string_view, 14> understood_extensions{
+constexpr std::array<std::string_view, 15> understood_extensions{
     "EXT_lights_area",
     "EXT_lights_ies",
     "EXT_lights_image_based",
@@ -27,27 +29,44 @@ constexpr std::array<std::string_view, 14> understood_extensions{
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 };
 
 /// Nothing that a picture could show.
-constexpr std::array<std::string_view, 4> harmless_extensions{
+constexpr std::array<std::string_view, 14> harmless_extensions{
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
     "EXT_structural_metadata",
     "FB_ngon_encoding",
+    "KHR_audio_emitter",
+    "KHR_interactivity",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_physics_rigid_bodies",
     "KHR_xmp",
     "KHR_xmp_json_ld",
+    "MSFT_lod",
+    "MSFT_packing_occlusionRoughnessMetallic",
 };
 
-/// What to do about extensions that files of the wild have.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> remedies{{
+/// What is shown in place of what extensions say, or what to do about them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
+    {"EXT_texture_avif", "save its textures as PNG or JPEG"},
+    {"KHR_animation_pointer", "all is shown as without animation"},
     {"KHR_materials_anisotropy", "brushed metal shines alike in all directions"},
     {"KHR_materials_clearcoat", "coats are left out: what is below them reflects alone"},
+    {"KHR_materials_diffuse_transmission", "no light passes; export thin sheets with alpha BLEND"},
+    {"KHR_materials_dispersion", "glass bends all colours alike"},
+    {"KHR_materials_iridescence", "thin films have no colours"},
     {"KHR_materials_pbrSpecularGlossiness",
      "its colours are lost; convert them to metallic-roughness"},
     {"KHR_materials_sheen", "cloth has no sheen"},
     {"KHR_materials_unlit", "its surfaces are lit as all others are"},
     {"KHR_materials_variants", "surfaces have their default materials"},
+    {"KHR_materials_volume_scatter", "nothing scatters below surfaces"},
     {"KHR_texture_basisu", "save its textures as PNG or JPEG"},
 }};
 
@@ -76,11 +95,62 @@ void check_required_extensions(const std::vector<std::string>& required,
   }
 }
 
+namespace {
+
+/// Names what has the extension. Returns whether anything has.
+class ExtensionUsers {
+ public:
+  ExtensionUsers(const tinygltf::Model& model, std::string extension, const std::string& remedy,
+                 files::Warnings& warnings)
+      : model_(model),
+        extension_(std::move(extension)),
+        message_(extension_ + " is not understood; " + remedy),
+        warnings_(warnings) {}
+
+  bool warn() {
+    for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+      add(model_.nodes[i], "node", node_name(model_, static_cast<int>(i)));
+    }
+    for (std::size_t i = 0; i < model_.meshes.size(); ++i) {
+      const std::string name = name_of_mesh(model_, static_cast<int>(i));
+      add(model_.meshes[i], "mesh", name);
+      for (const tinygltf::Primitive& primitive : model_.meshes[i].primitives) {
+        add(primitive, "mesh", name);
+      }
+    }
+    for (std::size_t i = 0; i < model_.materials.size(); ++i) {
+      const std::string& name = model_.materials[i].name;
+      add(model_.materials[i], "material", name.empty() ? fmt::format("material {}", i) : name);
+    }
+    for (std::size_t i = 0; i < model_.textures.size(); ++i) {
+      add(model_.textures[i], "texture", fmt::format("{}", i));
+    }
+    return found_;
+  }
+
+ private:
+  template <class Object>
+  void add(const Object& object, const char* kind, const std::string& name) {
+    if (!find_extension(object.extensions, extension_)) return;
+    warnings_.add(kind, name, message_);
+    found_ = true;
+  }
+
+  const tinygltf::Model& model_;
+  const std::string extension_, message_;
+  files::Warnings& warnings_;
+  bool found_ = false;
+};
+
+}  // namespace
+
 void warn_of_extensions(const tinygltf::Model& model, reading::ImportContext& context) {
   for (const std::string& extension : model.extensionsUsed) {
     if (is_understood(extension)) continue;
-    context.warnings.add("extension", extension,
-                         "not understood; " + remedy_for(extension, "what it says is ignored"));
+    const std::string remedy = remedy_for(extension, "what it says is ignored");
+    if (!ExtensionUsers(model, extension, remedy, context.warnings).warn()) {
+      context.warnings.add("extension", extension, "not understood; " + remedy);
+    }
   }
 }
 

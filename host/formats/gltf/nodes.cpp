@@ -112,6 +112,13 @@ struct Level {
   glm::dmat4 world;
 };
 
+/// KHR_node_visibility: what is not visible hides all below it.
+bool is_visible(const tinygltf::Node& node) {
+  const tinygltf::Value* const found = find_extension(node.extensions, "KHR_node_visibility");
+  return found == nullptr || !found->Has("visible") || !found->Get("visible").IsBool() ||
+         found->Get("visible").Get<bool>();
+}
+
 class Walk {
  public:
   Walk(const tinygltf::Model& model, reading::ImportContext& context)
@@ -149,6 +156,12 @@ class Walk {
           fmt::format("nodes nested more than {} levels deep", limits::max_node_depth));
     }
     if (context_.is_hidden(node_name(model_, node))) return;
+    if (!is_visible(*source)) {
+      context_.warnings.add("node", node_name(model_, node),
+                            "invisible in the file (KHR_node_visibility): left out, with all "
+                            "below it");
+      return;
+    }
     on_path_[static_cast<std::size_t>(node)] = true;
     const glm::dmat4 world = parent * local_transform(*source);
     const bool has_mesh = element(model_.meshes, source->mesh) != nullptr;
