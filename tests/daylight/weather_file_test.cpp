@@ -27,6 +27,12 @@ std::string error_of(const TemporaryFolder& folder, const std::string& text) {
   return message_of<InputError>([&] { weather::read_weather(file); });
 }
 
+std::size_t hours_in(const TemporaryFolder& folder, const std::string& text) {
+  const auto file = folder.path / "good.epw";
+  std::ofstream(file, std::ios::binary) << text;
+  return weather::read_weather(file).hours.size();
+}
+
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   REQUIRE(at != std::string::npos);
@@ -94,6 +100,50 @@ TEST_CASE("a damaged weather file is refused in a line that names it and where")
   refused(replaced(good, "2005,1,1,3,", "2005,1,1,3," + std::string(40, ',')), "decimal point");
   refused(good.substr(0, good.size() / 2), "hours");
   refused(good + good.substr(good.find("2005,1,1,1,")), "hours");
+}
+
+TEST_CASE("a weather file whose header is not what follows is refused with both") {
+  const TemporaryFolder folder;
+  const std::string good = text_of_year(), period = "DATA PERIODS,1,1,Data,Sunday, 1/ 1,12/31";
+  const auto refused = [&](const std::string& text, const std::string& part) {
+    const std::string error = error_of(folder, text);
+    INFO(error);
+    CHECK(error.find("bad.epw: ") != std::string::npos);
+    CHECK(error.find(part) != std::string::npos);
+  };
+  const auto with_period = [&](const std::string& line) { return replaced(good, period, line); };
+  CHECK(hours_in(folder, with_period("data periods,1,1,,Monday,1/1/2005,12/31/2005")) == 8760);
+  refused(with_period("DATA PERIODS,1,4,Data,Sunday, 1/ 1, 4/ 2"), "line 8: 4 records per hour");
+  refused(with_period("DATA PERIODS,2,1,Data,Sunday, 1/ 1, 6/30,Data,Sunday,7/1,12/31"),
+          "line 8: 2 data periods");
+  refused(with_period("DATA PERIODS,1,1,Data,Sunday, 1/ 1, 4/ 2"), "4/ 2 is not what follows");
+  refused(with_period("DATA PERIODS,1,1,Data,Sunday, 7/ 1, 6/30"), "is not what follows");
+  refused(with_period("DATA PERIODS,1,one,Data,Sunday, 1/ 1,12/31"), "line 8");
+  refused(with_period("DATA PERIODS,1,1"), "month/day");
+  refused(with_period("COMMENTS 3"), "DATA PERIODS is missing");
+  // An hour twice, hours in disorder, a day left out.
+  refused(replaced(good, "2005,1,1,4,", "2005,1,1,3,"), "line 12: hour 3 of 1/1 does not follow");
+  refused(replaced(good, "2005,1,2,1,", "2005,1,3,1,"), "hour 1 of 1/3 does not follow");
+  // 60 minutes on, a year is another one.
+  refused(replaced(good, ",13.40,1.0,", ",13.40,-11.0,"), "hours from the sun");
+  refused(replaced(good, ",300,0,11,1,", ",300,0,3600,1,"), "more than the sun's");
+  refused(replaced(good, ",300,0,11,1,", ",300,0,99999,1,"), "missing");
+}
+
+TEST_CASE("a leap year has its 29th of February, and may begin on any day") {
+  const TemporaryFolder folder;
+  std::string text = text_of_year(), leap;
+  const std::size_t february = text.find("2005,2,28,1,"), march = text.find("2005,3,1,1,");
+  leap = text.substr(february, march - february);
+  for (std::size_t at = leap.find("2005,2,28,"); at != std::string::npos;
+       at = leap.find("2005,2,28,")) {
+    leap.replace(at, 10, "2005,2,29,");
+  }
+  CHECK(hours_in(folder, text.substr(0, march) + leap + text.substr(march)) == 8784);
+  const std::size_t january = text.find("2005,1,1,1,"), july = text.find("2005,7,1,1,");
+  const std::string shifted = replaced(text.substr(0, january), " 1/ 1,12/31", " 7/ 1, 6/30") +
+                              text.substr(july) + text.substr(january, july - january);
+  CHECK(hours_in(folder, shifted) == 8760);
 }
 
 TEST_CASE("random bytes in a weather file never do worse than an error") {

@@ -11,7 +11,6 @@
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 
 namespace photile::weather {
 namespace {
@@ -19,10 +18,12 @@ namespace {
 constexpr std::size_t header_lines = 8;
 constexpr std::size_t hours_of_year = 8'760, hours_of_leap_year = 8'784;
 constexpr std::size_t fields_of_hour = 35;
-constexpr std::size_t periods_line = 7, weekday_field = 4;
+constexpr std::size_t periods_line = 7, first_day_field = 5;
 constexpr std::array<const char*, 7> weekdays{"monday", "tuesday",  "wednesday", "thursday",
                                               "friday", "saturday", "sunday"};
 constexpr double missing_irradiance = 9'999, missing_temperature = 99.9;
+/// Of the sun at its nearest, outside the atmosphere, and a little (ASTM E490).
+constexpr double most_irradiance = 1'500;
 
 /// Days of each month; the 29th of February is one where a file has it.
 constexpr std::array<int, 12> days_of_month{31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
@@ -58,8 +59,11 @@ class Line {
 
   /// Errors: InputError.
   double irradiance(std::size_t index, const char* what) const {
-    const double value = number(index, what, 0, limits::max_irradiance);
+    const double value = number(index, what, 0, 10 * missing_irradiance + 9);
     if (value >= missing_irradiance) refuse(fmt::format("the {} is missing", what));
+    if (value > most_irradiance) {
+      refuse(fmt::format("the {} of {:g} W/m2 is more than the sun's above the air", what, value));
+    }
     return value;
   }
 
@@ -76,8 +80,66 @@ class Line {
 
 Site site_of(const Line& line) {
   if (lower(line.field(0)) != "location") line.refuse("an EPW file begins with LOCATION");
-  return {line.number(6, "latitude", -90, 90), line.number(7, "longitude", -180, 180),
-          line.number(8, "time zone", -12, 14)};
+  const Site site{line.number(6, "latitude", -90, 90), line.number(7, "longitude", -180, 180),
+                  line.number(8, "time zone", -12, 14)};
+  // Clocks are at most three hours and a half from the sun's; a wrong sign is farther.
+  constexpr double most_hours = 5, degrees_per_hour = 15;
+  const double apart =
+      std::remainder(site.time_zone - site.longitude_degrees / degrees_per_hour, 24.0);
+  if (std::abs(apart) > most_hours) {
+    line.refuse(fmt::format("time zone {:g} is {:.1f} hours from the sun at longitude {:g}",
+                            site.time_zone, std::abs(apart), site.longitude_degrees));
+  }
+  return site;
+}
+
+/// A day of any year.
+struct Day {
+  int month = 0, day = 0;
+  bool operator==(const Day&) const = default;
+};
+
+/// Of "12/31", with blanks before its numbers; with a year behind it where the file has one.
+Day day_of(const Line& line, std::size_t index) {
+  const std::string_view text = line.field(index);
+  const std::size_t slash = text.find('/');
+  const auto month = parse_number<int>(trimmed(text.substr(0, slash)));
+  std::string_view rest = slash == std::string_view::npos ? "" : text.substr(slash + 1);
+  const auto day = parse_number<int>(trimmed(rest.substr(0, rest.find('/'))));
+  if (!month || !day) line.refuse(fmt::format("field {} is '{}', no month/day", index + 1, text));
+  return {*month, *day};
+}
+
+/// What DATA PERIODS says of the lines that follow.
+struct Period {
+  Day first, last;
+  int first_weekday = WeatherYear().first_weekday;
+};
+
+Period period_of(const Line& line) {
+  constexpr std::size_t periods = 1, records = 2, weekday = 4;
+  if (lower(line.field(0)) != "data periods") line.refuse("DATA PERIODS is missing");
+  if (line.number(periods, "number of data periods", 1, 366) != 1) {
+    line.refuse(fmt::format("{} data periods, where a year is one", line.field(periods)));
+  }
+  if (line.number(records, "number of records per hour", 1, 60) != 1) {
+    line.refuse(fmt::format("{} records per hour, where one is read", line.field(records)));
+  }
+  Period period{day_of(line, first_day_field), day_of(line, first_day_field + 1)};
+  const auto* const named = std::find(weekdays.begin(), weekdays.end(), lower(line.field(weekday)));
+  if (named != weekdays.end()) period.first_weekday = static_cast<int>(named - weekdays.begin());
+  return period;
+}
+
+/// The day and hour after those of a line: the 29th of February is one that a file may have.
+bool follows(const WeatherHour& hour, const WeatherHour& before) {
+  if (hour.month == before.month && hour.day == before.day) return hour.hour == before.hour + 1;
+  constexpr double first = 0.5, last = 23.5;
+  if (before.hour != last || hour.hour != first) return false;
+  if (hour.month == before.month) return hour.day == before.day + 1;
+  const bool ends = before.day == days_of_month[static_cast<std::size_t>(before.month - 1)] ||
+                    (before.month == 2 && before.day == 28);
+  return ends && hour.day == 1 && hour.month == before.month % 12 + 1;
 }
 
 WeatherHour hour_of(const Line& line) {
@@ -110,13 +172,23 @@ WeatherYear read_weather_hours(const std::filesystem::path& file) {
   }
   WeatherYear year;
   year.site = site_of(Line(file, 1, lines.front()));
-  const std::string weekday =
-      lower(Line(file, periods_line + 1, lines[periods_line]).field(weekday_field));
-  const auto day = std::find(weekdays.begin(), weekdays.end(), weekday);
-  if (day != weekdays.end()) year.first_weekday = static_cast<int>(day - weekdays.begin());
+  const Line periods(file, periods_line + 1, lines[periods_line]);
+  const Period period = period_of(periods);
+  year.first_weekday = period.first_weekday;
+  const auto is_day = [](const WeatherHour& hour, const Day& day) {
+    return Day{hour.month, hour.day} == day;
+  };
   for (std::size_t i = header_lines; i < lines.size(); ++i) {
     if (trimmed(lines[i]).empty()) continue;
-    year.hours.push_back(hour_of(Line(file, i + 1, lines[i])));
+    const Line line(file, i + 1, lines[i]);
+    const WeatherHour hour = hour_of(line);
+    if (!year.hours.empty() && !follows(hour, year.hours.back())) {
+      const WeatherHour& before = year.hours.back();
+      line.refuse(fmt::format("hour {:g} of {}/{} does not follow hour {:g} of {}/{}",
+                              hour.hour + 0.5, hour.month, hour.day, before.hour + 0.5,
+                              before.month, before.day));
+    }
+    year.hours.push_back(hour);
     if (year.hours.size() > hours_of_leap_year) {
       throw InputError(
           fmt::format("{}: line {}: more than {} hours; give a file of one year with a "
@@ -124,16 +196,31 @@ WeatherYear read_weather_hours(const std::filesystem::path& file) {
                       file.string(), i + 1, hours_of_leap_year));
     }
   }
+  const bool whole = year.hours.size() == hours_of_year || year.hours.size() == hours_of_leap_year;
+  if (whole &&
+      !(is_day(year.hours.front(), period.first) && is_day(year.hours.back(), period.last))) {
+    periods.refuse(fmt::format("{} to {} is not what follows, {}/{} to {}/{}",
+                               periods.field(first_day_field), periods.field(first_day_field + 1),
+                               year.hours.front().month, year.hours.front().day,
+                               year.hours.back().month, year.hours.back().day));
+  }
   return year;
 }
 
 WeatherYear read_weather(const std::filesystem::path& file) {
-  WeatherYear year = read_weather_hours(file);
+  const WeatherYear year = read_weather_hours(file);
   if (year.hours.size() != hours_of_year && year.hours.size() != hours_of_leap_year) {
     throw InputError(fmt::format(
         "{}: {} hours; give a file of a whole year, {} or {} lines after "
         "the first {}",
         file.string(), year.hours.size(), hours_of_year, hours_of_leap_year, header_lines));
+  }
+  const bool is_leap = std::any_of(year.hours.begin(), year.hours.end(), [](const auto& hour) {
+    return hour.month == 2 && hour.day == 29;
+  });
+  if (is_leap != (year.hours.size() == hours_of_leap_year)) {
+    throw InputError(fmt::format("{}: {} hours, {} the 29th of February; give a file of one year",
+                                 file.string(), year.hours.size(), is_leap ? "with" : "without"));
   }
   return year;
 }
