@@ -28,6 +28,7 @@
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/scene_queries.hpp"
+#include "trace/light_offset.hpp"
 #include "trace/place_camera.hpp"
 #include "trace/portal_search.hpp"
 
@@ -183,6 +184,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
   loading::apply_reflectances(scene, options.reflectances);
   check_powers(scene, options.emissive_scale);
   loading::group_lights(scene, options.light_groups);
+  trace::offset_lights(scene);
   if (scene.cameras.empty()) scene.cameras.push_back(trace::place_camera(scene));
   const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
                                            [](const Light& light) { return light.is_distant(); });

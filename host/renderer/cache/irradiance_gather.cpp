@@ -21,6 +21,7 @@
 #include "trace/bright_surface.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/hemisphere_rays.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/shading_point.hpp"
 
@@ -100,6 +101,7 @@ struct RunLight {
                                        first_light_sample);
     };
     if (traced) {
+      const trace::HotSpots& hot_spots = trace::hot_spots_of(rays);
       const double exact = add_sampled_apart(where, sums);
       if (light_sampler.samples_all_apart()) return;
       thread_local trace::SelectionProbabilities probabilities;
@@ -113,8 +115,11 @@ struct RunLight {
         for (std::uint32_t batch = 0; batch < batches; ++batch) {
           const trace::LightSampleNumbers samples = samples_of(batch);
           for (int i = begin; i < end; ++i) {
-            light_samples.add(light_sampler, where, samples.light(static_cast<std::uint32_t>(i)),
-                              glm::vec3(1.0f), rays_per_light_sample, probabilities, batch);
+            const auto numbers = samples.light(static_cast<std::uint32_t>(i));
+            const auto light = light_sampler.sample(where.position, numbers.choice,
+                                                    numbers.position, probabilities);
+            if (light && hot_spots.holds(light->light, where.position)) continue;
+            light_samples.add(where, light, glm::vec3(1.0f), rays_per_light_sample, batch);
           }
         }
         return light_samples.found(rays);
@@ -150,6 +155,7 @@ struct RunLight {
   /// Adds to all batches what lights bring that need no chance. Returns its luminance.
   double add_sampled_apart(const trace::SurfacePoint& where, BatchSums& sums) const {
     thread_local trace::ShadowRays shadow_rays;
+    const trace::HotSpots& hot_spots = trace::hot_spots_of(rays);
     double exact = 0;
     const auto add = [&](const trace::ShadowRays::Found& light) {
       exact += layer_powers[light.layer] * luminance(glm::dvec3(light.irradiance));
@@ -160,10 +166,24 @@ struct RunLight {
     };
     shadow_rays.clear();
     for (const std::uint32_t light : light_sampler.sampled_apart()) {
-      if (rays.scene().lights[light].has_size()) continue;
+      if (rays.scene().lights[light].has_size() || hot_spots.holds(light, where.position)) continue;
       shadow_rays.add(where, light_sampler.towards(light, where.position), glm::vec3(1.0f), 0.0f,
                       0);
     }
+    hot_spots.for_each_at(where.position, [&](std::uint32_t light) {
+      if (!std::isfinite(parameters.resolution)) return;
+      // As seen from below the surface, the light is as far off as it is to be. Its hot spot, as
+      // far as it reaches, keeps the flux of a light that shines evenly.
+      const double height = static_cast<double>(
+          glm::dot(rays.scene().lights[light].position - where.position, where.normal));
+      if (!(height > 0)) return;
+      const double reach = hot_spots.reach(light),
+                   raised = std::hypot(height, parameters.resolution);
+      const double kept = 1 - raised / std::sqrt(raised * raised + reach * reach - height * height);
+      const auto sunk = static_cast<float>(raised - height);
+      shadow_rays.add(where, light_sampler.towards(light, where.position - sunk * where.normal),
+                      glm::vec3(static_cast<float>((1 - height / reach) / kept)), 0.0f, 0);
+    });
     for (const trace::ShadowRays::Found& light : shadow_rays.found(rays)) add(light);
     for (const std::uint32_t light : light_sampler.sampled_apart()) {
       if (!rays.scene().lights[light].has_size()) continue;

@@ -36,6 +36,10 @@ struct IrradianceGatherParameters {
   /// slats narrower than half of it. Not where there are caustics, which only photons know. 0 = all
   /// is read.
   double near = 0;
+  /// Metres: how fine the light of hot spots (trace/hot_spots.hpp) is told at points. A light is
+  /// taken to be no closer to the point than this, so that its hot spot is as wide, and as bright
+  /// altogether. 0 = as it is there; infinity = it is left out.
+  double resolution = 0;
   /// Photons of an estimate of caustics, which tell its error.
   int caustic_neighbours = defaults::neighbours;
   std::uint64_t seed = defaults::seed;
@@ -68,7 +72,8 @@ struct GatheredParts {
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light, and `of_nodes`, as SecondaryLight has them; k of about 100 suffices
+  ///   photons    of all light but that of hot spots (trace_photons_beside_hot_spots), and
+  ///              `of_nodes`, as SecondaryLight has them; k of about 100 suffices
   ///   secondary  light maps for these photons, read where rays meet surface
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.

@@ -4,8 +4,12 @@
 #include <vector>
 
 #include "photile/errors.hpp"
+#include "trace/eye_path.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/hot_spots.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/sensors.hpp"
+#include "trace/shading_point.hpp"
 
 namespace photile {
 namespace {
@@ -81,18 +85,35 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
     }
   }
   batch.rays = once.size();
+  if (finds_hot_spots_ == FindsHotSpots::yes && film.pass == 0 &&
+      !trace::hot_spots_of(rays).empty()) {
+    const trace::LightSampler light_sampler(rays.scene());
+    for (std::uint32_t hit = 0; hit < once.size(); ++hit) {
+      const trace::SurfacePoint point = trace::point_of(rays.scene(), once, hit);
+      const trace::OpaqueBsdf bsdf = trace::bsdf_of(rays.scene(), once, hit, point);
+      trace::for_each_hot_light(
+          impl_of(rays), light_sampler, point,
+          [&](const trace::LightSample& light, const glm::vec3& arrives) {
+            const double cosine = double{glm::dot(light.direction, point.normal)};
+            batch.emission.push_back(
+                {once.pixel[hit], light.layer,
+                 once.throughput[hit] * bsdf.reflected(light.direction) * arrives,
+                 static_cast<float>(cosine * luminance(glm::dvec3(arrives)))});
+          });
+    }
+  }
   return batch;
 }
 
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress) {
-  return render_hits(scene, SensorHits(sensors), one_row(sensors, 1), devices, parameters,
-                     progress);
+  return render_hits(scene, SensorHits(sensors, FindsHotSpots::yes), one_row(sensors, 1), devices,
+                     parameters, progress);
 }
 
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress) {
-  return trace_paths_of_hits(scene, SensorHits(sensors),
+  return trace_paths_of_hits(scene, SensorHits(sensors, FindsHotSpots::no),
                              eye_rays({.seed = seed, .film = one_row(sensors, paths)}), progress);
 }
 

@@ -58,23 +58,33 @@ class ReflectedHits : public HitSource {
   const Camera& camera_;
 };
 
+/// Whether hits find the light of hot spots (trace/hot_spots.hpp), which photons for points leave
+/// out; paths from hits find it themselves.
+enum class FindsHotSpots : bool { no, yes };
+
 /// Sensor i is pixel i of a film that is one row high.
 class SensorHits : public HitSource {
  public:
-  explicit SensorHits(std::span<const Sensor> sensors) : sensors_(sensors) {}
+  SensorHits(std::span<const Sensor> sensors, FindsHotSpots finds_hot_spots)
+      : sensors_(sensors), finds_hot_spots_(finds_hot_spots) {}
   void add_to(ContentHash& hash) const override;
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
 
  private:
   std::span<const Sensor> sensors_;
+  FindsHotSpots finds_hot_spots_;
 };
 
 /// What sensors in the air look at. Sensor i is row i of a film that is one pixel wide.
 class GatherHits : public HitSource {
  public:
-  GatherHits(const Scene& scene, std::span<const Sensor> sensors, SensorResponse response)
-      : sensors_(sensors), response_(response), light_sampler_(scene) {}
+  GatherHits(const Scene& scene, std::span<const Sensor> sensors, SensorResponse response,
+             FindsHotSpots finds_hot_spots)
+      : sensors_(sensors),
+        response_(response),
+        light_sampler_(scene),
+        finds_hot_spots_(finds_hot_spots) {}
   void add_to(ContentHash& hash) const override;
   PrimaryHitBatch trace(const RayScene& rays, const PrimaryHitParameters& film, int first_row,
                         int last_row, std::span<const std::uint32_t> map_of) const override;
@@ -83,6 +93,7 @@ class GatherHits : public HitSource {
   std::span<const Sensor> sensors_;
   SensorResponse response_;
   trace::LightSampler light_sampler_;
+  FindsHotSpots finds_hot_spots_;
 };
 
 /// `render` and `trace_paths` for any hits.

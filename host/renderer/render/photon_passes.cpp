@@ -16,6 +16,7 @@
 #include "render/exchange.hpp"
 #include "render/setting.hpp"
 #include "render/shared_photons.hpp"
+#include "trace/photon_tracer.hpp"
 
 namespace photile {
 namespace {
@@ -59,7 +60,8 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
   if (!plan.reads_light_maps()) return;
   if (plan.gathers_at_nodes()) {
     gather_.emplace(rays, *photons_.all.of_points, *photons_.all.of_nodes, photons_.ends,
-                    photons_.caustics.of_points.get(), plan.node_gathering(photons_.radius));
+                    photons_.caustics.of_points.get(),
+                    plan.node_gathering(photons_.radius, photons_.maps));
   } else {
     by_photons_.emplace(*photons_.all.of_nodes);
   }
@@ -233,7 +235,10 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
     traced.photons = std::move(prepared->photons);
     if (plan_.keeps_caustics()) traced.caustics = std::move(*prepared->caustics);
   } else {
-    traced = trace_photons(rays_, plan_.tracing(pass_, paths_before_, parts_), progress);
+    const PhotonTracerParameters tracing = plan_.tracing(pass_, paths_before_, parts_);
+    traced = plan_.finds_hot_spots()
+                 ? trace::trace_photons_beside_hot_spots(rays_, tracing, progress)
+                 : trace_photons(rays_, tracing, progress);
   }
   costs_.trace.add(trace_watch.taken(), traced.photons.bytes() + traced.caustics.bytes());
   if (auto* const processes = plan_.used().processes) {

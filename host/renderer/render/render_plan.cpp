@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "cache/surface_cache.hpp"
 #include "common/ascii_text.hpp"
@@ -80,6 +82,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
                        Progress& progress)
     : used_(asked),
       asked_passes_(asked.passes),
+      for_points_(hits == HitsAsk::points),
       least_radius_(photile::least_radius(rays.scene())),
       scene_(rays.scene().source.filename().string()) {
   check(asked);
@@ -197,10 +200,13 @@ LightMapParameters RenderPlan::ends(double radius, const Scene& scene, const Pho
   return parameters;
 }
 
-cache::IrradianceGatherParameters RenderPlan::node_gathering(double radius) const {
+cache::IrradianceGatherParameters RenderPlan::node_gathering(double radius,
+                                                             const LightMapParameters& maps) const {
   return {.rays = used_.light_map_rays,
           .light_samples = used_.light_map_rays,
           .near = defaults::near_radii * radius,
+          .resolution = for_points_ ? std::numeric_limits<double>::infinity()
+                                    : maps.spacing / std::exp2(maps.levels - 1),
           .caustic_neighbours = used_.neighbours,
           .seed = trace::seed_of_repeat(used_.seed, 0),
           .max_specular_depth = used_.max_specular_depth};

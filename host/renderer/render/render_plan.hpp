@@ -46,6 +46,9 @@ class RenderPlan {
   bool leaves_out_hidden() const { return leaves_out_hidden_; }
   bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
   bool keeps_caustics() const { return gathers_at_nodes(); }
+  /// Whether shadow rays find the light of hot spots (trace/hot_spots.hpp), and photons leave it
+  /// out: at points, and where rays gather at nodes.
+  bool finds_hot_spots() const { return for_points_ || gathers_at_nodes(); }
   bool clips_areas() const { return used_.area == AreaMode::clipped; }
 
   /// The parameters of tracing in this pass, whose paths follow those of the passes before.
@@ -78,7 +81,9 @@ class RenderPlan {
                           std::span<const double> powers) const;
   /// At nodes of light maps.
   ///   radius   of the photon maps, metres
-  cache::IrradianceGatherParameters node_gathering(double radius) const;
+  ///   maps     of these nodes
+  cache::IrradianceGatherParameters node_gathering(double radius,
+                                                   const LightMapParameters& maps) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.
@@ -88,6 +93,7 @@ class RenderPlan {
  private:
   RenderParameters used_;
   int asked_passes_;
+  bool for_points_;
   bool leaves_out_hidden_ = false;
   double least_radius_;  ///< metres
   std::string scene_;    ///< for messages

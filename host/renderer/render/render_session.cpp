@@ -249,15 +249,17 @@ LightLayers with_own_illuminance(LightLayers layers) {
 PrimaryHitBatch GatherHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
                                   int first_row, int last_row,
                                   std::span<const std::uint32_t> map_of) const {
-  return trace::gather_rays(rays, sensors_, response_, light_sampler_, film, first_row, last_row,
+  return trace::gather_rays(rays, sensors_, response_, light_sampler_,
+                            finds_hot_spots_ == FindsHotSpots::yes, film, first_row, last_row,
                             map_of);
 }
 
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress) {
-  RenderResult result = render_hits(scene, GatherHits(scene, sensors, gathering.response),
-                                    film_of(sensors, gathering), devices, parameters, progress);
+  RenderResult result =
+      render_hits(scene, GatherHits(scene, sensors, gathering.response, FindsHotSpots::yes),
+                  film_of(sensors, gathering), devices, parameters, progress);
   result.layers = with_own_illuminance(std::move(result.layers));
   return result;
 }
@@ -266,7 +268,7 @@ PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sen
                                  const GatherParameters& gathering, std::uint64_t seed,
                                  Progress& progress) {
   PathTracerResult result =
-      trace_paths_of_hits(scene, GatherHits(scene, sensors, gathering.response),
+      trace_paths_of_hits(scene, GatherHits(scene, sensors, gathering.response, FindsHotSpots::no),
                           eye_rays({.seed = seed, .film = film_of(sensors, gathering)}), progress);
   result.layers = with_own_illuminance(std::move(result.layers));
   return result;

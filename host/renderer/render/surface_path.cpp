@@ -3,8 +3,11 @@
 
 #include "photile/defaults.hpp"
 #include "render/path_estimate.hpp"
+#include "trace/eye_path.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/ray_query.hpp"
+#include "trace/ray_scene.hpp"
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/shading_point.hpp"
@@ -21,11 +24,19 @@ using trace::RandomBlock;
 using trace::RandomStream;
 using trace::SurfacePoint;
 
+/// Of the numbers of scattering: those of no bounce.
+constexpr std::uint32_t hot_spot_blocks = 1u << 31;
+
 class SurfacePath {
  public:
   SurfacePath(const RayScene& rays, const trace::LightSampler& lights, const RandomStream& random,
               std::vector<PathLight>& found)
-      : rays_(rays), scene_(rays.scene()), lights_(lights), random_(random), found_(found) {}
+      : rays_(rays),
+        scene_(rays.scene()),
+        hot_spots_(trace::hot_spots_of(rays)),
+        lights_(lights),
+        random_(random),
+        found_(found) {}
 
   void trace(const SurfacePoint& start, const OpaqueBsdf& bsdf) {
     const trace::ShadingPoint shading_point(start, bsdf);
@@ -33,12 +44,12 @@ class SurfacePath {
         start, [&](const glm::vec3& to) { return shading_point.weights(to); },
         [&](const glm::vec3& to) { return shading_point.density(to); });
     const RandomBlock numbers = random_.block(Purpose::path_scattering, 1);
-    const auto first = shading_point.sample(random_.block(Purpose::path_scattering, 0), numbers);
+    const auto first = choose_direction(
+        start,
+        [&] { return shading_point.sample(random_.block(Purpose::path_scattering, 0), numbers); },
+        [&](const glm::vec3& to) { return shading_point.density(to); });
     if (!first) return;
-    density_ = shading_point.density(*first);
-    if (!(density_ > 0.0f)) return;
-    weights_ = shading_point.weights(*first) * glm::vec3(1.0f / density_);
-    from_ = start.position;
+    weights_ = shading_point.weights(*first) * (aim_weight_ / density_);
     std::optional<SurfacePoint> point = start;
     glm::vec3 way = *first;
     while ((point = follow(*point, way))) {
@@ -47,8 +58,49 @@ class SurfacePath {
   }
 
  private:
+  /// A direction in which the path goes on from an opaque point: by its own density, or for a part
+  /// of them to a hot spot. Sets what the density of the former is, and what is to be multiplied to
+  /// the weight over it. Nothing where the path ends.
+  template <class Sample, class Density>
+  std::optional<glm::vec3> choose_direction(const SurfacePoint& point, const Sample& sample,
+                                            const Density& density) {
+    from_ = point.position;
+    aim_weight_ = glm::vec3(1.0f);
+    std::optional<glm::vec3> direction;
+    aim_ = trace::HotSpotAim(hot_spots_, point.position, &point.normal);
+    const double to_hot_spots = aim_.fraction();
+    if (to_hot_spots > 0) {
+      const RandomBlock numbers =
+          random_.block(Purpose::path_scattering, hot_spot_blocks + bounce_);
+      if (numbers.uniform_double(0) < to_hot_spots) {
+        target_ = aim_.sample({numbers.uniform_double(0) / to_hot_spots, numbers.uniform(2)});
+        if (!target_) return std::nullopt;
+        direction = target_->direction;
+      } else {
+        aim_weight_ /= static_cast<float>(1 - to_hot_spots);
+      }
+    }
+    if (!direction) direction = sample();
+    if (!direction) return std::nullopt;
+    density_ = density(*direction);
+    if (!(density_ > 0.0f)) return std::nullopt;
+    if (target_) {
+      aim_weight_ = static_cast<float>(aim_.weight(double{density_}, *target_)) *
+                    trace::transmittance(rays_, point.origin_towards(*direction),
+                                         target_->point.origin_towards(-*direction));
+      if (aim_weight_ == glm::vec3(0.0f)) return std::nullopt;
+    }
+    return direction;
+  }
+
   /// The next surface point in a direction; adds what it emits. Nothing beyond the scene.
   std::optional<SurfacePoint> follow(const SurfacePoint& from, const glm::vec3& direction) {
+    if (target_) {
+      const SurfacePoint point = target_->point;
+      target_.reset();
+      aim_ = {};
+      return point;
+    }
     trace::RayOrigin origin = from.origin_towards(direction);
     const auto point =
         trace::next_surface(rays_, origin, direction, random_, Purpose::path_cutouts, cutouts_);
@@ -85,31 +137,45 @@ class SurfacePath {
           trace::scatter_specular(scene_, point, direction, numbers.uniform(trace::choice_word));
       // A pane of thin glass passes light straight on, and sampling lights sees through it.
       const bool unscattered = scattered.direction == direction;
-      if (!unscattered || !trace::material_of(scene_, point).thin) density_ = 0.0f;
+      if (!unscattered || !trace::material_of(scene_, point).thin) {
+        density_ = 0.0f;
+        aim_ = {};
+      }
       radiance_factor_ *= scattered.radiance_factor;
       direction = scattered.direction;
       return survives(scattered.weight, numbers);
+    }
+    if (aim_.fraction() > 0) {
+      weights_ =
+          weights_ * glm::vec3(static_cast<float>(aim_.weight_beside(double{density_}, point)));
     }
     const OpaqueBsdf bsdf(scene_, point, direction);
     sample_light(
         point, [&](const glm::vec3& to) { return weights_ * bsdf.reflected(to); },
         [&](const glm::vec3& to) { return bsdf.density(to); });
-    const auto scattered = bsdf.sample(numbers);
+    const auto scattered = choose_direction(
+        point, [&] { return bsdf.sample(numbers); },
+        [&](const glm::vec3& to) { return bsdf.density(to); });
     if (!scattered) return false;
-    density_ = bsdf.density(*scattered);
-    if (!(density_ > 0.0f)) return false;
-    from_ = point.position;
     direction = *scattered;
-    return survives(bsdf.reflected(*scattered) / density_, numbers);
+    if (!survives(bsdf.reflected(*scattered) / density_, numbers)) return false;
+    weights_ = weights_ * aim_weight_;
+    return true;
   }
 
-  /// Light of one light, chosen at random, at a point: `weigh` and `density` of directions there.
+  /// Light of one light, chosen at random, at a point, and that of hot spots there: `weigh` and
+  /// `density` of directions.
   template <class Weigh, class Density>
   void sample_light(const SurfacePoint& point, const Weigh& weigh, const Density& density) {
+    trace::for_each_hot_light(impl_of(rays_), lights_, point,
+                              [&](const trace::LightSample& hot, const glm::vec3& arrives) {
+                                add(hot.layer, weigh(hot.direction) * arrives);
+                              });
     const auto light =
         lights_.sample(point.position, random_.block(Purpose::path_light, 2 * bounce_),
                        random_.block(Purpose::path_light, 2 * bounce_ + 1));
     if (!light || !(glm::dot(light->direction, point.normal) > 0.0f)) return;
+    if (hot_spots_.holds(light->light, point.position)) return;
     const trace::RayOrigin origin = point.origin_towards(light->direction);
     const glm::vec3 arrives = light->received * trace::transmittance(rays_, origin, light->target);
     if (arrives == glm::vec3(0.0f)) return;
@@ -135,6 +201,7 @@ class SurfacePath {
 
   const RayScene& rays_;
   const Scene& scene_;
+  const trace::HotSpots& hot_spots_;
   const trace::LightSampler& lights_;
   const RandomStream& random_;
   std::vector<PathLight>& found_;
@@ -144,6 +211,9 @@ class SurfacePath {
   glm::vec3 left_{1.0f};        ///< of the light since the first direction was chosen
   glm::vec3 from_{0.0f};        ///< the last opaque point, metres
   float density_ = 0;           ///< of the direction from there; 0 after a mirror or glass
+  trace::HotSpotAim aim_;       ///< from there
+  std::optional<trace::HotSpotAim::Target> target_;  ///< where the path goes next, if it is aimed
+  glm::vec3 aim_weight_{1.0f};  ///< of the light from there, for a part of the directions is aimed
   std::uint32_t bounce_ = 1;
   std::uint32_t cutouts_ = 0;
 };

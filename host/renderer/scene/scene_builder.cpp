@@ -12,6 +12,7 @@
 #include "scene/mesh_builder.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
+#include "trace/light_offset.hpp"
 #include "trace/place_camera.hpp"
 
 namespace photile {
@@ -160,6 +161,7 @@ void SceneBuilder::Impl::finish(Scene& built) const {
   }
   scene::make_light_names_unique(built.lights);
   check_scene(built);
+  trace::offset_lights(built);
   if (built.cameras.empty()) built.cameras.push_back(trace::place_camera(built));
 }
 

@@ -11,6 +11,7 @@
 #include "photile/defaults.hpp"
 #include "photile/photons.hpp"
 #include "photile/scene.hpp"
+#include "trace/photon_tracer.hpp"
 #include "trace/surface_cells.hpp"
 
 namespace photile::trace {
@@ -66,10 +67,11 @@ std::vector<Cell> cells_of(const Scene& scene, const Photons& photons,
 Targets bright_surface(const RayScene& rays, std::span<const double> layer_powers,
                        std::uint64_t seed) {
   const Scene& scene = rays.scene();
-  const Photons photons = trace_photons(rays, {.emitted_photons = defaults::pilot_paths,
-                                               .quota = PhotonQuota::power,
-                                               .seed = seed})
-                              .photons;
+  const Photons photons =
+      trace_photons_beside_hot_spots(
+          rays,
+          {.emitted_photons = defaults::pilot_paths, .quota = PhotonQuota::power, .seed = seed})
+          .photons;
   const auto [centre, radius] = bounding_sphere(scene);
   std::vector<Cell> cells = cells_of(scene, photons, layer_powers);
   std::stable_sort(cells.begin(), cells.end(),

@@ -79,15 +79,7 @@ class ShadowRays {
   /// Takes one light sample.
   ///   weight       of what the light sample finds
   ///   directions   followed for each light sample; what both would find is weighed
-  ///   probabilities      of lights at the point
   ///   tag          that is found again with the light
-  void add(const LightSampler& light_sampler, const SurfacePoint& point,
-           const LightNumbers& numbers, const glm::vec3& weight, float directions,
-           const SelectionProbabilities& probabilities, std::uint32_t tag) {
-    add(point,
-        light_sampler.sample(point.position, numbers.choice, numbers.position, probabilities),
-        weight, directions, tag);
-  }
   void add(const SurfacePoint& point, const std::optional<LightSample>& light,
            const glm::vec3& weight, float directions, std::uint32_t tag);
 

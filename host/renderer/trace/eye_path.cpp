@@ -30,6 +30,24 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
   }
 }
 
+/// The light of hot spots at the hit that was appended last, as it reflects there.
+void add_hot_spots(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                   ReflectedPart part, EyeRecord& record) {
+  const float weight = ray.fraction / static_cast<float>(setup.parameters->samples_per_pixel);
+  for_each_hot_light(
+      *setup.rays, *setup.hot_spots, point,
+      [&](const LightSample& light, const glm::vec3& arrives) {
+        OpaqueBsdf bsdf(*setup.rays->scene, point, ray.direction);
+        bsdf.shade_smoothly(*setup.rays->scene, point);
+        if (part == ReflectedPart::but_the_base) bsdf.drop_diffuse();
+        if (part == ReflectedPart::but_the_lobe) bsdf.drop_lobe();
+        const float cosine = glm::dot(light.direction, point.normal);
+        record.direct.push_back({ray.pixel, light.layer,
+                                 ray.radiance_weight() * bsdf.reflected(light.direction) * arrives,
+                                 weight * cosine * static_cast<float>(luminance(arrives))});
+      });
+}
+
 /// Whether rays are to follow the lobe of a surface; `base` is then what else it reflects.
 bool leaves_lobe(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
                  glm::vec3& base) {
@@ -104,6 +122,12 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
       {-ray.direction, {surface.f0, surface.alpha, normals.seen, surface.f90, normals.smooth}});
 }
 
+void append_eye_hit(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                    EyeRecord& record) {
+  append_hit(*setup.rays, point, ray, record);
+  if (setup.hot_spots) add_hot_spots(setup, point, ray, ReflectedPart::all, record);
+}
+
 std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const RandomStream& random,
                                      EyeRecord& record, const LightTechnique* other,
                                      const LightSampleNumbers* light_samples,
@@ -145,17 +169,20 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
     }
     if (material_of(scene, point).interaction == Interaction::opaque) {
       if (seen_directly && !material_of(scene, point).glossy()) return std::nullopt;
+      if (ray.beside && ray.unscattered) {
+        ray.throughput *=
+            static_cast<float>(ray.beside->aim.weight_beside(ray.beside->density, point));
+      }
       append_hit(*setup.rays, point, ray, record);
       if (seen_directly) record.hits.back().diffuse_albedo = glm::vec3(0.0f);
       glm::vec3 base;
       const bool lobe_left = leaves_lobe(setup, point, ray, base);
       if (lobe_left) drop_lobe(base, record);
-      if (setup.direct) {
-        const ReflectedPart part = seen_directly ? ReflectedPart::but_the_base
-                                   : lobe_left   ? ReflectedPart::but_the_lobe
-                                                 : ReflectedPart::all;
-        add_direct_light(setup, point, ray, part, *light_samples, record);
-      }
+      const ReflectedPart part = seen_directly ? ReflectedPart::but_the_base
+                                 : lobe_left   ? ReflectedPart::but_the_lobe
+                                               : ReflectedPart::all;
+      if (setup.direct) add_direct_light(setup, point, ray, part, *light_samples, record);
+      if (setup.hot_spots) add_hot_spots(setup, point, ray, part, record);
       if (!lobe_left) return std::nullopt;
       return EyeEnd{point, ray};
     }

@@ -11,8 +11,10 @@
 #include "photile/ray_scene.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/distant_light.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
 #include "trace/ray_scene.hpp"
 #include "trace/surface.hpp"
 
@@ -68,8 +70,16 @@ struct EyeSetup {
   const DistantLights* distant = nullptr;
   const DirectRays* direct = nullptr;  ///< null where photons carry all light
   const LobeRays* lobes = nullptr;     ///< null where hits reflect with their lobes
+  /// Finds the light of hot spots at hits; null where it is not asked for there.
+  const LightSampler* hot_spots = nullptr;
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
+};
+
+/// The density of a ray's direction, where other rays from its start are aimed at hot spots.
+struct BesideHotSpots {
+  const HotSpotAim& aim;
+  double density;  ///< per steradian, of rays that are not aimed
 };
 
 /// A ray on its way to the eye's first opaque surface.
@@ -83,6 +93,7 @@ struct EyeRay {
   bool unscattered = true;     ///< but for panes of thin glass, which sampling lights sees through
   std::uint32_t cutouts = 0;   ///< that were looked at so far
   float fraction = 1.0f;       ///< of its sample, where glass split it
+  const BesideHotSpots* beside = nullptr;  ///< null where no rays are aimed
 
   /// What radiance that the ray meets counts at its start.
   glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
@@ -91,6 +102,26 @@ struct EyeRay {
 /// Appends what a ray that meets an opaque surface sees there.
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record);
+
+/// Calls visit(sample, what arrives) for the light of each hot spot at a point: as LightSample, and
+/// what of its `received` gets there.
+template <class Visit>
+void for_each_hot_light(const RayScene::Impl& rays, const LightSampler& light_sampler,
+                        const SurfacePoint& point, const Visit& visit) {
+  rays.hot_spots->for_each_at(point.position, [&](std::uint32_t light) {
+    const auto sample = light_sampler.towards(light, point.position);
+    if (!sample || !(glm::dot(sample->direction, point.normal) > 0.0f)) return;
+    const glm::vec3 arrives =
+        sample->received *
+        transmittance(rays, point.origin_towards(sample->direction), sample->target);
+    if (arrives != glm::vec3(0.0f)) visit(*sample, arrives);
+  });
+}
+
+/// Appends what a ray that is known to meet an opaque surface sees there, and the light of hot
+/// spots where that is asked for. The surface reflects with its lobe.
+void append_eye_hit(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
+                    EyeRecord& record);
 
 /// An opaque surface, and the ray that arrived there.
 struct EyeEnd {

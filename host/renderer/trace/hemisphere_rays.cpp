@@ -8,6 +8,7 @@
 
 #include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
@@ -53,7 +54,7 @@ std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsd
   const auto light =
       run.parameters.light_sampler->sample(point.position, random.block(Purpose::direct_light, 0),
                                            random.block(Purpose::direct_light, 1));
-  if (light) {
+  if (light && !hot_spots_of(run.rays).holds(light->light, point.position)) {
     const glm::vec3 radiance = hit.throughput * bsdf.reflected(light->direction) * light->received *
                                light->weight_beside(bsdf.density(light->direction));
     if (radiance != glm::vec3(0.0f)) {
@@ -114,16 +115,27 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
         std::min(1.0f, defaults::survival_of_reflectance * largest(reflection.reflectance));
     if (!(numbers.uniform(2) < survival)) return;
     hit.throughput /= survival;
+    for_each_hot_light(
+        impl_of(run.rays), light_sampler, point,
+        [&](const LightSample& light, const glm::vec3& arrives) {
+          const glm::vec3 reflected = bsdf ? bsdf->reflected(light.direction)
+                                           : glm::one_over_pi<float>() * reflection.reflectance *
+                                                 glm::dot(light.direction, point.normal);
+          ray_hits.direct.push_back({hit.pixel, light.layer, hit.throughput * reflected * arrives});
+        });
     std::optional<Onward> on;
     if (bsdf) {
       on = reflect_by_lobe(run, *bsdf, point, random, hit, ray_hits);
       if (!on) return;
     } else {
-      light_samples.add(
-          light_sampler, point,
-          {random.block(Purpose::direct_light, 0), random.block(Purpose::direct_light, 1)},
-          glm::one_over_pi<float>() * hit.throughput * reflection.reflectance, 1.0f, by_power_alone,
-          hit.pixel);
+      const auto light =
+          light_sampler.sample(point.position, random.block(Purpose::direct_light, 0),
+                               random.block(Purpose::direct_light, 1));
+      if (light && !hot_spots_of(run.rays).holds(light->light, point.position)) {
+        light_samples.add(point, light,
+                          glm::one_over_pi<float>() * hit.throughput * reflection.reflectance, 1.0f,
+                          hit.pixel);
+      }
       const glm::vec3 direction =
           Frame(point.normal)
               .to_world(sample_cosine_hemisphere(numbers.uniform(0), numbers.uniform(1)));
@@ -150,6 +162,16 @@ struct Leaving {
   float weight;
 };
 
+/// Of directions by the cosine, or into the aim for a part of them.
+///   aim   null: by the cosine alone
+double density_of_leaving(const glm::vec3& direction, const Frame& frame, const Aim* aim) {
+  const double by_cosine =
+      std::max(0.0, static_cast<double>(glm::dot(direction, frame.n))) * glm::one_over_pi<double>();
+  if (!aim) return by_cosine;
+  constexpr double aimed = defaults::rays_to_bright;
+  return aimed * aim->density(direction) + (1 - aimed) * by_cosine;
+}
+
 /// By the cosine, or into the aim for a part of the square.
 ///   aim   null: by the cosine alone
 Leaving leaving(const Frame& frame, const Aim* aim, glm::dvec2 u) {
@@ -174,6 +196,48 @@ Leaving leaving(const Frame& frame, const Aim* aim, glm::dvec2 u) {
                                             (aimed * way.density + (1 - aimed) * by_cosine_alone))};
 }
 
+/// Adds the light of hot spots where rays end that did not go on: hits from `before` on. Photons
+/// there do not carry it.
+void add_hot_spots(const RunSetup& run, std::size_t before, EyeRecord& ray_hits) {
+  const Scene& scene = run.rays.scene();
+  for (std::size_t i = before; i < ray_hits.hits.size(); ++i) {
+    const EyeHit& hit = ray_hits.hits[i];
+    const SurfacePoint point = surface_point(
+        scene, nearest_on_triangle(scene, triangle_of(hit.oriented_face), glm::dvec3(hit.position)),
+        side_of(hit.oriented_face));
+    for_each_hot_light(
+        impl_of(run.rays), *run.parameters.light_sampler, point,
+        [&](const LightSample& light, const glm::vec3& arrives) {
+          const OpaqueBsdf bsdf(
+              scene, point, ray_hits.glossy.empty() ? -point.normal : -ray_hits.glossy[i].outgoing);
+          ray_hits.direct.push_back(
+              {hit.pixel, light.layer, hit.throughput * bsdf.reflected(light.direction) * arrives});
+        });
+  }
+}
+
+/// A target of a ray that is aimed at a hot spot, as seen from a point, with what its light counts;
+/// nothing where something is in the way.
+///   bright   where the other rays are aimed at, or null
+struct Aimed {
+  HotSpotAim::Target target;
+  glm::vec3 weight;
+};
+std::optional<Aimed> to_hot_spot(const RunSetup& run, const SurfacePoint& point, const Frame& frame,
+                                 const HotSpotAim& aim, const Aim* bright, const glm::dvec2& u) {
+  const auto target = aim.sample(u);
+  if (!target) return std::nullopt;
+  const float cosine = glm::dot(target->direction, point.normal);
+  if (!(cosine > 0.0f)) return std::nullopt;
+  const glm::vec3 passes = transmittance(run.rays, point.origin_towards(target->direction),
+                                         target->point.origin_towards(-target->direction));
+  if (passes == glm::vec3(0.0f)) return std::nullopt;
+  const double others = density_of_leaving(target->direction, frame, bright);
+  const double by_cosine = double{cosine} * glm::one_over_pi<double>();
+  return Aimed{*target,
+               static_cast<float>(by_cosine / others * aim.weight(others, *target)) * passes};
+}
+
 /// All rays of a point. Returns the sum of their inverse distances to what they meet first.
 ///   run_point   its position in the run
 float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t number,
@@ -195,16 +259,45 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
     aim.emplace(*parameters.bright, glm::dvec3(point.position), &point.normal);
     if (!aim->possible()) aim.reset();
   }
+  const Aim* const bright = aim ? &*aim : nullptr;
+  const HotSpotAim hot_spots(hot_spots_of(run.rays), point.position, &point.normal);
+  const double to_hot_spots = hot_spots.fraction();
   float inverse_distances = 0;
+  const auto end_ray = [&](std::size_t before, float weight, std::uint32_t stream) {
+    if (ray_hits.hits.size() == before) return;
+    inverse_distances +=
+        weight / std::max(1e-6f, glm::distance(point.position, ray_hits.hits.back().position));
+    if (parameters.near > 0) {
+      go_on_from_near(run, point, number, before, stream, batches * rays, near_light_samples,
+                      ray_hits);
+    }
+    add_hot_spots(run, before, ray_hits);
+  };
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
     for (std::uint32_t i = 0; i < rays; ++i) {
-      const auto [direction, weight] =
-          leaving(frame, aim ? &*aim : nullptr, sobol_point(parameters.first_ray + i, scramble));
-      if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
-      if (!(weight > 0)) continue;  // below the horizon
       // A stream for each, apart from the point's own.
       const std::uint32_t stream = batch * rays + i + 1;
+      const std::uint32_t ray = (run_point * batches + batch) * rays + i;
+      const std::size_t before = ray_hits.hits.size();
+      glm::dvec2 u = sobol_point(parameters.first_ray + i, scramble);
+      if (u.x < to_hot_spots) {
+        const auto aimed =
+            to_hot_spot(run, point, frame, hot_spots, bright, {u.x / to_hot_spots, u.y});
+        const glm::vec3 direction = aimed ? aimed->target.direction : point.normal;
+        if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
+        if (!aimed) continue;
+        append_hit(impl_of(run.rays), aimed->target.point,
+                   {point.origin_towards(direction), direction, aimed->weight * throughput, ray},
+                   ray_hits);
+        end_ray(before, largest(aimed->weight), stream);
+        continue;
+      }
+      u.x = (u.x - to_hot_spots) / (1 - to_hot_spots);
+      auto [direction, weight] = leaving(frame, bright, u);
+      if (run.rays.needs().smooth_shading) found.direction.push_back(direction);
+      if (!(weight > 0)) continue;  // below the horizon
+      weight /= static_cast<float>(1 - to_hot_spots);
       const RandomStream random(run.seed_of_rays, number, stream);
       // Light samples are weighed beside rays by the cosine alone.
       const float cosine = std::max(0.0f, glm::dot(direction, point.normal));
@@ -212,18 +305,12 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
           *parameters.light_sampler,
           parameters.rays_per_light_sample * cosine * glm::one_over_pi<float>(), true,
           probabilities};
-      const std::size_t before = ray_hits.hits.size();
-      follow_eye_ray(run.first,
-                     {point.origin_towards(direction), direction, weight * throughput,
-                      (run_point * batches + batch) * rays + i},
-                     random, ray_hits, &light_sampling);
-      if (ray_hits.hits.size() == before) continue;
-      inverse_distances +=
-          weight / std::max(1e-6f, glm::distance(point.position, ray_hits.hits.back().position));
-      if (parameters.near > 0) {
-        go_on_from_near(run, point, number, before, stream, batches * rays, near_light_samples,
-                        ray_hits);
-      }
+      EyeRay leaves{point.origin_towards(direction), direction, weight * throughput, ray};
+      const BesideHotSpots beside{
+          hot_spots, to_hot_spots > 0 ? density_of_leaving(direction, frame, bright) : 0.0};
+      if (to_hot_spots > 0) leaves.beside = &beside;
+      follow_eye_ray(run.first, leaves, random, ray_hits, &light_sampling);
+      end_ray(before, weight, stream);
     }
   }
   for (const ShadowRays::Found& light : near_light_samples.found(run.rays)) {

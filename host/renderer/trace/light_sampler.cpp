@@ -146,8 +146,13 @@ std::optional<LightSample> LightSampler::towards_light_without_size(std::uint32_
   const glm::dvec3 direction = offset / std::sqrt(squared_distance);
   const double intensity = candela_per_lumen(*scene_, source, -direction);
   if (!(intensity > 0)) return std::nullopt;
-  return LightSample{groups_.group_of[light], glm::vec3(direction), source.position,
-                     glm::vec3(color * intensity / (squared_distance * probability)), 0.0f};
+  return LightSample{groups_.group_of[light],
+                     glm::vec3(direction),
+                     source.position,
+                     glm::vec3(color * intensity / (squared_distance * probability)),
+                     0.0f,
+                     false,
+                     light};
 }
 
 std::optional<LightSample> LightSampler::towards(std::uint32_t light, const glm::vec3& position,

@@ -31,7 +31,8 @@ struct LightSample {
   /// The density of the direction, per steradian, the choice of the light included. 0 for lights
   /// without size, which no other technique can find.
   float density;
-  bool distant = false;  ///< from beyond the scene
+  bool distant = false;        ///< from beyond the scene
+  std::uint32_t light = none;  ///< one without size that is not beyond the scene
 
   /// How it counts beside a technique that finds its direction with density `other`, per steradian:
   /// in full where no other technique can.

@@ -18,6 +18,7 @@
 #include "photile/limits.hpp"
 #include "photile/photons.hpp"
 #include "photile/statistics.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/sampling.hpp"
@@ -38,6 +39,12 @@ void store(const PathSetup& setup, const SurfacePoint& point, const glm::vec3& d
   run.flux.push_back(flux);
   if (setup.keep_incoming) run.incoming.push_back(-direction);
   run.oriented_face.push_back(point.oriented_face());
+}
+
+/// Whether light that comes straight from the light is stored there.
+bool stores_direct(const PathSetup& setup, const SurfacePoint& point) {
+  if (!setup.parameters->store_direct || setup.caustics) return false;
+  return setup.stores_hot_spots || !setup.rays->hot_spots->holds(setup.light, point.position);
 }
 
 /// Flux after the interaction, black where the path ends. From `roulette_start` on, a path survives
@@ -159,7 +166,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
     if (opaque && largest(stored) > 0.0f && !behind_cutout(scene, point)) {
-      if (!walk->unscattered || (setup.parameters->store_direct && !setup.caustics))
+      if (!walk->unscattered || stores_direct(setup, point))
         store(setup, point, walk->direction, stored, record.photons);
     }
     if (passes_cutout(scene, point, walk->random, Purpose::photon_cutouts, walk->cutouts)) {
@@ -278,6 +285,7 @@ struct Guidance {
   const trace::WeightWindows* windows = nullptr;
   std::uint64_t paths_per_photon = 1;        ///< that windows trace for each asked for
   const trace::Targets* caustics = nullptr;  ///< of paths of caustics alone
+  bool stores_hot_spots = true;
 };
 
 /// Of paths that are aimed at mirrors and glass: numbers of their own, and more in each pass.
@@ -313,7 +321,8 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  guidance.windows,
                                  static_cast<double>(guidance.paths_per_photon) /
                                      static_cast<double>(paths_per_light[chunk.light]),
-                                 1.0f / static_cast<float>(guidance.paths_per_photon)};
+                                 1.0f / static_cast<float>(guidance.paths_per_photon),
+                                 guidance.stores_hot_spots};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
@@ -389,10 +398,8 @@ Photons photons_of(std::vector<PathRecord>& records, const std::vector<Chunk>& c
   return trace::sorted_photons(runs, groups != nullptr, oriented_face_count);
 }
 
-}  // namespace
-
-PhotonTracerResult trace_photons(const RayScene& ray_scene,
-                                 const PhotonTracerParameters& parameters, Progress& progress) {
+PhotonTracerResult traced(const RayScene& ray_scene, const PhotonTracerParameters& parameters,
+                          bool hot_spots, Progress& progress) {
   const Stopwatch stopwatch;
   check(parameters);
   const Scene& scene = ray_scene.scene();
@@ -407,6 +414,7 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
       windows_of(ray_scene, parameters, emitters, progress);
   Guidance guidance;
   if (windows) guidance = {&*windows, defaults::paths_with_windows};
+  guidance.stores_hot_spots = hot_spots;
   const std::vector<std::uint64_t> paths_per_light =
       times(asked_per_light, guidance.paths_per_photon);
   const std::vector<Chunk> chunks = chunks_of(paths_per_light, parameters.shard);
@@ -449,6 +457,19 @@ PhotonTracerResult trace_photons(const RayScene& ray_scene,
   }
   result.seconds = stopwatch.seconds();
   return result;
+}
+
+}  // namespace
+
+PhotonTracerResult trace_photons(const RayScene& scene, const PhotonTracerParameters& parameters,
+                                 Progress& progress) {
+  return traced(scene, parameters, true, progress);
+}
+
+PhotonTracerResult trace::trace_photons_beside_hot_spots(const RayScene& scene,
+                                                         const PhotonTracerParameters& parameters,
+                                                         Progress& progress) {
+  return traced(scene, parameters, false, progress);
 }
 
 }  // namespace photile

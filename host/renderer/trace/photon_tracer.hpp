@@ -46,6 +46,7 @@ struct PathSetup {
   const WeightWindows* windows = nullptr;  ///< null: photons keep the weight that they have
   double unit_flux = 1;                    ///< of a photon of weight 1; with windows
   float path_weight = 1;                   ///< of a path where it starts; with windows
+  bool stores_hot_spots = true;
 };
 
 /// Traces path number `path` and appends what it leaves to `record`: photons of all light, or those
@@ -53,6 +54,12 @@ struct PathSetup {
 /// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
 /// absorption. With windows a path may have branches, whose numbers are their own.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
+
+/// trace_photons, without photons that come straight from a light to its hot spot (hot_spots.hpp):
+/// no density of photons is as fine as that light, which shadow rays find.
+PhotonTracerResult trace_photons_beside_hot_spots(const RayScene& scene,
+                                                  const PhotonTracerParameters& parameters,
+                                                  Progress& progress = Progress::none());
 
 /// Photons of lights of one layer.
 struct LayerRun {

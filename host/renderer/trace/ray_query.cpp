@@ -41,15 +41,19 @@ void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
 }
 
 glm::vec3 transmittance(const RayScene& rays, const RayOrigin& from, const glm::vec3& to) {
-  if (!rays.needs().see_through) {
-    return glm::vec3(from.next != none || occluded(rays, from, to) ? 0.0f : 1.0f);
+  return transmittance(impl_of(rays), from, to);
+}
+
+glm::vec3 transmittance(const RayScene::Impl& rays, const RayOrigin& from, const glm::vec3& to) {
+  if (!rays.needs.see_through) {
+    return glm::vec3(from.next != none || rays.occluded(from, to) ? 0.0f : 1.0f);
   }
-  const Scene& scene = rays.scene();
+  const Scene& scene = *rays.scene;
   const glm::vec3 direction = glm::normalize(to - from.position);
   glm::vec3 passed(1.0f);
   RayOrigin origin = from;
-  while (origin.next != none || occluded(rays, origin, to)) {
-    const auto hit = intersect(rays, origin, direction);
+  while (origin.next != none || rays.occluded(origin, to)) {
+    const auto hit = rays.intersect(origin, direction);
     if (!hit) return passed;  // rounding: the last surface ends where the line passes
     const SurfacePoint point = surface_hit(scene, *hit, direction);
     passed *= transmittance(scene, point, direction);

@@ -9,6 +9,7 @@
 #include "photile/ray_scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "scene/scene_queries.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/surface.hpp"
 
 namespace photile {
@@ -148,7 +149,9 @@ void RayScene::Impl::occluded(std::span<const trace::LineOfSight> lines,
 RayScene::RayScene(const Scene& scene) {
   check_scene(scene);
   impl_ = std::make_unique<Impl>(scene);
+  impl_->hot_spots = std::make_unique<const trace::HotSpots>(*impl_);
 }
+const trace::HotSpots& trace::hot_spots_of(const RayScene::Impl& rays) { return *rays.hot_spots; }
 const RayScene::Impl& impl_of(const RayScene& scene) { return *scene.impl_; }
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;

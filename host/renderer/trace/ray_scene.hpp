@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,6 +18,10 @@
 #include "trace/surface.hpp"
 
 namespace photile {
+
+namespace trace {
+class HotSpots;
+}
 
 struct RayScene::Impl {
   explicit Impl(const Scene& scene);
@@ -51,6 +56,8 @@ struct RayScene::Impl {
   std::vector<std::uint32_t> single_triangles;  ///< their numbers in the scene
   std::vector<glm::uvec3> single_corners;       ///< Embree reads them from here
 
+  std::unique_ptr<const trace::HotSpots> hot_spots;  ///< never null, once the BVH is built
+
  private:
   void build();
   void build_instances();
@@ -60,5 +67,12 @@ struct RayScene::Impl {
 
 /// What host/renderer/trace needs of a scene.
 const RayScene::Impl& impl_of(const RayScene& scene);
+
+namespace trace {
+
+/// As in ray_query.hpp.
+glm::vec3 transmittance(const RayScene::Impl& rays, const RayOrigin& from, const glm::vec3& to);
+
+}  // namespace trace
 
 }  // namespace photile

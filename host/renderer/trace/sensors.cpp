@@ -10,6 +10,7 @@
 #include "photile/errors.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/hit_batch.hpp"
+#include "trace/hot_spots.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
@@ -64,9 +65,16 @@ class Gatherer {
     // One number for all choices of lights: each is sampled as often as its probability says.
     const double shift =
         RandomStream(film.seed, number(0), 0).block(Purpose::sensor_light, 2).uniform_double(0);
+    const HotSpotAim aim(hot_spots_of(rays_), photometer_.origin(), photometer_.one_side());
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       const RandomStream random(film.seed, number(sample), 0);
-      follow(random, sobol_point(static_cast<std::uint32_t>(sample), scramble), record);
+      glm::dvec2 spread = sobol_point(static_cast<std::uint32_t>(sample), scramble);
+      if (spread.x < aim.fraction()) {
+        follow_to_hot_spot(aim, {spread.x / aim.fraction(), spread.y}, record);
+      } else {
+        spread.x = (spread.x - aim.fraction()) / (1 - aim.fraction());
+        follow(random, spread, aim, record);
+      }
       sample_light(random, (sample + shift) / film.samples_per_pixel, emission);
     }
   }
@@ -76,15 +84,35 @@ class Gatherer {
     return glm::vec3(1.0f / static_cast<float>(setup_.parameters->samples_per_pixel));
   }
 
-  void follow(const RandomStream& random, const glm::dvec2& spread, EyeRecord& record) const {
+  void follow_to_hot_spot(const HotSpotAim& aim, const glm::dvec2& u, EyeRecord& record) const {
+    const auto target = aim.sample(u);
+    if (!target) return;
+    const float density = photometer_.density(target->direction);
+    if (!(density > 0.0f)) return;
+    const glm::vec3 passes = transmittance(rays_, photometer_.origin(),
+                                           target->point.origin_towards(-target->direction));
+    if (passes == glm::vec3(0.0f)) return;
+    const auto counts = static_cast<float>(aim.weight(double{density}, *target));
+    append_eye_hit(setup_, target->point,
+                   {photometer_.origin(), target->direction, counts * passes * weight(), pixel_},
+                   record);
+  }
+
+  void follow(const RandomStream& random, const glm::dvec2& spread, const HotSpotAim& aim,
+              EyeRecord& record) const {
     const RandomBlock own = random.block(Purpose::sensor_direction, 1);
     const glm::vec3 direction = photometer_.sample(spread, own.uniform(0), own.uniform(1));
     const float density = photometer_.density(direction);
     if (!(density > 0.0f)) return;
     const LightTechnique looking{light_sampler_, density, false, by_power_alone,
                                  !photometer_.sees_lights()};
-    follow_eye_ray(setup_, {photometer_.origin(), direction, weight(), pixel_}, random, record,
-                   &looking);
+    const BesideHotSpots beside{aim, double{density}};
+    EyeRay ray{photometer_.origin(), direction, weight(), pixel_};
+    if (aim.fraction() > 0) {
+      ray.throughput /= static_cast<float>(1 - aim.fraction());
+      ray.beside = &beside;
+    }
+    follow_eye_ray(setup_, ray, random, record, &looking);
   }
 
   void sample_light(const RandomStream& random, double choice,
@@ -111,14 +139,15 @@ class Gatherer {
 
 PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
                             SensorResponse response, const LightSampler& light_sampler,
-                            const PrimaryHitParameters& film, int first_row, int last_row,
-                            std::span<const std::uint32_t> map_of) {
+                            bool adds_hot_spots, const PrimaryHitParameters& film, int first_row,
+                            int last_row, std::span<const std::uint32_t> map_of) {
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(rays.scene());
   const DistantLights distant(rays.scene());
   const EyeSetup setup{.rays = &impl_of(rays),
                        .parameters = &film,
                        .emitted_radiance = &radiance,
-                       .distant = &distant};
+                       .distant = &distant,
+                       .hot_spots = adds_hot_spots ? &light_sampler : nullptr};
   const auto count = static_cast<std::size_t>(last_row - first_row);
   std::vector<EyeRecord> rows(count);
   std::vector<std::vector<VisibleEmission>> seen(count);

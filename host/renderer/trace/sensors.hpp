@@ -31,6 +31,10 @@ class Photometer {
 
   const glm::vec3& origin() const { return origin_; }
   bool sees_lights() const { return sees_lights_; }
+  /// The normal of the side from which alone light counts; null where light from all sides does.
+  const glm::vec3* one_side() const {
+    return response_ == SensorResponse::planar ? &normal_ : nullptr;
+  }
 
   /// Density of `sample`, per steradian: the response over pi.
   float density(const glm::vec3& direction) const {
@@ -84,11 +88,12 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors);
 /// radiance of a sensor's rays is its irradiance / pi. At each ray a light is sampled, too; lights
 /// that both find are weighed (Veach and Guibas 1995). Depends on the sensors, the film's seed and
 /// samples only, not on how rows are split or on threads.
-///   light_sampler   of the scene
-///   map_of          as in trace_primary_hits
+///   light_sampler    of the scene
+///   adds_hot_spots   whether ray hits get the light of hot spots, which photons leave out
+///   map_of           as in trace_primary_hits
 PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensors,
                             SensorResponse response, const LightSampler& light_sampler,
-                            const PrimaryHitParameters& film, int first_row, int last_row,
-                            std::span<const std::uint32_t> map_of);
+                            bool adds_hot_spots, const PrimaryHitParameters& film, int first_row,
+                            int last_row, std::span<const std::uint32_t> map_of);
 
 }  // namespace photile::trace

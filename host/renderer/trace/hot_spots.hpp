@@ -1,0 +1,126 @@
+// Hot spots: surface so close to a light without size that its light there is as small and bright
+// as no sample of the room would find.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "photile/ray_scene.hpp"
+#include "trace/sampling.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::trace {
+
+/// The hot spots of a scene, one for each light that has one: the surface that its light comes to
+/// straight, or through panes and cutouts, within `reach` of it. What the light sends there is
+/// found by shadow rays wherever it is asked for, and neither photons nor nodes of light maps hold
+/// it; rays go there by the distribution of that light (HotSpotAim).
+class HotSpots {
+ public:
+  /// The reference is kept. Rays from each light without size tell how close surface is.
+  explicit HotSpots(const RayScene::Impl& rays);
+
+  bool empty() const { return spots_.empty(); }
+
+  /// Whether light that comes straight from this light to a position is that of a hot spot.
+  bool holds(std::uint32_t light, const glm::vec3& position) const {
+    return !spots_.empty() && light != none &&
+           glm::distance(scene_light(light).position, position) < reach_[light];
+  }
+
+  /// Metres from the light; 0 where it has no hot spot.
+  double reach(std::uint32_t light) const { return reach_[light]; }
+
+  /// Calls visit(light) for each light of which the position may be in the hot spot.
+  template <class Visit>
+  void for_each_at(const glm::vec3& position, const Visit& visit) const {
+    for (const Spot& spot : spots_) {
+      if (holds(spot.light, position)) visit(spot.light);
+    }
+  }
+
+ private:
+  friend class HotSpotAim;
+
+  /// Directions of a light, in cells of equal width in the polar angle and the azimuth.
+  struct Spot {
+    std::uint32_t light;
+    Frame axes;                 ///< about where the light shines to
+    double cell_angle;          ///< of the polar angle, radians
+    std::vector<double> up_to;  ///< what surface reflects in the cells up to and with this one
+    glm::dvec3 centre{0.0};     ///< of what it reflects
+    double radius = 0;          ///< root mean square distance from there
+    double share = 0;           ///< of what all lights together emit
+
+    double weight(std::size_t cell) const {
+      return up_to[cell] - (cell == 0 ? 0.0 : up_to[cell - 1]);
+    }
+    double solid_angle(std::size_t row) const;
+  };
+
+  const Light& scene_light(std::uint32_t light) const;
+  std::optional<Spot> spot_of(std::uint32_t light, double reach) const;
+  double surroundings_of(std::uint32_t light) const;
+  std::optional<SurfacePoint> first_surface(std::uint32_t light, const glm::vec3& direction,
+                                            double reach) const;
+  double density(const Spot& spot, const SurfacePoint& point) const;
+
+  const RayScene::Impl* rays_;
+  std::vector<Spot> spots_;
+  std::vector<double> reach_;  ///< per light, metres; 0 where it has no hot spot
+  double rays_to_spots_ = 0;
+};
+
+/// The hot spots of a scene.
+const HotSpots& hot_spots_of(const RayScene::Impl& rays);
+const HotSpots& hot_spots_of(const RayScene& rays);
+
+/// Rays from a point to hot spots: a part of all rays, whose other rays have a density of their
+/// own. All rays count by the density of both together (the balance heuristic, Veach and Guibas
+/// 1995).
+class HotSpotAim {
+ public:
+  /// Of no rays.
+  HotSpotAim() = default;
+  ///   normal   unit, of a surface that receives light on this side alone; null: from all sides
+  HotSpotAim(const HotSpots& spots, const glm::vec3& from, const glm::vec3* normal);
+
+  /// The part of the rays; 0 where no hot spot can be seen.
+  double fraction() const { return all_ > 0 ? spots_->rays_to_spots_ : 0; }
+
+  struct Target {
+    SurfacePoint point;
+    glm::vec3 direction;  ///< unit, to there
+    double density;       ///< of this direction, per steradian, as long as nothing is in the way
+  };
+  /// A point of a hot spot, on the side that faces. Nothing where the light meets something else.
+  ///   u   in [0, 1)^2: points that fill it evenly give points that do
+  std::optional<Target> sample(glm::dvec2 u) const;
+
+  /// What the light of a target counts, over what it would if all rays had the density `other`.
+  double weight(double other, const Target& target) const {
+    return other / ((1 - fraction()) * other + fraction() * target.density);
+  }
+  /// What rays that are not aimed count of the light of surface that they meet at once, or through
+  /// panes; of all other light they count all.
+  ///   other   density of the direction
+  double weight_beside(double other, const SurfacePoint& met) const {
+    const double unaimed = (1 - fraction()) * other;
+    return unaimed / (unaimed + fraction() * density(met));
+  }
+
+ private:
+  double density(const SurfacePoint& met) const;
+  double per_steradian(double per_steradian_of_light, const HotSpots::Spot& spot,
+                       const SurfacePoint& point) const;
+
+  const HotSpots* spots_ = nullptr;
+  glm::dvec3 from_{0.0};
+  std::vector<double> up_to_;  ///< weights of the spots up to and with this one
+  double all_ = 0;
+};
+
+}  // namespace photile::trace
