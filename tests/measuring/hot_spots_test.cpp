@@ -82,8 +82,13 @@ TEST_CASE("hot spots: one lamp of twenty is close to the ceiling, one shines at 
         point_light("lamp " + std::to_string(i), {0.2f * static_cast<float>(i) - 1.8f, 0, 1.5f}));
   }
   const Scene scene = builder.build();
-  for (const auto& [light, lamp] : {std::pair{0, close}, std::pair{1, beam}}) {
-    const double truth = lux_below_ceiling(scene, lamp, desk.position);
+  // All of the beam meets a spot of a millimetre.
+  const glm::dvec3 lit = glm::dvec3(beam.position) + 0.01 / 0.8 * glm::dvec3(beam.direction);
+  const glm::dvec3 down = lit - desk.position;
+  const double of_beam =
+      ceiling_albedo / pi * down.z * down.z / (glm::dot(down, down) * glm::dot(down, down));
+  for (const auto& [light, truth] :
+       {std::pair{0, lux_below_ceiling(scene, close, desk.position)}, std::pair{1, of_beam}}) {
     const auto layer = static_cast<std::size_t>(light);
     CAPTURE(light, truth);
     CHECK_VERDICT(mean_is(of_16_seeds(by_paths, scene, desk, layer), truth, 0.3 * truth));

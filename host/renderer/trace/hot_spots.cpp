@@ -17,8 +17,9 @@
 namespace photile::trace {
 namespace {
 
-/// A hot spot reaches to this part of the distance to all that surrounds the light (root mean
-/// square). A light that hangs lower lights so much of a ceiling that rays meet it anyway.
+/// A hot spot reaches to this part of the distance to what surrounds the light: the fourth root of
+/// the mean fourth power, which tells the room from a housing that is open to it. A light that
+/// hangs lower lights so much of a ceiling that rays meet it anyway.
 constexpr double reach_of_surroundings = 1.0 / 8;
 /// Lights whose close surface reflects less of their flux have no hot spot.
 constexpr double least_flux = 1e-3;
@@ -95,11 +96,11 @@ const Light& HotSpots::scene_light(std::uint32_t light) const {
   return rays_->scene->lights[light];
 }
 
-/// Root mean square distance to surface around a light, metres; 0 where nothing is, or all of it is
+/// Distance to surface around a light, metres; 0 where nothing is, or all of it is
 /// farther than the part of it that may be close.
 double HotSpots::surroundings_of(std::uint32_t light) const {
   const RandomBlock scramble({0, 0, 0, 0});
-  double squares = 0, least = std::numeric_limits<double>::infinity();
+  double fourth_powers = 0, least = std::numeric_limits<double>::infinity();
   int met = 0;
   for (std::uint32_t i = 0; i < directions_around; ++i) {
     const glm::dvec2 u = sobol_point(i, scramble);
@@ -108,11 +109,11 @@ double HotSpots::surroundings_of(std::uint32_t light) const {
     if (!hit) continue;
     const glm::dvec3 way =
         position_of(*rays_->scene, *hit) - glm::dvec3(scene_light(light).position);
-    squares += glm::dot(way, way);
+    fourth_powers += glm::dot(way, way) * glm::dot(way, way);
     least = std::min(least, glm::length(way));
     ++met;
   }
-  const double surroundings = met > 0 ? std::sqrt(squares / met) : 0;
+  const double surroundings = met > 0 ? std::pow(fourth_powers / met, 0.25) : 0;
   return least < reach_of_surroundings * surroundings ? surroundings : 0;
 }
 
