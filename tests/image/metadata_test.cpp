@@ -27,12 +27,12 @@ namespace {
 
 using namespace std::string_literals;
 
-std::span<const unsigned char> span_of(const std::string& bytes) {
+std::span<const unsigned char> bytes_of_text(const std::string& bytes) {
   return {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
 }
 
 std::vector<float> light_of(const std::string& name, const std::string& bytes) {
-  return image::open_picture(name, span_of(bytes))->light();
+  return image::open_picture(name, bytes_of_text(bytes))->light();
 }
 
 /// Pixels of mantissas (r, g, b), times 2^-8 by their exponent 128.
@@ -159,7 +159,7 @@ TEST_CASE("each of the eight resolution strings of a Radiance picture places its
         const std::string size = by_rows ? y + " " + x : x + " " + y;
         CAPTURE(size);
         const std::string bytes = radiance("", size, stored);
-        const auto picture = image::open_picture("a.hdr", span_of(bytes));
+        const auto picture = image::open_picture("a.hdr", bytes_of_text(bytes));
         REQUIRE(picture->shape().width == 3);
         REQUIRE(picture->shape().height == 2);
         const std::vector<float> light = picture->light();
@@ -175,7 +175,7 @@ TEST_CASE("each of the eight resolution strings of a Radiance picture places its
 TEST_CASE("a Radiance picture in XYZ has the luminance of its Y, in cd/m2") {
   const std::string bytes =
       radiance("EXPOSURE=2\n", "-Y 1 +X 2", {{200, 200, 200}, {100, 180, 60}}, "32-bit_rle_xyze");
-  const auto picture = image::open_picture("a.hdr", span_of(bytes));
+  const auto picture = image::open_picture("a.hdr", bytes_of_text(bytes));
   CHECK(picture->metadata().white_luminance == 1);
   const std::vector<float> light = picture->light();
   const auto rgb = [&](std::size_t i) { return glm::dvec3(light[i], light[i + 1], light[i + 2]); };
@@ -272,12 +272,12 @@ TEST_CASE("an EXR's chromaticities, white luminance and projection are taken") {
     CHECK((*aces.find(channel))[1] == Approx(2).epsilon(1e-5));
   }
   const std::string bytes = bytes_of(folder / "aces.exr");
-  CHECK(image::open_picture("a.exr", span_of(bytes))->metadata().white_luminance == 80);
+  CHECK(image::open_picture("a.exr", bytes_of_text(bytes))->metadata().white_luminance == 80);
   write_window(
       folder / "cube.exr", {{0, 0}, {0, 5}}, {{0, 0}, {0, 5}}, rgb_channels,
       [](Imf::Header& header) { header.insert("envmap", Imf::EnvmapAttribute(Imf::ENVMAP_CUBE)); });
   const std::string cube = bytes_of(folder / "cube.exr");
-  CHECK(image::open_picture("a.exr", span_of(cube))->metadata().projection == "a cube map");
+  CHECK(image::open_picture("a.exr", bytes_of_text(cube))->metadata().projection == "a cube map");
 }
 
 TEST_CASE("the picture of an EXR is its R, G and B, or Y, or its one layer") {
@@ -286,7 +286,7 @@ TEST_CASE("the picture of an EXR is its R, G and B, or Y, or its one layer") {
   const auto channels_of = [&](const std::vector<std::string>& channels) {
     write_window(folder / "a.exr", window, window, channels);
     const std::string bytes = bytes_of(folder / "a.exr");
-    return image::open_picture("a.exr", span_of(bytes))->shape().channels;
+    return image::open_picture("a.exr", bytes_of_text(bytes))->shape().channels;
   };
   CHECK(channels_of({"A", "B", "G", "R", "Z"}) == 4);
   CHECK(channels_of({"Y"}) == 1);
@@ -334,7 +334,7 @@ TEST_CASE("the orientation that EXIF names turns a picture upright") {
                                  static_cast<char>(orientation) + "\0\0\0\0\0\0"s;
         bytes.insert(33, chunk("eXIf", exif));
       }
-      const auto picture = image::open_picture(name, span_of(bytes));
+      const auto picture = image::open_picture(name, bytes_of_text(bytes));
       const bool turned = orientation > 4;
       REQUIRE(picture->shape().width == (turned ? 8 : 16));
       const std::vector<float> light = picture->light();
@@ -385,9 +385,9 @@ TEST_CASE("the colours of a PNG are those that its chunks name") {
 }
 
 TEST_CASE("sRGB's own profile is sRGB, and changes no bit") {
-  const auto space = image::icc_space(span_of(profile(srgb, srgb_curve())));
+  const auto space = image::icc_space(bytes_of_text(profile(srgb, srgb_curve())));
   CHECK(space.is_srgb());
-  CHECK_FALSE(image::icc_space(span_of(profile(p3, srgb_curve()))).is_srgb());
+  CHECK_FALSE(image::icc_space(bytes_of_text(profile(p3, srgb_curve()))).is_srgb());
 }
 
 TEST_CASE("colours that are no RGB are refused by their name") {
@@ -399,10 +399,10 @@ TEST_CASE("colours that are no RGB are refused by their name") {
   REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, texel.data()));
   REQUIRE(output->close());
   std::string bytes = bytes_of(file);
-  const auto entry = image::tiff_entry(span_of(bytes), 262);
+  const auto entry = image::tiff_entry(bytes_of_text(bytes), 262);
   REQUIRE(entry);
   bytes[*entry + 8] = 8;  // CIE L*a*b*
-  CHECK_THROWS_WITH(image::open_picture("a.tif", span_of(bytes)), Catch::Contains("L*a*b*"));
+  CHECK_THROWS_WITH(image::open_picture("a.tif", bytes_of_text(bytes)), Catch::Contains("L*a*b*"));
 }
 
 }  // namespace photile::test

@@ -16,7 +16,7 @@
 namespace photile::test {
 namespace {
 
-double luminous(const LightLayers& layers, std::size_t light, std::size_t sensor) {
+double luminous_of_layer(const LightLayers& layers, std::size_t light, std::size_t sensor) {
   return static_cast<double>(layers.dense().layers.at(light).illuminance.at(sensor));
 }
 
@@ -46,11 +46,11 @@ std::vector<double> of_16_seeds(const Measure& measure, const Scene& scene, cons
                                 std::size_t light = 0) {
   std::vector<double> values;
   for (std::uint64_t seed = 1; seed <= 16; ++seed)
-    values.push_back(luminous(measure(scene, std::span(&sensor, 1), seed), light, 0));
+    values.push_back(luminous_of_layer(measure(scene, std::span(&sensor, 1), seed), light, 0));
   return values;
 }
 
-constexpr double pi = glm::pi<double>();
+constexpr double hot_spot_pi = glm::pi<double>();
 const Sensor desk{{0.4, -0.7, 0.75}, {0, 0, 1}};
 
 }  // namespace
@@ -107,8 +107,8 @@ TEST_CASE("hot spots: what leaves a white box around a lamp is that of photons f
   builder.grid(low, z, x, 1, white);
   builder.grid(low + x, z, y, 1, white);
   builder.grid(low + y, x, z, 1, white);
-  builder.grid({-half_side, -half_side, 0}, {2 * half_side, 0, 0}, {0, 2 * half_side, 0}, 1,
-               builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-ceiling_half_side, -ceiling_half_side, 0}, {2 * ceiling_half_side, 0, 0},
+               {0, 2 * ceiling_half_side, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   builder.add(point_light("lamp", {0.005f, 0, top - 0.004f}));
   const Scene scene = builder.build();
 
@@ -122,10 +122,10 @@ TEST_CASE("hot spots: what leaves a white box around a lamp is that of photons f
   std::vector<Sensor> floor;
   double direct = 0;
   constexpr int columns = 16;
-  constexpr double cell = 2 * double{half_side} / columns;
+  constexpr double cell = 2 * double{ceiling_half_side} / columns;
   for (int i = 0; i < columns * columns; ++i) {
-    const glm::dvec3 at((i % columns + 0.5) * cell - double{half_side},
-                        (i / columns + 0.5) * cell - double{half_side}, 0.001);
+    const glm::dvec3 at((i % columns + 0.5) * cell - double{ceiling_half_side},
+                        (i / columns + 0.5) * cell - double{ceiling_half_side}, 0.001);
     floor.push_back({at, {0, 0, 1}});
     const glm::dvec3 way = lamp - at, out = at + (double{bottom} - at.z) / way.z * way;
     if (std::max(std::abs(out.x), std::abs(out.y)) > double{s}) continue;
@@ -134,7 +134,7 @@ TEST_CASE("hot spots: what leaves a white box around a lamp is that of photons f
   const Measure measure = GENERATE(Measure(by_paths), Measure(by_photons));
   const LightLayers layers = measure(scene, floor, 1);
   double all = 0;
-  for (std::size_t i = 0; i < floor.size(); ++i) all += luminous(layers, 0, i);
+  for (std::size_t i = 0; i < floor.size(); ++i) all += luminous_of_layer(layers, 0, i);
   CHECK((all - direct) * cell * cell == Approx(landed).epsilon(0.02));
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("hot spots: a lamp in the plane of a ceiling shines as one just below 
   };
   const Scene alone = scene_with(down), scene = scene_with(both);
   for (const Measure& measure : {Measure(by_paths), Measure(by_photons)}) {
-    CHECK(luminous(measure(alone, std::span(&desk, 1), 1), 0, 0) ==
+    CHECK(luminous_of_layer(measure(alone, std::span(&desk, 1), 1), 0, 0) ==
           Approx(lux_below_ceiling(alone, down, desk.position)).epsilon(1e-3));
     const double truth = lux_below_ceiling(scene, both, desk.position);
     CHECK_VERDICT(mean_is(of_16_seeds(measure, scene, desk), truth, 0.03 * truth));

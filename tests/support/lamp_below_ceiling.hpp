@@ -13,14 +13,15 @@
 namespace photile::test {
 
 constexpr double ceiling_albedo = 0.7;
-constexpr float ceiling_height = 3, half_side = 2;  // metres
+constexpr float ceiling_height = 3, ceiling_half_side = 2;  // metres
 
 inline SceneBuilder ceiling_and_floor() {
   SceneBuilder builder("ceiling");
-  builder.grid({-half_side, -half_side, ceiling_height}, {0, 2 * half_side, 0},
-               {2 * half_side, 0, 0}, 1, builder.add(diffuse(glm::vec3(ceiling_albedo))));
-  builder.grid({-half_side, -half_side, 0}, {2 * half_side, 0, 0}, {0, 2 * half_side, 0}, 1,
-               builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-ceiling_half_side, -ceiling_half_side, ceiling_height},
+               {0, 2 * ceiling_half_side, 0}, {2 * ceiling_half_side, 0, 0}, 1,
+               builder.add(diffuse(glm::vec3(ceiling_albedo))));
+  builder.grid({-ceiling_half_side, -ceiling_half_side, 0}, {2 * ceiling_half_side, 0, 0},
+               {0, 2 * ceiling_half_side, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   return builder;
 }
 
@@ -36,7 +37,7 @@ void for_each_lit(const Scene& scene, const Light& lamp, const Visit& visit) {
       const double turn = glm::two_pi<double>() * (j + 0.5) / turns;
       const glm::dvec3 direction(sine * std::cos(turn), sine * std::sin(turn), cosine);
       const glm::dvec3 lit = from + (double{ceiling_height} - from.z) / cosine * direction;
-      if (std::max(std::abs(lit.x), std::abs(lit.y)) > double{half_side}) continue;
+      if (std::max(std::abs(lit.x), std::abs(lit.y)) > double{ceiling_half_side}) continue;
       visit(lit, glm::two_pi<double>() / (polar * turns) *
                      trace::candela_per_lumen(scene, lamp, direction));
     }
