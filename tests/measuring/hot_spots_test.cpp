@@ -85,8 +85,8 @@ TEST_CASE("hot spots: one lamp of twenty is close to the ceiling, one shines at 
   // All of the beam meets a spot of a millimetre.
   const glm::dvec3 lit = glm::dvec3(beam.position) + 0.01 / 0.8 * glm::dvec3(beam.direction);
   const glm::dvec3 down = lit - desk.position;
-  const double of_beam =
-      ceiling_albedo / pi * down.z * down.z / (glm::dot(down, down) * glm::dot(down, down));
+  const double of_beam = ceiling_albedo / hot_spot_pi * down.z * down.z /
+                         (glm::dot(down, down) * glm::dot(down, down));
   for (const auto& [light, truth] :
        {std::pair{0, lux_below_ceiling(scene, close, desk.position)}, std::pair{1, of_beam}}) {
     const auto layer = static_cast<std::size_t>(light);
@@ -129,7 +129,7 @@ TEST_CASE("hot spots: what leaves a white box around a lamp is that of photons f
     floor.push_back({at, {0, 0, 1}});
     const glm::dvec3 way = lamp - at, out = at + (double{bottom} - at.z) / way.z * way;
     if (std::max(std::abs(out.x), std::abs(out.y)) > double{s}) continue;
-    direct += way.z / (4 * pi * std::pow(glm::length(way), 3));
+    direct += way.z / (4 * hot_spot_pi * std::pow(glm::length(way), 3));
   }
   const Measure measure = GENERATE(Measure(by_paths), Measure(by_photons));
   const LightLayers layers = measure(scene, floor, 1);
