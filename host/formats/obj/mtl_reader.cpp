@@ -150,7 +150,6 @@ class MtlReader {
   }
 
   void begin_material(std::string_view name) {
-    if (name.empty()) refuse("newmtl names no material; give it a name");
     materials_.emplace_back().name = name;
     has_d_ = false;
   }
