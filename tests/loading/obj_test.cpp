@@ -312,8 +312,7 @@ TEST_CASE("MTL numbers that are none are refused with their line") {
                                       "Pm metal",
                                       "map_Kd",
                                       "map_Kd -mm 0 2 a.png",
-                                      "map_Kd -s a.png",
-                                      "newmtl"}) {
+                                      "map_Kd -s a.png"}) {
     CAPTURE(statement);
     const std::string error = input_error_of([&] { mtl_material("Kd 1 1 1\n" + statement); });
     CHECK(error.find("materials.mtl, line 5: ") != std::string::npos);
