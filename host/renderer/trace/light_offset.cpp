@@ -16,8 +16,11 @@
 namespace photile::trace {
 namespace {
 
-/// Offsets of rays by which lights lie off surface: beyond where rays from it start.
+/// Offsets of rays by which lights are to lie off surface: beyond where rays from it start.
 constexpr double offsets = 4;
+/// Of an offset: lights nearer than this part lie in the surface, for coordinates are rounded
+/// twice.
+constexpr double rounding = 0.25;
 /// A light that sends less of its flux to one side than this part shines to the other alone.
 constexpr double both_sides = 1e-3;
 /// Cosine to the vertical from which on a surface has a side below.
@@ -63,14 +66,15 @@ glm::vec3 position_off_surfaces(const Scene& scene, const Light& light,
     const auto [a, b, c] = scene.corners(triangle);
     const glm::vec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
     const glm::vec3 size = glm::max(glm::abs(low), glm::abs(high));
-    const double offset = offsets * ray_offset_per_coordinate * static_cast<double>(largest(size));
+    const double one = ray_offset_per_coordinate * static_cast<double>(largest(size));
+    const double offset = offsets * one;
     if (glm::any(glm::lessThan(position, glm::dvec3(low) - offset)) ||
         glm::any(glm::greaterThan(position, glm::dvec3(high) + offset))) {
       continue;
     }
     const glm::dvec3 normal = face_normal(scene, oriented(triangle, 0));
     const double height = glm::dot(position - glm::dvec3(a), normal);
-    if (std::abs(height) >= offset) continue;
+    if (std::abs(height) > rounding * one) continue;
     const TriangleHit nearest = nearest_on_triangle(scene, triangle, position);
     if (glm::distance(position_of(scene, nearest), position) >= 2 * offset) continue;
     const glm::dvec3 side = side_of_light(scene, light, bounds, normal, offset);
