@@ -386,9 +386,10 @@ std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
   return texels;
 }
 
-std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides) const {
+std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides,
+                                      std::size_t layers) const {
   const Estimates& values = maps_.values();
-  const std::size_t layers = dense_layers(values, maps_.statistics().nodes);
+  const std::size_t dense = dense_layers(values, maps_.statistics().nodes);
   std::vector<bool> reached(layers, false);
   const glm::vec2 size(atlas_.width, atlas_.height);
   for (const std::uint32_t side : sides_) {
@@ -401,7 +402,7 @@ std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides) const
         const BilinearWeights& bilinear = bilinear_[std::size_t{y} * atlas_.width + x];
         if (bilinear.node[0] == none) continue;
         for (std::size_t layer = 0; layer < layers; ++layer) {
-          if (!reached[layer] && interpolated(values, bilinear, layer, layers) != glm::vec3(0.0f)) {
+          if (!reached[layer] && interpolated(values, bilinear, layer, dense) != glm::vec3(0.0f)) {
             reached[layer] = true;
           }
         }

@@ -101,7 +101,7 @@ class BakedLight {
   double standard_error(std::span<const double> powers, const Estimates& of_nodes) const;
   /// Per layer whether its light is on any texel of these sides.
   ///   sides   per oriented face 1, else 0
-  std::vector<bool> reaches(std::span<const std::uint8_t> sides) const;
+  std::vector<bool> reaches(std::span<const std::uint8_t> sides, std::size_t layers) const;
   /// Texels of the charts, without what lies between them.
   std::uint64_t used_texels() const;
 

@@ -179,7 +179,7 @@ void run_publish(PublishOptions& options) {
   std::vector<bool> reaches;
   const std::vector<std::uint8_t> seen = bake::seen_sides(prepared_scene->rays);
   const auto write = [&](LitRoom& lit) {
-    reaches = lit.baked().reaches(seen);
+    reaches = lit.baked().reaches(seen, mix.lights.size());
     progress.begin("write files", 0, "");
     const std::optional<Estimates> errors = lit.errors();
     const bool has_page = std::any_of(options.outputs.begin(), options.outputs.end(), is_page);
