@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
@@ -82,8 +83,10 @@ TEST_CASE("Baked textures hold the irradiance of both sides at points of the sur
   // each are off by an eighth of it, both ways.
   const double bound = 2 * 2 * 3 * 4.25 * 0.04 * 0.04 / 8;
   const PrimaryHits points = points_on(scene, 5);
+  const std::set<std::uint32_t> shared = triangles_in_one_place(scene);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t side = points.oriented_face[i];
+    if (shared.contains(triangle_of(side))) continue;
     REQUIRE(std::abs(room.read(scene, points.position[i], side) -
                      gentle(points.position[i], side)) < bound + 1e-3);
   }
@@ -169,17 +172,22 @@ TEST_CASE("Lookups beside a plate a little above the floor take nothing of the s
 
 TEST_CASE("The brighter side of a triangle is baked, and the other where any light falls") {
   const Scene scene = with_one_lamp(furnished_room(2));
+  const std::set<std::uint32_t> shared = triangles_in_one_place(scene);
+  const std::size_t alone = scene.triangle_count() - shared.size();
+  REQUIRE(alone > scene.triangle_count() / 2);
   const auto sides_under = [&](const FormulaSource::Formula& light) {
     FormulaSource source(light);
     LightMaps maps(scene, quiet_parameters());
     const BakedRoom room(scene, maps, source, baking(0.1));
-    return std::vector<std::uint32_t>(room.baked.sides().begin(), room.baked.sides().end());
+    std::vector<std::uint32_t> sides(room.baked.sides().begin(), room.baked.sides().end());
+    std::erase_if(sides, [&](std::uint32_t s) { return shared.contains(triangle_of(s)); });
+    return sides;
   };
   const auto backs =
       sides_under([](const glm::vec3&, std::uint32_t s) { return side_of(s) == 1 ? 1.0f : 0.0f; });
-  REQUIRE(backs.size() == scene.triangle_count());
-  for (std::uint32_t t = 0; t < backs.size(); ++t) CHECK(backs[t] == oriented(t, 1));
-  CHECK(sides_under(gentle).size() == 2 * std::size_t{scene.triangle_count()});
+  REQUIRE(backs.size() == alone);
+  for (const std::uint32_t side : backs) CHECK(side_of(side) == 1);
+  CHECK(sides_under(gentle).size() == 2 * alone);
 }
 
 TEST_CASE("Sides that neither light nor an eye comes to are not open") {

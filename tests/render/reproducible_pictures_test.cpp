@@ -13,7 +13,6 @@
 #include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "scene/coincident_faces.hpp"
 #include "temporary_folder.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -87,13 +86,7 @@ TEST_CASE("the same mesh with inconsistent winding renders the same bits") {
   const TemporaryFolder folder;
   const Scene room = test::furnished_room(4);
   // Where faces lie in one place, their winding says which of them counts on either side.
-  const scene::CoincidentFaces coincident(room);
-  std::set<std::uint32_t> in_one_place;
-  for (std::uint32_t face = 0; face < 2 * room.triangle_count(); ++face) {
-    for (const std::uint32_t other : coincident.before(face)) {
-      in_one_place.insert({triangle_of(face), triangle_of(other)});
-    }
-  }
+  const std::set<std::uint32_t> in_one_place = triangles_in_one_place(room);
   REQUIRE(2 * in_one_place.size() < room.triangle_count());
   std::mt19937 random(9);
   const auto write = [&](const std::string& name, bool flip) {

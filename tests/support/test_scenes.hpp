@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
+#include <set>
 #include <string>
 
 #include "photile/scene_builder.hpp"
+#include "scene/coincident_faces.hpp"
 
 namespace photile::test {
 
@@ -84,6 +86,19 @@ inline Scene plate(const Material& material, float side, int cells = 1) {
   builder.grid({-h, -h, 0.0f}, {side, 0.0f, 0.0f}, {0.0f, side, 0.0f}, cells,
                builder.add(material));
   return builder.build();
+}
+
+/// Triangles of which a part lies in one place with another: which of them counts there depends on
+/// their winding, and the others have no light.
+inline std::set<std::uint32_t> triangles_in_one_place(const Scene& scene) {
+  const scene::CoincidentFaces coincident(scene);
+  std::set<std::uint32_t> triangles;
+  for (std::uint32_t face = 0; face < 2 * scene.triangle_count(); ++face) {
+    for (const std::uint32_t other : coincident.before(face)) {
+      triangles.insert({triangle_of(face), triangle_of(other)});
+    }
+  }
+  return triangles;
 }
 
 /// A closed room of 4 x 3 x 2.5 m (z is up) with coloured side walls, a ceiling lamp, a standing
