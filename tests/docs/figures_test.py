@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""What tests/docs/figures.py refuses."""
+
+import json
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import figures
+
+FIGURE = {"values": [52.4, 55.1], "command": "photile render", "machine": "any", "commit": "0" * 40,
+          "date": "2020-01-02", "measures": ["host"]}
+README = "# photile\n\n## Three figures\n\n- It takes {} processor seconds.\n\n## License\n\n99 words.\n"
+
+
+class Figures(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.source = pathlib.Path(self.folder.name)
+        for name in ("docs", "results", "host"):
+            (self.source / name).mkdir()
+        self.write({"room.s": FIGURE}, "52 to 55<!-- figure: room.s -->")
+
+    def write(self, of_names, text):
+        (self.source / "results/figures.json").write_text(json.dumps(of_names))
+        (self.source / "README.md").write_text(README.format(text))
+
+    def test_what_agrees_passes(self):
+        self.assertEqual(figures.check(self.source), [])
+        self.write({"room.s": FIGURE}, "52.4 and 55.1<!-- figure: room.s -->")
+        self.assertEqual(figures.check(self.source), [])
+
+    def test_another_number_is_refused(self):
+        for text in ("41 to 55", "52 to 56", "52.3 to 55.1", "55"):
+            self.write({"room.s": FIGURE}, f"{text}<!-- figure: room.s -->")
+            self.assertIn("room.s, which is 52.4 and 55.1", figures.check(self.source)[0])
+
+    def test_a_number_without_a_figure_is_refused(self):
+        self.write({"room.s": FIGURE}, "52 to 55<!-- figure: room.s --> or 41")
+        self.assertIn("41 is no figure", figures.check(self.source)[0])
+        self.write({"room.s": FIGURE}, "with k = 50, at 512x512, 52 to 55<!-- figure: room.s -->")
+        self.assertEqual(figures.check(self.source), [])
+
+    def test_a_figure_that_is_not_there_is_refused(self):
+        (self.source / "docs/page.md").write_text("It takes 3<!-- figure: other.s --> s.\n")
+        self.assertEqual(figures.check(self.source), ["page.md: there is no figure other.s"])
+
+    def test_an_old_figure_is_refused(self):
+        self.commits(figures.OLDEST + 3)
+        self.assertIn("201 commits older", figures.check(self.source)[0])  # found by its date
+        first = self.git("rev-list", "--max-parents=0", "HEAD")
+        self.write({"room.s": {**FIGURE, "commit": first, "date": "2030-01-01"}}, "52 to 55<!-- figure: room.s -->")
+        self.assertIn("202 commits older", figures.check(self.source)[0])
+        later = self.git("rev-list", "--max-count=1", "--skip=5", "HEAD")
+        self.write({"room.s": {**FIGURE, "commit": later}}, "52 to 55<!-- figure: room.s -->")
+        self.assertEqual(figures.check(self.source), [])
+        self.write({"room.s": {**FIGURE, "measures": ["kernels"]}}, "52 to 55<!-- figure: room.s -->")
+        self.assertEqual(figures.check(self.source), [])
+
+    def git(self, *arguments, **more):
+        return subprocess.run(["git", "-C", self.source, *arguments], check=True, capture_output=True, text=True,
+                              **more).stdout.strip()
+
+    def commits(self, count):
+        """A day apart from 1 January 2020 on; each changes a file of `host`."""
+        self.git("init", "-q", "-b", "main")
+        text = ""
+        for number in range(count):
+            seconds = 1577880000 + 86400 * number
+            text += (f"commit refs/heads/main\ncommitter a <a@b> {seconds} +0000\ndata 1\nx\n"
+                     f"M 100644 inline host/file\ndata {len(str(number))}\n{number}\n\n")
+        self.git("fast-import", "--quiet", input=text)
+
+
+if __name__ == "__main__":
+    unittest.main()
