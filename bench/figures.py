@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Collects the figures that README.md and the pages cite, into results/figures.json.
+"""Collects the figures that README.md and the pages cite, into docs/figures.json.
 
     bench/figures.py [--photile COMMAND] [--measure NAME]...
 
@@ -26,7 +26,7 @@ from kernels.report_ratios import TREES, ratios
 from kernels.report_tables import timed as timed_rows
 from tools import processes
 
-RESULTS = ROOT / "results/figures.json"
+RESULTS = ROOT / "docs/figures.json"
 RUNS = 3  # of what is measured here: the least and the most are the figure
 SEARCH = ["host/renderer/estimate", "kernels/estimate", "bench/structures"]
 BUILD = ["host/renderer/maps", "host/renderer/groups", "kernels/grid"]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The figures of README.md and of the pages are those of results/figures.json, which bench/figures.py writes.
+"""The figures of README.md and of the pages are those of docs/figures.json, which bench/figures.py writes.
 
 Usage: figures.py SOURCE_FOLDER
 
@@ -83,7 +83,7 @@ def commits_behind(source, figure):
 
 def check(source):
     """What is wrong, in a line each."""
-    figures = json.loads((source / "results/figures.json").read_text(encoding="utf-8"))
+    figures = json.loads((source / "docs/figures.json").read_text(encoding="utf-8"))
     wrong = []
     for page in [source / "README.md", *sorted((source / "docs").glob("*.md"))]:
         text = page.read_text(encoding="utf-8")
@@ -93,12 +93,12 @@ def check(source):
         told = check_text("README.md", paragraph, figures, [])
         for end, number in numbers(MARKER.sub(lambda match: " " * len(match[0]), paragraph)):
             if end not in told:
-                wrong.append(f"README.md, {title}: {number} is no figure of results/figures.json: "
+                wrong.append(f"README.md, {title}: {number} is no figure of docs/figures.json: "
                              f"...{paragraph[max(0, end - 40):end + 20]}...")
     for name, figure in figures.items():
         behind = commits_behind(source, figure)
         if behind > OLDEST:
-            wrong.append(f"results/figures.json: {name} is {behind} commits older than what it measures; "
+            wrong.append(f"docs/figures.json: {name} is {behind} commits older than what it measures; "
                          f"{figure['command']} measures it anew")
     return wrong
 

@@ -24,7 +24,7 @@ class Figures(unittest.TestCase):
         self.write({"room.s": FIGURE}, "52 to 55<!-- figure: room.s -->")
 
     def write(self, of_names, text):
-        (self.source / "results/figures.json").write_text(json.dumps(of_names))
+        (self.source / "docs/figures.json").write_text(json.dumps(of_names))
         (self.source / "README.md").write_text(README.format(text))
 
     def test_what_agrees_passes(self):
