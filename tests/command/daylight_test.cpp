@@ -192,7 +192,8 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   std::size_t closed = 0;
   for (const std::size_t state : grid["blinds"]["state_of_hour"]) closed += state;
   CHECK(closed == grid["blinds"]["closed_hours"]);
-  CHECK_THAT(folder.read("a.csv"), Contains(",blinds\n") && Contains(",closed\n"));
+  CHECK_THAT(folder.read("a.csv"),
+             Contains(",blinds,ground_reflectance\n") && Contains(",closed,0.2\n"));
   CHECK(nlohmann::json::parse(folder.read("bee/states_schedule.json"))["blinds"]["schedule"] ==
         grid["blinds"]["state_of_hour"]);
   CHECK(!folder.read("bee/blinds/1_blinds/direct/working_plane.npy").empty());
