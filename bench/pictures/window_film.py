@@ -169,7 +169,7 @@ def film(command, scene, options, asked, seconds):
         screen = Screen(asked.size, folder)
         begin = time.monotonic()
         process = subprocess.Popen(
-            [command, "view", scene, "--size", picture_size(asked), "--view", "standard", "--quiet", "--outputs",
+            [command, "view", scene, "--size", picture_size(asked), "--set", "view=standard", "--quiet", "--outputs",
              folder, *options], env={**os.environ, "DISPLAY": screen.display})
         pictures = []
         trace = screen.trace()

@@ -167,10 +167,11 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
             warnings.append(f"luminaire '{name}': its colour is left out; --temperature sets one")
         if factor != 1:
             # The third number after the line of the tilt multiplies all intensities.
-            text, found = re.subn(
-                r"(TILT\s*=\s*NONE\s+\S+\s+\S+\s+)(\S+)",
-                lambda match: f"{match[1]}{float(match[2]) * factor:.9g}", text, count=1)
-            if not found:
+            match = re.search(r"TILT\s*=\s*NONE\s+\S+\s+\S+\s+(\S+)", text)
+            if match:
+                text = (f"{text[:match.start(1)]}{float(match[1]) * factor:.9g}"
+                        f"{text[match.end(1):]}")
+            else:
                 warnings.append(f"luminaire '{name}': its factor of {factor:g} is left out, "
                                 "since its file has a TILT")
         files[f"{name}.ies"] = text

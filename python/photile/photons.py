@@ -408,7 +408,7 @@ def _origin(values: ArrayLike) -> NDArray[np.float64]:
     rows = positions.reshape(-1, 3)
     low, high = rows.min(axis=0).astype(np.float64), rows.max(axis=0).astype(np.float64)
     with np.errstate(over="ignore", invalid="ignore"):
-        middle = (low + (high - low) / 2).astype(np.float32).astype(np.float64)
+        middle: NDArray[np.float64] = (low + (high - low) / 2).astype(np.float32).astype(np.float64)
     nearest = np.abs([low - middle, high - middle]).max()
     far = np.isfinite(nearest) and np.abs([low, high]).max() > _FARTHER * nearest
     return middle if far else np.zeros(3)

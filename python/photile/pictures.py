@@ -85,7 +85,8 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         layer = self._core.unit_layer(light)
         row = next(row for row in self._core.lights(self._changes) if row["name"] == light)
         scale = row["power_in_picture"] * np.array(row["tint"])
-        return layer * scale.astype(np.float32)
+        scaled: NDArray[np.float32] = layer * scale.astype(np.float32)
+        return scaled
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.lights)

@@ -158,7 +158,7 @@ TEST_CASE("readings that are too noisy for 1% make validate fail") {
   const Outcome outcome = run_photile(command);
   CHECK(outcome.exit_code == 1);
   CHECK_THAT(outcome.output, Contains("too noisy"));
-  CHECK_THAT(last_error(outcome, 1), Contains("3 of 3 readings") && Contains("--paths"));
+  CHECK_THAT(last_error(outcome, 1), Contains(" of 3 readings") && Contains("--paths"));
 
   // Where both streams end in one place the error is the last line, whole.
   std::string line = PHOTILE_COMMAND;

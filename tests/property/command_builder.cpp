@@ -146,7 +146,7 @@ void CommandBuilder::false_colour() {
 
 void CommandBuilder::tone_mapping() {
   maybe(0.1, {"--exposure", dice_.one_of({"1", "-64", "64", "65", "nan"})});
-  maybe(0.1, {"--view", dice_.one_of({"neutral", "standard"})});
+  maybe(0.1, {"--set", "view=" + dice_.one_of({"neutral", "standard"})});
 }
 
 void CommandBuilder::run() {

@@ -84,7 +84,7 @@ class Window:
     def __init__(self, photile, scene, folder, *options):
         self.folder = folder
         self.process = subprocess.Popen(
-            [photile, "view", scene, "--outputs", folder, "--view", "standard", *self.settings, *options],
+            [photile, "view", scene, "--outputs", folder, "--set", "view=standard", *self.settings, *options],
             stderr=subprocess.PIPE, text=True)
         self.id = until(lambda: self.running() and self.find("photile"), "the window")
         self.finish()

@@ -16,6 +16,7 @@
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/scene_options.hpp"
+#include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
@@ -275,8 +276,9 @@ void add_compare_command(CLI::App& photile) {
   group.add("--json", options->json, "FILE", "write the errors as JSON");
   group.add("-s,--scale", options->scale, "X",
             "largest difference of the legend; default: from the pictures", positive_number());
-  add_tone_mapping_options(group, options->display.tone_mapping);
+  add_exposure_option(group, options->display.tone_mapping.exposure);
   add_white_option(group, options->display.white);
+  add_set_option(*command, {{display_view_setting(options->display.tone_mapping)}});
   command->callback([options] { run_compare(*options); });
 }
 

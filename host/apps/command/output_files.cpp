@@ -45,13 +45,6 @@ void make_folder(const std::filesystem::path& folder) {
   }
 }
 
-void add_view_option(const OptionGroup& group, DisplayView& view) {
-  group.choose("--view", all_display_views, view,
-               "display transform: Khronos PBR Neutral, in which highlights roll off, or the sRGB "
-               "curve alone",
-               [&view](DisplayView chosen) { view = chosen; });
-}
-
 WhiteOption WhiteOption::parse(const std::string& text) {
   const auto kelvin = text.ends_with('K')
                           ? parse_number<double>(std::string_view(text).substr(0, text.size() - 1))
@@ -72,12 +65,11 @@ void add_white_option(const OptionGroup& group, WhiteOption& white) {
       "scene has them");
 }
 
-void add_tone_mapping_options(const OptionGroup& group, ToneMapping& parameters) {
+void add_exposure_option(const OptionGroup& group, double& exposure) {
   group
-      .add("--exposure", parameters.exposure, "STOPS", "stops, for PNGs and the window alone",
+      .add("--exposure", exposure, "STOPS", "stops, for PNGs and the window alone",
            number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
       ->capture_default_str();
-  add_view_option(group, parameters.view);
 }
 
 namespace {
@@ -136,7 +128,7 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   output.repeat("-o,--output", options.outputs, "FILE",
                 "picture to write, .exr, .png or .hdr; repeatable",
                 file_ending_in({".exr", ".png", ".hdr"}));
-  add_tone_mapping_options(output, options.tone_mapping);
+  add_exposure_option(output, options.tone_mapping.exposure);
   add_white_option(output, options.white);
   output.add("--illuminance", options.illuminance, "FILE.png",
              "lux on the surfaces that are seen, in false colour with a legend",

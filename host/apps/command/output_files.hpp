@@ -41,9 +41,6 @@ class App;
 
 namespace photile::app {
 
-/// Adds --view.
-void add_view_option(const OptionGroup& group, DisplayView& view);
-
 /// What --white asks for.
 struct WhiteOption {
   std::optional<image::White> white;  ///< none = that of the lamps
@@ -57,8 +54,8 @@ struct WhiteOption {
 /// Adds --white.
 void add_white_option(const OptionGroup& group, WhiteOption& white);
 
-/// Adds --exposure and --view.
-void add_tone_mapping_options(const OptionGroup& group, ToneMapping& parameters);
+/// Adds --exposure.
+void add_exposure_option(const OptionGroup& group, double& exposure);
 
 /// The options of false colour as typed, checked against the limits.
 struct FalseColourOptions {
@@ -98,7 +95,7 @@ ToneMapping shown_as(const PictureOptions& options, const LayeredPicture& pictur
 image::White white_of_scene(const PictureOptions& options, const LightLayers& layers,
                             const Scene& scene, double lumen_per_watt);
 
-/// Adds -o, --exposure, --view, --white, --illuminance and --luminance to a subcommand.
+/// Adds -o, --exposure, --white, --illuminance and --luminance to a subcommand.
 void add_picture_options(CLI::App& command, PictureOptions& options);
 
 /// Files to be written, each in the format that its name ends in.

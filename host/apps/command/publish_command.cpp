@@ -261,7 +261,7 @@ void add_publish_command(CLI::App& photile) {
       ->required();
   output.add("--title", options->title, "TEXT",
              "of the page; default: the name of the scene's file");
-  add_tone_mapping_options(output, options->render.pictures.tone_mapping);
+  add_exposure_option(output, options->render.pictures.tone_mapping.exposure);
   add_white_option(output, options->render.pictures.white);
   CLI::Option* texel =
       output.add("--texel", options->baking.texel, "M",
@@ -275,7 +275,8 @@ void add_publish_command(CLI::App& photile) {
            "add rays and photons for so long, from a quarter of the rays on; the page depends on "
            "the machine",
            duration());
-  add_setting_options(*command, options->render, without);
+  add_setting_options(*command, options->render, without,
+                      {display_view_setting(options->render.pictures.tone_mapping)});
   command->callback([options, texel] {
     options->baking.exact = texel->count() > 0;
     run_publish(*options);

@@ -251,6 +251,20 @@ NamedSettings device_settings(DeviceOptions& options) {
   };
 }
 
+NamedSetting display_view_setting(ToneMapping& parameters) {
+  std::vector<std::string_view> names;
+  for (const DisplayView view : all_display_views) names.push_back(name_of(view));
+  return bound_word("view", "Display", Words{std::move(names)},
+                    "display transform of PNGs, window and pages: Khronos PBR Neutral, in which "
+                    "highlights roll off, or the sRGB curve alone",
+                    std::string(name_of(parameters.view)),
+                    [&parameters](std::string_view word) {
+                      for (const DisplayView view : all_display_views) {
+                        if (name_of(view) == word) parameters.view = view;
+                      }
+                    });
+}
+
 NamedSetting white_balance_setting(PictureOptions& options) {
   return bound_switch("white_balance", "Display", options.white_balance,
                       "the white of a picture, that of --white or of the lamps, is shown as white, "
@@ -261,7 +275,7 @@ NamedSettings display_settings(PictureOptions& options) {
   return {bound_switch("auto_exposure", "Display", options.tone_mapping.automatic_exposure,
                        "on: the log-average luminance becomes 0.36 of white; off: 1 cd/m2 or "
                        "1 W/(m2 sr) becomes white; before --exposure"),
-          white_balance_setting(options),
+          display_view_setting(options.tone_mapping), white_balance_setting(options),
           bound_word("exr", "Display", Words{{"float", "half", "dwaa"}},
                      "layers of EXRs: every bit, 11 significant bits in half the room, or lossy",
                      "float", [&options](std::string_view word) {

@@ -43,6 +43,7 @@ NamedSettings rendering_settings(RenderParameters& parameters,
 NamedSettings scene_settings(SceneLoadOptions& options);
 NamedSettings device_settings(DeviceOptions& options);
 NamedSettings display_settings(PictureOptions& options);
+NamedSetting display_view_setting(ToneMapping& parameters);
 NamedSetting white_balance_setting(PictureOptions& options);
 NamedSettings glare_settings(double& limit);
 

@@ -28,7 +28,6 @@ struct ViewOptions {
   RenderOptions render;
   double frames_per_second = defaults::view_frames_per_second;
   std::string outputs = ".";
-  DisplayView view = ToneMapping{}.view;
 };
 
 /// Lights that options name may be gone by then.
@@ -93,7 +92,7 @@ void run_view(ViewOptions& options) {
   parameters.render = render.parameters;
   parameters.frames_per_second = options.frames_per_second;
   parameters.outputs = options.outputs;
-  parameters.view = options.view;
+  parameters.view = render.pictures.tone_mapping.view;
   parameters.fills_screen = render.size.empty();
   parameters.white = render.pictures.white.white;
   parameters.white_balance = render.pictures.white_balance;
@@ -133,10 +132,10 @@ void add_view_command(CLI::App& photile) {
       ->capture_default_str();
   window.add("--outputs", options->outputs, "FOLDER", "folder of what F12 and Ctrl+S keep")
       ->capture_default_str();
-  add_view_option(window, options->view);
   add_white_option(window, options->render.pictures.white);
   add_picture_settings(*command, options->render,
-                       {white_balance_setting(options->render.pictures)});
+                       {display_view_setting(options->render.pictures.tone_mapping),
+                        white_balance_setting(options->render.pictures)});
   command->get_option("--size")->description(
       "pixels of the picture; default: the window takes most of the screen");
   add_saved_maps_options(*command, options->render);

@@ -399,7 +399,7 @@ void add_walk_command(CLI::App& photile) {
               "draw light maps alone, as the window does while it moves: matt, no layers");
   output.add("--png", options->png, "PATTERN.png", "frames as PNG, with the exposure of the first",
              file_ending_in({".png"}));
-  add_tone_mapping_options(output, options->render.pictures.tone_mapping);
+  add_exposure_option(output, options->render.pictures.tone_mapping.exposure);
   add_white_option(output, options->render.pictures.white);
   output.add("--contact-sheet", options->sheet, "FILE.png", "all frames on one PNG",
              file_ending_in({".png"}));
@@ -426,7 +426,8 @@ void add_walk_command(CLI::App& photile) {
   add_shard_option(motion, options->shard, "of the frames");
   set_quality(options->render.quality_options(), Quality::good);
   add_picture_settings(*command, options->render,
-                       {white_balance_setting(options->render.pictures)});
+                       {display_view_setting(options->render.pictures.tone_mapping),
+                        white_balance_setting(options->render.pictures)});
   add_saved_maps_options(*command, options->render);
   command->callback([options] {
     check_quick(*options, options->render.parameters.light_maps == LightMapMode::off);
