@@ -129,6 +129,9 @@ inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_win
 /// Standard errors by which points may differ, and how many times as large the standard errors of
 /// direct light may be.
 inline constexpr double tolerated_errors = 2.5, tolerated_error_ratio = 2;
+/// Points whose light differs by less than this part of the brighter one's are averaged without a
+/// look at what stands between them.
+inline constexpr double parting_contrast = 0.5;
 /// A light is judged apart from the others where the square of its own difference exceeds so many
 /// tolerated ones: 4.3 standard errors, which scatter in eight batches seldom brings about.
 inline constexpr double parting_difference = 3;

@@ -120,6 +120,34 @@ TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges amo
   CHECK(std::abs(mean) < 0.02);
 }
 
+TEST_CASE("gathered nodes: no light passes a wall that stands on one floor") {
+  SceneBuilder builder;
+  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, black);
+  builder.grid({0.1f, -3, 0}, {0, 6, 0}, {0, 0, 3}, 1, black);
+  // Long, so that few samples are not sure of its light.
+  builder.grid({0.2f, -3, 1}, {0, 6, 0}, {0.1f, 0, 0}, 1, black, builder.add(area_light("lamp")));
+  GatheringScene rooms(builder.build(), looked_up(20'000));
+  GatheredMaps maps(rooms, {{16, 16}, {8, 8}});
+  PrimaryHits floor;
+  const PrimaryHits all = points_on(rooms.scene, 14);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::uint32_t triangle = triangle_of(all.oriented_face[i]);
+    if (triangle < 8 && side_of(all.oriented_face[i]) == rooms.scene.front_side[triangle]) {
+      add_hit(floor, all.position[i], all.oriented_face[i]);
+    }
+  }
+  maps.fill(floor);
+  double behind = 0, before = 0;
+  for (std::size_t i = 0; i < floor.size(); ++i) {
+    if (floor.position[i].x > 0.3f) before = std::max(before, maps.lux(floor, i));
+    // Not in the cells that the wall crosses.
+    if (floor.position[i].x < -0.1f) behind = std::max(behind, maps.lux(floor, i));
+  }
+  CHECK(before > 0.01);
+  CHECK(behind == 0);
+}
+
 TEST_CASE("gathered nodes: direct light is that of form factors, closer than rays alone tell it") {
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));

@@ -1,5 +1,7 @@
 #include "cache/gathered_nodes.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,9 +9,11 @@
 #include <utility>
 
 #include "cache/irradiance_filter.hpp"
+#include "cache/node_visibility.hpp"
 #include "estimate/map_order.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::cache {
 namespace {
@@ -32,21 +36,40 @@ std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
 }
 
 /// Links between chosen points alone, by their numbers among those chosen.
-PointLinks links_between(const NodeBatch& batch, std::span<const std::uint32_t> chosen) {
-  std::vector<std::uint32_t> index_of(batch.points.size(), none);
+PointLinks links_between(const PointLinks& all, std::span<const std::uint32_t> chosen) {
+  std::vector<std::uint32_t> index_of(all.position.size(), none);
   for (std::uint32_t i = 0; i < chosen.size(); ++i) index_of[chosen[i]] = i;
   PointLinks links;
   links.first.push_back(0);
   for (const std::uint32_t point : chosen) {
-    for (std::uint32_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1];
-         ++i) {
-      links.to.push_back(index_of[batch.neighbour[i]]);
-    }
+    for (const std::uint32_t to : all.of(point)) links.to.push_back(index_of[to]);
     links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
-    links.position.push_back(batch.points.position[point]);
+    links.position.push_back(all.position[point]);
   }
   return links;
 }
+
+/// What two points differ by, layer by layer, and the light of the brighter one; luminance of all
+/// layers at their powers.
+struct Contrast {
+  double difference = 0, light = 0;
+
+  Contrast(const KnownPoints& points, std::size_t a, std::size_t b,
+           std::span<const double> layer_powers) {
+    thread_local std::vector<double> less;
+    less.assign(layer_powers.size(), 0.0);
+    points.for_each_layer(a, [&](std::size_t layer, const GatheredIrradiance::Total& light) {
+      less[layer] = light.luminance;
+    });
+    points.for_each_layer(b, [&](std::size_t layer, const GatheredIrradiance::Total& light) {
+      less[layer] -= light.luminance;
+    });
+    for (std::size_t layer = 0; layer < less.size(); ++layer) {
+      difference += layer_powers[layer] * std::abs(less[layer]);
+    }
+    light = std::max(points.all(a).luminance, points.all(b).luminance);
+  }
+};
 
 /// By defaults::few_nodes.
 double times_where_few(const Scene& scene, double spacing) {
@@ -134,11 +157,15 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   }
   gather_new(batch, coarse, rays_.coarse, progress);
   gather_new(batch, fine, rays_.fine, progress);
-  const GatheredParts smooth = smoothed(batch, coarse);
+  std::vector<std::size_t> rows;
+  for (const std::uint64_t number : batch.number) rows.push_back(raw_.row_of.at(number));
+  const PointLinks links = links_in_sight(batch, rows);
+  const GatheredParts smooth = smoothed(links, rows, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
   const GatheredIrradiance indirect =
-      with_neighbours(raw_.light.indirect, batch, fine, of_indirect);
-  const GatheredIrradiance direct = with_neighbours(raw_.light.direct, batch, fine, of_direct);
+      with_neighbours(raw_.light.indirect, links, rows, fine, of_indirect);
+  const GatheredIrradiance direct =
+      with_neighbours(raw_.light.direct, links, rows, fine, of_direct);
 
   GatheredParts own;
   std::size_t next_coarse = 0, next_fine = 0;
@@ -148,7 +175,7 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
     } else {
       own.indirect.append(indirect, next_fine, lights);
       own.direct.append(direct, next_fine++, lights);
-      own.distance.push_back(raw_.light.distance[raw_.row_of.at(batch.number[node])]);
+      own.distance.push_back(raw_.light.distance[rows[node]]);
     }
   }
   GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
@@ -206,39 +233,73 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
   }
 }
 
+/// The links of a batch, without those across what stands on the surface between two points, such
+/// as a wall on a floor that runs on under it. Only points whose light is unlike are looked at: a
+/// bright one that is not sure of its light would brighten a dark one.
+///   rows   of all points
+PointLinks GatheredNodes::links_in_sight(const NodeBatch& batch,
+                                         std::span<const std::size_t> rows) const {
+  PointLinks links{{0}, {}, batch.points.position};
+  if (batch.first_neighbour.empty()) return links;
+  const KnownPoints indirect(raw_.light.indirect, {rows.begin(), rows.end()}, layer_powers_);
+  const KnownPoints direct(raw_.light.direct, {rows.begin(), rows.end()}, layer_powers_);
+  const Scene& scene = gather_.rays().scene();
+  const auto location = [&](std::size_t point) {
+    return trace::location_on(scene, batch.points.oriented_face[point],
+                              batch.points.position[point]);
+  };
+  std::vector<std::uint8_t> parted(batch.neighbour.size(), 0);
+  tbb::parallel_for(std::size_t{0}, batch.points.size(), [&](std::size_t point) {
+    const trace::FlushDenormals flush_denormals;
+    for (std::size_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1]; ++i) {
+      const std::size_t other = batch.neighbour[i];
+      const Contrast reflected(indirect, point, other, layer_powers_);
+      const Contrast sent(direct, point, other, layer_powers_);
+      if (reflected.difference + sent.difference <=
+          defaults::parting_contrast * std::max(reflected.light, sent.light)) {
+        continue;
+      }
+      parted[i] = sees(gather_.rays(), location(point), location(other)) ? 0 : 1;
+    }
+  });
+  for (std::size_t point = 0; point < batch.points.size(); ++point) {
+    for (std::size_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1]; ++i) {
+      if (parted[i] == 0) links.to.push_back(batch.neighbour[i]);
+    }
+    links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+  }
+  return links;
+}
+
 /// Coarse points averaged with those around them.
-GatheredParts GatheredNodes::smoothed(const NodeBatch& batch,
+GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const std::size_t> rows,
                                       std::span<const std::uint32_t> coarse) const {
   const std::size_t lights = layer_powers_.size();
   GatheredParts parts;
   for (const std::uint32_t point : coarse) {
-    append(raw_.light, raw_.row_of.at(batch.number[point]), lights, parts);
+    append(raw_.light, rows[point], lights, parts);
   }
   if (coarse.empty()) return parts;
-  const PointLinks links = links_between(batch, coarse);
-  parts.indirect = filter_irradiance(std::move(parts.indirect), links, layer_powers_,
+  const PointLinks between = links_between(links, coarse);
+  parts.indirect = filter_irradiance(std::move(parts.indirect), between, layer_powers_,
                                      {.rounds = averaged.rounds, .tolerated = of_indirect});
-  parts.direct = filter_irradiance(std::move(parts.direct), links, layer_powers_,
+  parts.direct = filter_irradiance(std::move(parts.direct), between, layer_powers_,
                                    {.rounds = averaged.rounds, .tolerated = of_direct});
   return parts;
 }
 
 /// Finer nodes averaged with the points next to them, as gathered.
 GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
-                                                  const NodeBatch& batch,
+                                                  const PointLinks& links,
+                                                  std::span<const std::size_t> rows,
                                                   std::span<const std::uint32_t> fine,
                                                   const NoiseTolerance& tolerated) const {
-  std::vector<std::size_t> rows;
-  if (!fine.empty()) {
-    for (const std::uint64_t number : batch.number) rows.push_back(raw_.row_of.at(number));
-  }
-  const KnownPoints points(raw, std::move(rows), layer_powers_);
+  if (fine.empty()) return means_of(raw, 0, layer_powers_, [](std::size_t, auto&) {});
+  const KnownPoints points(raw, {rows.begin(), rows.end()}, layer_powers_);
   return means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
     const std::uint32_t node = fine[i];
     mean.add_own(points, node);
-    for (std::uint32_t j = batch.first_neighbour[node]; j < batch.first_neighbour[node + 1]; ++j) {
-      mean.add_other(points, batch.neighbour[j], tolerated);
-    }
+    for (const std::uint32_t other : links.of(node)) mean.add_other(points, other, tolerated);
   });
 }
 

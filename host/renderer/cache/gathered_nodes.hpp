@@ -36,8 +36,8 @@ struct GatheredPoints {
 
 /// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
-/// finer ones with those next to them, as far as differences may be noise. Direct light and light
-/// of other surfaces are treated apart.
+/// finer ones with those next to them, as far as differences may be noise and nothing stands
+/// between the nodes. Direct light and light of other surfaces are treated apart.
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. One LightMaps uses it.
@@ -63,8 +63,11 @@ class GatheredNodes : public NodeSource {
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points, NodeRays rays,
                   const Progress& progress);
-  GatheredParts smoothed(const NodeBatch& batch, std::span<const std::uint32_t> coarse) const;
-  GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const NodeBatch& batch,
+  PointLinks links_in_sight(const NodeBatch& batch, std::span<const std::size_t> rows) const;
+  GatheredParts smoothed(const PointLinks& links, std::span<const std::size_t> rows,
+                         std::span<const std::uint32_t> coarse) const;
+  GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const PointLinks& links,
+                                     std::span<const std::size_t> rows,
                                      std::span<const std::uint32_t> fine,
                                      const NoiseTolerance& tolerated) const;
 

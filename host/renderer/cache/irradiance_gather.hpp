@@ -97,6 +97,7 @@ class IrradianceGather {
   GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
                             const Progress& progress = Progress::none());
 
+  const RayScene& rays() const { return rays_; }
   /// What rays find where they end.
   SecondaryLight& secondary() { return secondary_; }
 

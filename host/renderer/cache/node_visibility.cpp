@@ -5,17 +5,19 @@
 #include "trace/ray_query.hpp"
 
 namespace photile::cache {
-namespace {
 
 using trace::location_on;
 using trace::SurfaceLocation;
 
-bool see_each_other(const RayScene& rays, const SurfaceLocation& from, const SurfaceLocation& to) {
+bool sees(const RayScene& rays, const SurfaceLocation& from, const SurfaceLocation& to) {
+  if (from.position == to.position) return true;
   return trace::see_each_other(
       rays, from, to,
       {defaults::visibility_ray_offset * glm::distance(from.position, to.position),
        defaults::visibility_left_out});
 }
+
+namespace {
 
 /// Whether something lies in front of a location, nearer than this. The edge that it may lie on is
 /// left out by a step to a point of the surface.
@@ -53,7 +55,7 @@ bool NodeVisibility::keep_visible(std::uint32_t oriented_face, const glm::vec3& 
   for (std::size_t i = 0; i < seen.node.size(); ++i) {
     if (seen.weight[i] == 0.0f) continue;
     const LightMaps::NodePoint& node = maps_.point(seen.node[i]);
-    if (see_each_other(rays_, here, location_on(scene, node.oriented_face, node.position)) &&
+    if (cache::sees(rays_, here, location_on(scene, node.oriented_face, node.position)) &&
         !is_in_slit(here, seen.node[i])) {
       sum += seen.weight[i];
     } else {
@@ -73,14 +75,14 @@ bool NodeVisibility::is_open(const BilinearWeights& cell) const {
   const SurfaceLocation here = location_on(scene, maps_.point(cell.node[0]).oriented_face, middle);
   return std::all_of(cell.node.begin(), cell.node.end(), [&](std::uint32_t index) {
     const LightMaps::NodePoint& node = maps_.point(index);
-    return see_each_other(rays_, here, location_on(scene, node.oriented_face, node.position));
+    return cache::sees(rays_, here, location_on(scene, node.oriented_face, node.position));
   });
 }
 
 bool NodeVisibility::sees(std::uint32_t oriented_face, const glm::vec3& from,
                           const glm::vec3& to) const {
   const Scene& scene = rays_.scene();
-  return see_each_other(rays_, location_on(scene, oriented_face, from),
+  return cache::sees(rays_, location_on(scene, oriented_face, from),
                         location_on(scene, oriented_face, to));
 }
 

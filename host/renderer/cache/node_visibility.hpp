@@ -14,6 +14,11 @@ struct SurfaceLocation;
 
 namespace photile::cache {
 
+/// Whether nothing stands between two points of one surface. The caller's thread must flush
+/// denormals (ray_query.hpp).
+bool sees(const RayScene& rays, const trace::SurfaceLocation& from,
+          const trace::SurfaceLocation& to);
+
 /// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
 /// the light of where they are, which is none of what the eye sees beside them.
 class NodeVisibility {
