@@ -88,6 +88,10 @@ inline constexpr double light_map_near = 0.5;       ///< cells larger than this 
 /// Radii of photon estimates, so near to a node that gathers: what they blur, and what hides within
 /// their radius, would show there.
 inline constexpr double near_radii = 2;
+/// Estimates where their rays end have so many times fewer neighbours, but no fewer than these.
+inline constexpr int neighbours_over_ends = 4, least_neighbours_at_ends = 12;
+/// Nodes that gather lie as far apart as an estimate by so many times the neighbours would reach.
+inline constexpr int photons_between_nodes = 3;
 inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on from
 /// From near surface that reflects less than the inverse of this, rays go on by chance.
 inline constexpr float survival_of_reflectance = 1.5f;

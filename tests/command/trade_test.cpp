@@ -109,7 +109,7 @@ TEST_CASE("pictures are made for a time; that needs nodes that gather") {
       succeed({"render", scene, "-o", folder / "box.exr", "--size", "24x18", "--for", "1ms"});
   CHECK_THAT(outcome.errors,
              Contains("picture 1: ") &&
-                 Contains("--photons 500000 -k 100 --samples 4 --set light_map_rays=16") &&
+                 Contains("--photons 1500000 -k 100 --samples 4 --set light_map_rays=16") &&
                  !Contains("picture 2"));
   CHECK_FALSE(text_of(folder / "box.exr").empty());
   const std::string goal = GENERATE("--for=1s", "--target-error=2%");
@@ -299,11 +299,11 @@ TEST_CASE("pages are made for a time, the first from a quarter of the rays") {
   };
   const Outcome outcome = succeed(publish({"--for", "1ms"}));
   CHECK_THAT(outcome.errors, Contains("standard error ") &&
-                                 Contains("; --photons 500000 -k 100 --set light_map_rays=16\n") &&
+                                 Contains("; --photons 1500000 -k 100 --set light_map_rays=16\n") &&
                                  !Contains("passes"));
   const std::string page = folder.read("room.html");
   succeed(typed("publish", scene, "-o", folder / "same.html",
-                "--texel 0.2 --title box --photons 500000 -k 100 --set light_map_rays=16"));
+                "--texel 0.2 --title box --photons 1500000 -k 100 --set light_map_rays=16"));
   CHECK(page == folder.read("same.html"));
   // Those of a longer time have several parts.
   succeed(typed("publish", scene, "-o", folder / "one.html",

@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 
 #include "command/command_line.hpp"
@@ -135,8 +136,10 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
   print_hash(test, "neighbours", std::span(lists.photons));
   print_hash(test, "squared_radius", std::span(lists.squared_radius));
   const std::vector<double> powers(needs_of(test.scene).light_count, 1.0);
-  estimate::PhotonEstimate light(devices, test.scene, {std::move(all_maps), {test.parameters()}},
-                                 powers);
+  estimate::PhotonEstimate light(
+      devices, test.scene,
+      {std::make_shared<const std::vector<PhotonMaps>>(std::move(all_maps)), {test.parameters()}},
+      powers);
   const Estimates estimates = light.at(hits, Progress::none());
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);

@@ -159,7 +159,7 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   gather_new(batch, fine, rays_.fine, progress);
   std::vector<std::size_t> rows;
   for (const std::uint64_t number : batch.number) rows.push_back(raw_.row_of.at(number));
-  const PointLinks links = links_in_sight(batch, rows);
+  const PointLinks links = visible_links(batch, rows);
   const GatheredParts smooth = smoothed(links, rows, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
   const GatheredIrradiance indirect =
@@ -237,7 +237,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
 /// as a wall on a floor that runs on under it. Only points whose light is unlike are looked at: a
 /// bright one that is not sure of its light would brighten a dark one.
 ///   rows   of all points
-PointLinks GatheredNodes::links_in_sight(const NodeBatch& batch,
+PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
                                          std::span<const std::size_t> rows) const {
   PointLinks links{{0}, {}, batch.points.position};
   if (batch.first_neighbour.empty()) return links;
@@ -248,7 +248,7 @@ PointLinks GatheredNodes::links_in_sight(const NodeBatch& batch,
     return trace::location_on(scene, batch.points.oriented_face[point],
                               batch.points.position[point]);
   };
-  std::vector<std::uint8_t> parted(batch.neighbour.size(), 0);
+  std::vector<std::uint8_t> hidden(batch.neighbour.size(), 0);
   tbb::parallel_for(std::size_t{0}, batch.points.size(), [&](std::size_t point) {
     const trace::FlushDenormals flush_denormals;
     for (std::size_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1]; ++i) {
@@ -259,12 +259,12 @@ PointLinks GatheredNodes::links_in_sight(const NodeBatch& batch,
           defaults::parting_contrast * std::max(reflected.light, sent.light)) {
         continue;
       }
-      parted[i] = sees(gather_.rays(), location(point), location(other)) ? 0 : 1;
+      hidden[i] = sees(gather_.rays(), location(point), location(other)) ? 0 : 1;
     }
   });
   for (std::size_t point = 0; point < batch.points.size(); ++point) {
     for (std::size_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1]; ++i) {
-      if (parted[i] == 0) links.to.push_back(batch.neighbour[i]);
+      if (hidden[i] == 0) links.to.push_back(batch.neighbour[i]);
     }
     links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
   }

@@ -63,7 +63,7 @@ class GatheredNodes : public NodeSource {
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points, NodeRays rays,
                   const Progress& progress);
-  PointLinks links_in_sight(const NodeBatch& batch, std::span<const std::size_t> rows) const;
+  PointLinks visible_links(const NodeBatch& batch, std::span<const std::size_t> rows) const;
   GatheredParts smoothed(const PointLinks& links, std::span<const std::size_t> rows,
                          std::span<const std::uint32_t> coarse) const;
   GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const PointLinks& links,

@@ -50,7 +50,7 @@ PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Pa
   for (const EstimateParameters& parameters : parts.levels) {
     Level& level =
         levels_.emplace_back(Level{parameters.neighbours, {}, LoadBalance(devices.size())});
-    for (const PhotonMaps& maps : maps_) level.estimators.emplace_back(maps, scene, parameters);
+    for (const PhotonMaps& maps : *maps_) level.estimators.emplace_back(maps, scene, parameters);
   }
 }
 
@@ -121,7 +121,7 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
 
 void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result) {
   const std::vector<std::uint32_t> beside =
-      seen_->beside_something(points, result, maps_.front().parameters().radius);
+      seen_->beside_something(points, result, maps_->front().parameters().radius);
   const std::size_t lists =
       std::max<std::size_t>(1, listed_at_a_time / static_cast<std::size_t>(level.neighbours));
   for (std::size_t first = 0; first < beside.size(); first += lists) {

@@ -31,7 +31,7 @@ std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scen
 class PhotonEstimate : public LightAtPoints {
  public:
   struct Parts {
-    std::vector<PhotonMaps> maps;            ///< the same on each device
+    std::shared_ptr<const std::vector<PhotonMaps>> maps;  ///< the same on each device
     std::vector<EstimateParameters> levels;  ///< ascending in k: points choose one, each its own
     /// Tells which photons of these maps are visible from a point: hidden ones do not count. Null:
     /// all count.
@@ -46,7 +46,7 @@ class PhotonEstimate : public LightAtPoints {
   Estimates at(const PrimaryHits& points, const Progress& progress) override;
 
   /// Per oriented face, as PhotonMaps has it: points in this order are not put in another.
-  std::span<const std::uint32_t> map_of() const { return maps_.front().map_of(); }
+  std::span<const std::uint32_t> map_of() const { return maps_->front().map_of(); }
 
   /// Each device's part of all points so far.
   std::vector<double> fractions() const { return levels_.back().balance.fractions(); }
@@ -70,9 +70,9 @@ class PhotonEstimate : public LightAtPoints {
 
   std::span<Device> devices_;
   std::span<const double> layer_powers_;
-  trace::HitCells cells_;         ///< of the scene
-  std::vector<PhotonMaps> maps_;  ///< on each device
-  std::vector<Level> levels_;     ///< ascending in k
+  trace::HitCells cells_;  ///< of the scene
+  std::shared_ptr<const std::vector<PhotonMaps>> maps_;  ///< on each device
+  std::vector<Level> levels_;                            ///< ascending in k
   std::shared_ptr<const VisiblePhotons> seen_;
 };
 

@@ -59,7 +59,7 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
       is_shared_(plan.used().processes != nullptr) {
   if (!plan.reads_light_maps()) return;
   if (plan.gathers_at_nodes()) {
-    gather_.emplace(rays, *photons_.all.of_points, *photons_.all.of_nodes, photons_.ends,
+    gather_.emplace(rays, *photons_.at_ends.of_points, *photons_.at_ends.of_nodes, photons_.ends,
                     photons_.caustics.of_points.get(),
                     plan.node_gathering(photons_.radius, photons_.maps));
   } else {
@@ -90,7 +90,7 @@ std::span<const std::uint32_t> PassLight::map_of() const {
 }
 
 std::vector<double> PassLight::fractions() const {
-  const auto& estimate = photons_.all.estimate;
+  const auto& estimate = (gather_ ? photons_.at_ends : photons_.all).estimate;
   return estimate ? estimate->fractions() : std::vector<double>();
 }
 
@@ -126,10 +126,9 @@ PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
   Maps maps = trace_and_build(prepared, keep, progress);
   const Stopwatch stopwatch;
   PassPhotons photons = std::move(maps.facts);
-  photons.all = shared(estimate_of(std::move(maps.photons)));
-  if (!maps.caustics.maps.empty()) {
-    photons.caustics = shared(estimate_of(std::move(maps.caustics)));
-  }
+  photons.all = shared(estimate_of(maps.photons));
+  if (plan_.gathers_at_nodes()) photons.at_ends = shared(estimate_at_ends(maps.photons));
+  if (maps.caustics.maps) photons.caustics = shared(estimate_of(maps.caustics));
   costs_.estimators.add(stopwatch.taken());
   if (!plan_.reads_light_maps()) ++pass_;
   return photons;
@@ -159,15 +158,19 @@ PassPhotons PhotonPasses::waiting(TracedPhotons& prepared, const KeepPhotons* ke
     const auto light = std::make_shared<LazyLight>(std::move(make));
     return PhotonLight{light, light, nullptr};
   };
-  photons.all = lazy([this, built] { return estimate_of(std::move(built().photons)); });
+  photons.all = lazy([this, built] { return estimate_of(built().photons); });
+  if (plan_.gathers_at_nodes()) {
+    photons.at_ends = lazy([this, built] { return estimate_at_ends(built().photons); });
+  }
   if (has_caustics) {
-    photons.caustics = lazy([this, built] { return estimate_of(std::move(built().caustics)); });
+    photons.caustics = lazy([this, built] { return estimate_of(built().caustics); });
   }
   return photons;
 }
 
 PassPhotons PhotonPasses::facts(const Photons& photons) {
-  PassPhotons facts{.radius = radius_, .all = {}, .caustics = {}, .maps = {}, .ends = {}};
+  PassPhotons facts{
+      .radius = radius_, .all = {}, .at_ends = {}, .caustics = {}, .maps = {}, .ends = {}};
   if (plan_.reads_light_maps()) {
     const double radius = radius_ * std::sqrt(static_cast<double>(parts_) / all_parts_);
     facts.maps = plan_.light_maps(radius, scene_, photons, layer_powers_);
@@ -178,11 +181,19 @@ PassPhotons PhotonPasses::facts(const Photons& photons) {
   return facts;
 }
 
-std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(Built built) const {
-  estimate::PhotonEstimate::Parts parts{
-      std::move(built.maps), plan_.estimates(pass_, built.kernel, surface_), std::move(built.seen)};
-  return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, std::move(parts),
-                                                    layer_powers_);
+std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
+    const Built& built, std::vector<EstimateParameters> levels) const {
+  return std::make_shared<estimate::PhotonEstimate>(
+      devices_, scene_,
+      estimate::PhotonEstimate::Parts{built.maps, std::move(levels), built.seen}, layer_powers_);
+}
+
+std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(const Built& built) const {
+  return estimate_of(built, plan_.estimates(pass_, built.kernel, surface_));
+}
+
+std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_at_ends(const Built& built) const {
+  return estimate_of(built, {plan_.estimate_at_ends(built.kernel, surface_)});
 }
 
 PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estimate) {
@@ -301,7 +312,7 @@ PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const 
                   plan_.leaves_out_hidden(), progress),
             {},
             std::move(found)};
-  const PhotonMapStatistics& built = maps.photons.maps.front().statistics();
+  const PhotonMapStatistics& built = maps.photons.maps->front().statistics();
   costs_.maps = built.maps;
   costs_.normal_filtered_maps = built.normal_filtered_maps;
   costs_.map_sizes = built.map_sizes;
@@ -338,7 +349,8 @@ PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParamete
   const PhotonMapStatistics& built = maps.front().statistics();
   costs_.references += built.references;
   costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
-  return {std::move(maps), kernel, std::move(seen)};
+  return {std::make_shared<const std::vector<PhotonMaps>>(std::move(maps)), kernel,
+          std::move(seen)};
 }
 
 void PhotonPasses::count(const PhotonTracerResult& traced) {

@@ -33,6 +33,7 @@ struct PhotonLight {
 struct PassPhotons {
   double radius = 0;  ///< of the first pass, metres
   PhotonLight all;
+  PhotonLight at_ends;            ///< by fewer neighbours: of rays, where nodes gather; else null
   PhotonLight caustics;           ///< that came by mirrors and glass alone; null without any
   LightMapParameters maps, ends;  ///< where light maps are read: of them, and of those at ray ends
   /// What such light maps held, if they were kept.
@@ -122,7 +123,7 @@ class PhotonPasses {
 
  private:
   struct Built {
-    std::vector<PhotonMaps> maps;  ///< the same on each device
+    std::shared_ptr<const std::vector<PhotonMaps>> maps;  ///< the same on each device
     DensityKernel kernel;
     std::shared_ptr<const estimate::VisiblePhotons> seen;  ///< null: all photons count
   };
@@ -139,7 +140,11 @@ class PhotonPasses {
   Maps trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   Built build(Photons photons, const PhotonMapParameters& parameters, DensityKernel kernel,
               bool leaves_out_hidden, Progress& progress);
-  std::shared_ptr<estimate::PhotonEstimate> estimate_of(Built built) const;
+  std::shared_ptr<estimate::PhotonEstimate> estimate_of(
+      const Built& built, std::vector<EstimateParameters> levels) const;
+  /// By the k that was asked for.
+  std::shared_ptr<estimate::PhotonEstimate> estimate_of(const Built& built) const;
+  std::shared_ptr<estimate::PhotonEstimate> estimate_at_ends(const Built& built) const;
   /// The estimate as it is asked for where several processes have the maps.
   PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.

@@ -180,21 +180,41 @@ std::vector<EstimateParameters> RenderPlan::estimates(
   return levels;
 }
 
+/// What ends tell may be noisy, for a node adds up many of them, but not blurred.
+int RenderPlan::neighbours_at_ends() const {
+  return std::min(used_.neighbours, std::max(defaults::least_neighbours_at_ends,
+                                             used_.neighbours / defaults::neighbours_over_ends));
+}
+
+double RenderPlan::reach_at_ends(double radius) const {
+  return radius * std::sqrt(static_cast<double>(neighbours_at_ends()) / used_.neighbours);
+}
+
+EstimateParameters RenderPlan::estimate_at_ends(
+    DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const {
+  return {.neighbours = neighbours_at_ends(),
+          .compiled_neighbours = used_.neighbours,
+          .area = used_.area,
+          .kernel = kernel,
+          .surface = surface};
+}
+
 LightMapParameters RenderPlan::light_maps(double radius, const Scene& scene, const Photons& photons,
                                           std::span<const double> powers) const {
-  LightMapParameters parameters =
-      cache::light_map_parameters(scene, photons, used_.neighbours, radius, used_.angle_degrees,
-                                  used_.light_map_spacing, used_.light_map_detail, powers);
+  const int times = gathers_at_nodes() ? defaults::photons_between_nodes : 1;
+  LightMapParameters parameters = cache::light_map_parameters(
+      scene, photons, times * used_.neighbours, std::sqrt(times) * radius, used_.angle_degrees,
+      used_.light_map_spacing, used_.light_map_detail, powers);
+  parameters.neighbours = used_.neighbours;
   parameters.processes = used_.processes;
   return parameters;
 }
 
 LightMapParameters RenderPlan::ends(double radius, const Scene& scene, const Photons& photons,
                                     std::span<const double> powers) const {
-  LightMapParameters parameters = cache::light_map_parameters(
-      scene, photons, used_.neighbours, radius, used_.angle_degrees, 0, 0, powers);
-  // A point sees many ends: what their nodes are wrong by between each other cancels out.
-  parameters.spacing *= 2;
+  LightMapParameters parameters =
+      cache::light_map_parameters(scene, photons, neighbours_at_ends(), reach_at_ends(radius),
+                                  used_.angle_degrees, 0, 0, powers);
   parameters.levels = 1;
   parameters.processes = used_.processes;
   return parameters;
@@ -204,7 +224,7 @@ cache::IrradianceGatherParameters RenderPlan::node_gathering(double radius,
                                                              const LightMapParameters& maps) const {
   return {.rays = used_.light_map_rays,
           .light_samples = used_.light_map_rays,
-          .near = defaults::near_radii * radius,
+          .near = defaults::near_radii * reach_at_ends(radius),
           .resolution = for_points_ ? std::numeric_limits<double>::infinity()
                                     : maps.spacing / std::exp2(maps.levels - 1),
           .caustic_neighbours = used_.neighbours,

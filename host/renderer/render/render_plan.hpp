@@ -70,6 +70,10 @@ class RenderPlan {
   std::vector<EstimateParameters> estimates(
       int pass, DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const;
 
+  /// Where gathering rays end.
+  EstimateParameters estimate_at_ends(DensityKernel kernel,
+                                      const std::shared_ptr<const SurfaceIndex>& surface) const;
+
   /// The parameters of light maps from these photons.
   ///   radius   of their maps, metres
   ///   powers   per layer
@@ -91,6 +95,10 @@ class RenderPlan {
   PrimaryHitParameters hits(const Film& film, int passes) const;
 
  private:
+  int neighbours_at_ends() const;
+  /// How far an estimate there reaches where one by all neighbours reaches so far, metres.
+  double reach_at_ends(double radius) const;
+
   RenderParameters used_;
   int asked_passes_;
   bool for_points_;

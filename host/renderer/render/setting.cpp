@@ -154,7 +154,7 @@ std::vector<Setting> photon_rows() {
                      "photons_emitted", paths,
                      WholeNumbers{limits::min_photons, limits::max_emitted_photons},
                      "paths over all lights", kept_as_it_is),
-                 50'000, 500'000, 2'000'000),
+                 150'000, 1'500'000, 6'000'000),
       row<&P::photons, &PhotonPaths::quota>(
           "quota", paths, words_of(all_photon_quotas),
           "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),

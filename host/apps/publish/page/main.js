@@ -341,7 +341,7 @@ class Page {
       tell('The link is damaged: this is the room as it was published.');
       return;
     }
-    this.walker.eye = state.eye;
+    this.walker.standAt(state.eye);
     [this.walker.yaw, this.walker.pitch, this.walker.angle] = state.look;
     this.walker.flies = Boolean(state.fly);
     find('#fly').setAttribute('aria-pressed', this.walker.flies);

@@ -25,10 +25,15 @@ class Walker {
 
   /// Stands where a camera of the scene does.
   stand(camera) {
-    this.eye = camera.position.slice();
+    this.standAt(camera.position);
     this.yaw = Math.atan2(camera.forward[0], -camera.forward[2]);
     this.pitch = Math.asin(clamp(camera.forward[1], -1, 1));
     this.angle = camera.angle;
+  }
+
+  /// With the eye as high above the ground as it is there.
+  standAt(eye) {
+    this.eye = eye.slice();
     this.speed = [0, 0, 0];
     const ground = this.ground(this.eye);
     this.height = ground === null ? 1.6 : clamp(this.eye[1] - ground, 0.5, 2.2);
