@@ -232,7 +232,8 @@ void check_begins(const std::vector<std::string>& arguments, const std::string& 
   CHECK(outcome.exit_code == 130);
 }
 
-TEST_CASE("as a GPU, render and measure find the light of the Cornell box that a CPU finds") {
+TEST_CASE("as a GPU, render and measure find the light of the Cornell box that a CPU finds",
+          "[slow]") {
   const std::string scene = source_folder() / "scenes/cornell-box/cornell-box.obj";
   const OnBoth rendered([&](const FileFolder& folder) {
     return typed("render", scene, "-o", folder / "box.exr", "--stats", folder / "box.json",

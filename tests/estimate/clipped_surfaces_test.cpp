@@ -276,7 +276,7 @@ TEST_CASE("a bright table top does not bleed into a dark floor below, nor the fl
 }
 
 TEST_CASE("a uniformly lit plate reads its irradiance away from borders for any triangulation",
-          "[long]") {
+          "[long][slow]") {
   // N photons of flux 1 on 1 m2: irradiance N. By the law of the estimate, (k - 1) / (pi r_k^2) has
   // mean N and a standard deviation of N / sqrt(k - 2) for each independent point.
   constexpr std::size_t count = 200'000;

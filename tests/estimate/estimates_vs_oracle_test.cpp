@@ -37,23 +37,35 @@ void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryH
   }
 }
 
-TEST_CASE("irradiance equals the oracle's for one light") {
+void check_one_light(std::initializer_list<int> neighbours) {
   Scene scene = test::empty_scene();
   test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
   const Photons photons = test::uniform_photons(scene, 6000, 51);
   const PrimaryHits hits = test::uniform_hits(scene, 300, 52);
-  for (const int k : {1, 2, 16, 50, 400}) check_irradiance(scene, photons, hits, 0.2, k);
+  for (const int k : neighbours) check_irradiance(scene, photons, hits, 0.2, k);
 }
 
-TEST_CASE("irradiance equals the oracle's per light, for few and for many lights", "[long]") {
-  // One more than fit registers, a hash table with places to spare and one without, two-byte
-  // lights.
-  for (const std::size_t lights : {2u, 8u, 9u, 40u, 200u, 300u}) {
+TEST_CASE("irradiance equals the oracle's for one light") { check_one_light({1, 50}); }
+TEST_CASE("irradiance equals the oracle's for one light and any k", "[slow]") {
+  check_one_light({2, 16, 400});
+}
+
+void check_lights(std::initializer_list<std::size_t> counts) {
+  for (const std::size_t lights : counts) {
     Scene scene = test::empty_scene(lights);
     test::add_torus(scene, 1.0f, 0.4f, 24, 12);
     const Photons photons = test::uniform_photons(scene, 20'000, 53);
     check_irradiance(scene, photons, test::uniform_hits(scene, 200, 54), 0.3, 50);
   }
+}
+
+// As many as fit registers, and a hash table with places to spare.
+TEST_CASE("irradiance equals the oracle's per light, for few and for many lights", "[long]") {
+  check_lights({8, 40});
+}
+// One more than fit registers, a table without places to spare, two-byte lights.
+TEST_CASE("irradiance equals the oracle's per light, for any number of lights", "[long][slow]") {
+  check_lights({2, 9, 200, 300});
 }
 
 TEST_CASE("with fewer than k photons within the radius the full disc counts") {
@@ -179,7 +191,7 @@ Scene sphere() {
   return scene;
 }
 
-TEST_CASE("maps of patches find the oracle's neighbours on a fine torus", "[long]") {
+TEST_CASE("maps of patches find the oracle's neighbours on a fine torus", "[long][slow]") {
   Scene scene = test::empty_scene();
   test::add_torus(scene, 1.0f, 0.2f, 96, 48);
   check_modes(scene, 20'000, 300, 0.3, every_structure, {1, 50, 400});
@@ -230,7 +242,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("estimates of maps of patches equal those of triangles up to the order of the sums") {
+TEST_CASE("estimates of maps of patches equal those of triangles up to the order of the sums",
+          "[slow]") {
   const Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
   const Photons photons = test::uniform_photons(scene, 60'000, 53);
   PrimaryHits hits = test::uniform_hits(scene, 2000, 54);

@@ -205,7 +205,8 @@ TEST_CASE("extremes: the second photon at a distance that selection compares wit
   CHECK(estimates.irradiance.at(0).g == Approx(photons.flux[0].g / area).epsilon(1e-6));
 }
 
-TEST_CASE("extremes: k of 1, of all photons and of more, in a radius as large as the scene") {
+TEST_CASE("extremes: k of 1, of all photons and of more, in a radius as large as the scene",
+          "[slow]") {
   const Scene scene = corner_with_torus();
   const Photons photons = test::uniform_photons(scene, 2000, 118);
   const PrimaryHits hits = test::uniform_hits(scene, 60, 119);

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int quick_commands = 500;
+constexpr int quick_commands = 200;
 /// One of so many quick commands runs twice.
 constexpr std::uint64_t quick_repeats = 5;
 /// One of so many other commands asks for kernels that take seconds to compile.

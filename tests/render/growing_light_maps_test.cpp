@@ -60,10 +60,10 @@ double squared_error(const LightLayers& picture, const LightLayers& reference) {
 
 }  // namespace
 
-TEST_CASE("growing light maps: rounds lead to the picture that its settings make, bit for bit") {
+/// Rounds lead to the picture that its settings make, bit for bit.
+void check_rounds(int parts) {
   Scene scene = furnished_room(3);
   if (GENERATE(false, true)) add_lamps(scene, 20);  // more than layers are dense for
-  const int parts = GENERATE(3, 17);
   const RenderResult rounds = grown(scene, little_work(), parts);
   CHECK(rounds.used.passes == parts);
   CHECK(rounds.used.light_map_rays == 16 * parts);
@@ -75,6 +75,13 @@ TEST_CASE("growing light maps: rounds lead to the picture that its settings make
     CHECK(same_bits(again.layers, rounds.layers));
     CHECK(again.used.light_map_rays == rounds.used.light_map_rays);
   }
+}
+
+TEST_CASE("growing light maps: rounds lead to the picture that its settings make") {
+  check_rounds(3);
+}
+TEST_CASE("growing light maps: many rounds lead to the picture that its settings make", "[slow]") {
+  check_rounds(17);
 }
 
 TEST_CASE("growing light maps: one part is the picture of its settings") {
