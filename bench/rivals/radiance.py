@@ -118,6 +118,7 @@ class Subject:
         write_radiance_scene(self.gltf, folder / "scene.rad")
         (folder / "grid.json").write_text(json.dumps(GRID))
         rows = self.measure(f"{plane} --photons 20k --rays 16 --repeats 2")[1]
+        rows = [row for row in rows if row["lux"]]  # those in solids are blank
         with open(folder / "points.pts", "w", encoding="utf-8") as points:
             for row in rows:
                 points.write(" ".join(row[key] for key in ("x", "y", "z", "dx", "dy", "dz")) + "\n")
@@ -225,6 +226,8 @@ def measure(options, record, keep):
             of_scene.mkdir()
             subjects[name] = Subject(options, name, of_scene)
             scene = record["scenes"].setdefault(name, {"references": [], "rows": []})
+            if scene.get("points", subjects[name].points) != subjects[name].points:
+                scene.update(references=[], rows=[])  # of other points
             find_reference(options, subjects[name], scene, keep)
             scene["points"] = subjects[name].points
         octrees = {name: subject.octree() if program(options, "oconv") else 0 for name, subject in subjects.items()}
