@@ -152,8 +152,8 @@ TEST_CASE("moods are put on one sheet with one exposure") {
   folder.write("a.moods.json", R"({"photile_moods": 1, "moods": {
       "bright": {"left": {"power": 20, "unit": "W"}, "right": {"on": false}},
       "dim": {"left": {"power": 5, "unit": "W"}, "right": {"on": false}}}})");
-  succeed({"relight", picture, "--sheet", folder / "all.png", "--set", "view=standard", "--exposure",
-           "-2"});
+  succeed({"relight", picture, "--sheet", folder / "all.png", "--set", "view=standard",
+           "--exposure", "-2"});
   const Image sheet = read_image(folder / "all.png");
   const Image one = read_image(picture);
   CHECK(sheet.width > 2 * one.width);

@@ -41,10 +41,9 @@ struct Golden {
 };
 
 /// Every method where it has most to do.
-const std::vector<Golden> few_pictures = {
-    {"living-room/living-room.gltf", Method::photons},
-    {"cornell-box/cornell-box.gltf", Method::nodes},
-    {"gallery/sun-and-sky.gltf", Method::paths}};
+const std::vector<Golden> few_pictures = {{"living-room/living-room.gltf", Method::photons},
+                                          {"cornell-box/cornell-box.gltf", Method::nodes},
+                                          {"gallery/sun-and-sky.gltf", Method::paths}};
 /// Every bundled scene.
 const std::vector<Golden> other_pictures = {
     {"cornell-box/cornell-box.gltf", Method::photons},
@@ -165,8 +164,6 @@ void check_pictures(const std::vector<Golden>& pictures) {
 }  // namespace
 
 TEST_CASE("the bundled scenes look as they did, by every method") { check_pictures(few_pictures); }
-TEST_CASE("all other bundled scenes look as they did", "[slow]") {
-  check_pictures(other_pictures);
-}
+TEST_CASE("all other bundled scenes look as they did", "[slow]") { check_pictures(other_pictures); }
 
 }  // namespace photile::test

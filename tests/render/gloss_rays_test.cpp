@@ -151,7 +151,8 @@ TEST_CASE("gloss by rays: lobes read, where nodes gather, what walls reflect of 
   check_light_of_walls(0.0, 0.9, 0.25);
 }
 
-TEST_CASE("gloss by rays: lobes of polish and of coats read what walls reflect likewise", "[slow]") {
+TEST_CASE("gloss by rays: lobes of polish and of coats read what walls reflect likewise",
+          "[slow]") {
   check_light_of_walls(0.2, 0.2, 0.1);
   check_light_of_walls(0.0, 0.9, 0.04);
 }

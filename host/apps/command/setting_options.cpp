@@ -257,8 +257,7 @@ NamedSetting display_view_setting(ToneMapping& parameters) {
   return bound_word("view", "Display", Words{std::move(names)},
                     "display transform of PNGs, window and pages: Khronos PBR Neutral, in which "
                     "highlights roll off, or the sRGB curve alone",
-                    std::string(name_of(parameters.view)),
-                    [&parameters](std::string_view word) {
+                    std::string(name_of(parameters.view)), [&parameters](std::string_view word) {
                       for (const DisplayView view : all_display_views) {
                         if (name_of(view) == word) parameters.view = view;
                       }

@@ -238,7 +238,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
 /// bright one that is not sure of its light would brighten a dark one.
 ///   rows   of all points
 PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
-                                         std::span<const std::size_t> rows) const {
+                                        std::span<const std::size_t> rows) const {
   PointLinks links{{0}, {}, batch.points.position};
   if (batch.first_neighbour.empty()) return links;
   const KnownPoints indirect(raw_.light.indirect, {rows.begin(), rows.end()}, layer_powers_);

@@ -83,7 +83,7 @@ bool NodeVisibility::sees(std::uint32_t oriented_face, const glm::vec3& from,
                           const glm::vec3& to) const {
   const Scene& scene = rays_.scene();
   return cache::sees(rays_, location_on(scene, oriented_face, from),
-                        location_on(scene, oriented_face, to));
+                     location_on(scene, oriented_face, to));
 }
 
 }  // namespace photile::cache

@@ -70,7 +70,7 @@ class PhotonEstimate : public LightAtPoints {
 
   std::span<Device> devices_;
   std::span<const double> layer_powers_;
-  trace::HitCells cells_;  ///< of the scene
+  trace::HitCells cells_;                                ///< of the scene
   std::shared_ptr<const std::vector<PhotonMaps>> maps_;  ///< on each device
   std::vector<Level> levels_;                            ///< ascending in k
   std::shared_ptr<const VisiblePhotons> seen_;

@@ -184,8 +184,8 @@ PassPhotons PhotonPasses::facts(const Photons& photons) {
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
     const Built& built, std::vector<EstimateParameters> levels) const {
   return std::make_shared<estimate::PhotonEstimate>(
-      devices_, scene_,
-      estimate::PhotonEstimate::Parts{built.maps, std::move(levels), built.seen}, layer_powers_);
+      devices_, scene_, estimate::PhotonEstimate::Parts{built.maps, std::move(levels), built.seen},
+      layer_powers_);
 }
 
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(const Built& built) const {
