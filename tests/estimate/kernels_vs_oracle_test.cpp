@@ -83,7 +83,7 @@ TEST_CASE("weighted irradiance equals the oracle's for one light and for many, f
   const std::size_t lights = GENERATE(1u, 40u);
   const DensityKernel kernel = GENERATE(from_range(weighting));
   const Subject subject(lights);
-  for (const int k : {2, 400}) {
+  for (const int k : {1, 2, 16, 400}) {
     CAPTURE(lights, name_of(kernel), k);
     CHECK(worst_difference(subject, subject.estimate(kernel, k), kernel, k) <= tolerance(k));
   }

@@ -66,9 +66,10 @@ std::vector<glm::vec3> layer(const std::vector<glm::vec3>& dense, std::size_t li
 }  // namespace
 
 TEST_CASE("each light's estimates are those of its photons alone", "[long]") {
-  // More neighbours than kernels list before they add, too.
-  const auto [lights, glossy, neighbours] = GENERATE(table<std::size_t, bool, int>(
-      {{5, false, 200}, {5, true, k}, {64, false, k}, {64, true, 200}}));
+  const std::size_t lights = GENERATE(5u, 64u);
+  const bool glossy = GENERATE(false, true);
+  // More than kernels list before they add, too.
+  const int neighbours = GENERATE(as<int>(), k, 200);
   const double tolerance = tolerance_of(neighbours);
   CAPTURE(lights, glossy, neighbours);
   const Scene scene = plate(lights, glossy);

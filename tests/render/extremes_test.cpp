@@ -164,8 +164,8 @@ LightLayers picture_of(const Scene& scene, const glm::dvec3& offset, LightMapMod
 }
 
 TEST_CASE("extremes: a thousand kilometres off, files give the picture of a scene at the origin") {
-  const auto [is_obj, light_maps] =
-      GENERATE(std::pair(true, LightMapMode::off), std::pair(false, LightMapMode::on));
+  const bool is_obj = GENERATE(true, false);
+  const LightMapMode light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
   const auto scene_at = [&](const glm::dvec3& offset) {
     return is_obj ? test::load_obj(room_text(offset), room_materials) : gltf_room(offset);
   };
