@@ -1,7 +1,6 @@
 #!/bin/bash
 # Makes the pictures of README.md and docs/ anew, with build/release: the living room, the edges of maps,
-# the window, the cells of light maps, the worked example and the gallery. Those whose references are
-# scenes of others are made by bench/pictures/compare_with_references.py.
+# the window, the cells of light maps, the worked example and the gallery.
 # Takes about an hour, nearly all of it for the paths that the gallery is compared with, and 8 GiB.
 # Needs, beyond cmake/setup.sh, the built target photile_bench_light_maps.
 # Usage: bench/pictures/pictures.sh
