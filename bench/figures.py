@@ -13,10 +13,8 @@ and tests/docs/figures.py refuses numbers that are others, and figures that are 
 """
 
 import argparse
-import datetime
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
@@ -24,7 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "bench"))
 from kernels.report_ratios import TREES, ratios
 from kernels.report_tables import timed as timed_rows
-from tools import processes
+from tools import measured, processes
 
 RESULTS = ROOT / "docs/figures.json"
 RUNS = 3  # of what is measured here: the least and the most are the figure
@@ -134,28 +132,6 @@ MEASURED = {
 }
 
 
-def git(*arguments):
-    done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True, check=True)
-    return done.stdout.strip()
-
-
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-        if line.startswith("model name"):
-            return line.split(":")[1].strip()
-    return "a processor without a name"
-
-
-def of_file(file):
-    """Machine, commit and date of what a bench has written: its own, or those of the change that brought it."""
-    record = read(file)
-    record = record if isinstance(record, dict) else {}
-    machine = record.get("machine", {})
-    commit, date = git("log", "-1", "--format=%h %cs", "--", file).split()
-    return {"machine": machine.get("processor") or record.get("processor") or "AMD EPYC",
-            "commit": record.get("commit", commit).removesuffix("-dirty"), "date": record.get("date", date)}
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--photile", default=ROOT / "build/release/photile", metavar="COMMAND")
@@ -167,12 +143,11 @@ def main():
     figures = read(RESULTS) if RESULTS.is_file() else {}
     figures = {name: figure for name, figure in figures.items() if name in MEASURED}
     for name, (find, file, measures) in FOUND.items():
-        figures[name] = {"values": find(), "command": file, **of_file(file), "measures": measures}
+        figures[name] = {"values": find(), "command": file, **measured.of_file(file), "measures": measures}
     for name, (measure, command, measures) in MEASURED.items():
         if any(part in name for part in given.measure):
-            figures[name] = {"values": measure(given.photile), "command": command, "machine": processor(),
-                             "commit": git("rev-parse", "--short", "HEAD"),
-                             "date": datetime.date.today().isoformat(), "measures": measures}
+            figures[name] = {"values": measure(given.photile), "command": command, **measured.now(),
+                             "measures": measures}
     for figure in figures.values():
         figure["values"] = [float(f"{value:.4g}") for value in figure["values"]]
     RESULTS.write_text(json.dumps(dict(sorted(figures.items())), indent=1) + "\n", encoding="utf-8")

@@ -13,11 +13,12 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
+from tools.report_section import replace_page
 from kernels import (report_kernels, report_lights, report_plots, report_ratios, report_scale, report_tables,
                      report_targets)
 
-BENCHES = ("knn", "paper", "build", "frame", "relight", "lights", "kernels", "startup", "profile", "scale")
-RATIO_K = 50  # of the tables of ratios; the plots have the others
+BENCHES = ("knn", "paper", "build", "relight", "lights", "kernels", "startup", "profile")
+OPTIONAL = ("python_neighbours", "scale")
 BUSY_LOAD = 0.5  # load average at which other programs count as running
 
 
@@ -118,17 +119,15 @@ def page(results, plots, ratio_plots, notes):
         "### As ratios",
         "\n\n".join(f"![Time over that of the uniform grid: {name}](benchmarks/{file})"
                     for name, file in ratio_plots),
-        report_ratios.text([row for row in report_tables.timed(results["knn"]) if row["k"] == RATIO_K]),
         "## Where the time of an estimate goes", report_kernels.profile(results["profile"]),
         "## Kinds of scenes", report_kernels.specialisations(results["kernels"]),
         "## Beside the limits of the device", report_kernels.roofline(results["kernels"]),
         report_kernels.build_kernels(results["kernels"]),
         "## The paper's frame", report_tables.paper(results["paper"]),
         "## Build", report_tables.build(results["build"]),
-        "## A frame of a walkthrough", report_tables.frame(results["frame"]),
         "## Relighting", report_tables.relight(results["relight"]),
         "## Many lights", report_lights.text(results["lights"]),
-        "## Scale", report_scale.text(results["scale"]),
+        *(["## Scale", report_scale.text(results["scale"])] if "scale" in results else []),
         "## Starting", report_kernels.startup(results["startup"]),
         notes,
         "## See also",
@@ -144,15 +143,17 @@ def main():
     for bench in BENCHES:
         with open(options.results / f"{bench}.json", encoding="utf-8") as file:
             results[bench] = json.load(file)
-    python = options.results / "python_neighbours.json"
-    if python.exists():
-        results["python_neighbours"] = json.loads(python.read_text(encoding="utf-8"))
+    for bench in OPTIONAL:
+        file = options.results / f"{bench}.json"
+        if file.exists():
+            results[bench] = json.loads(file.read_text(encoding="utf-8"))
     plots = report_plots.draw_knn(results["knn"], caption(results, "knn"), options.results)
     ratio_plots = report_plots.draw_ratios(results["knn"], caption(results, "knn"), options.results)
     report_lights.draw(results["lights"], caption(results, "lights"), options.results)
-    report_scale.draw(results["scale"], caption(results, "scale"), options.results)
+    if "scale" in results:
+        report_scale.draw(results["scale"], caption(results, "scale"), options.results)
     notes = (ROOT / "bench/kernels/report_notes.md").read_text(encoding="utf-8")
-    options.page.write_text(page(results, plots, ratio_plots, notes), encoding="utf-8")
+    replace_page(options.page, "kernels/report.py", page(results, plots, ratio_plots, notes), options.results / "knn.json")
     print(f"wrote {options.page}")
 
 

@@ -10,6 +10,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
+RESULTS = ROOT / "docs/benchmarks/angle.json"
+
 ANGLES = range(0, 91, 15)
 
 
@@ -25,13 +27,13 @@ def row(shape, results):
 
 
 def main():
-    record = json.loads((ROOT / "docs/benchmarks/angle.json").read_text())
+    record = json.loads(RESULTS.read_text())
     results = record["results"]
     shapes = list(dict.fromkeys(result["shape"] for result in results))
     replace_section(ROOT / "docs/neighbour-groups.md", "kernels/report_angle.py",
                     "| | " + " | ".join(f"{angle} degrees" for angle in ANGLES) + " |\n|---|"
                     + "--:|" * len(ANGLES) + "\n"
-                    + "\n".join(row(shape, results) for shape in shapes) + "\n")
+                    + "\n".join(row(shape, results) for shape in shapes) + "\n", RESULTS)
 
 
 if __name__ == "__main__":

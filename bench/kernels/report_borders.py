@@ -10,6 +10,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
+RESULTS = ROOT / "docs/benchmarks/borders.json"
+
 
 def row(result):
     def lux(value):
@@ -21,11 +23,11 @@ def row(result):
 
 
 def main():
-    record = json.loads((ROOT / "docs/benchmarks/borders.json").read_text())
+    record = json.loads(RESULTS.read_text())
     rows = "\n".join(row(result) for result in record["results"])
     replace_section(ROOT / "docs/density.md", "kernels/report_borders.py",
                     "| place | distance | expected, lux | disc | clipped |\n"
-                    f"|---|--:|--:|--:|--:|\n{rows}\n")
+                    f"|---|--:|--:|--:|--:|\n{rows}\n", RESULTS)
 
 
 if __name__ == "__main__":

@@ -230,7 +230,9 @@ def main():
                      "--docs")
         return
     if arguments.docs:
-        replace_section(PAGE, SCRIPT, docs_table())
+        # The block is as old as its oldest row.
+        dated = {file: load(file).get("date") for file in RESULTS.glob("*.json")}
+        replace_section(PAGE, SCRIPT, docs_table(), min((file for file in dated if dated[file]), key=dated.get))
         return
     if not arguments.folder:
         parser.error("give the folder of a report, --docs or --check")

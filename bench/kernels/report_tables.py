@@ -236,21 +236,6 @@ def build(result):
                                   *BUILD_COLUMNS], rows)
 
 
-def frame(result):
-    rows = []
-    for row in result["results"]:
-        total = row["total"]["median"]
-        cells = [f"{row['width']} x {row['height']}{maps_label(row, 'maps')}"]
-        for stage in ("primary hits", "estimate", "film"):
-            cells += [times(row[stage]), f"{100 * row[stage]['median'] / total:.0f}%"]
-        rows.append([*cells, times(row["total"]), f"{1 / total:.1f}"])
-    settings = result["settings"]
-    text = (f"The living room, diffuse, {settings['lights']} lights, {settings['photons']:,} photons, "
-            f"k = {settings['k']}, one sample a pixel; photon maps stay. Milliseconds and shares.")
-    return text + "\n\n" + table(["size", "primary hits", "", "estimate", "", "film", "", "total",
-                                  "frames a second"], rows)
-
-
 def relight(result):
     rows = result["results"]
     copy = rows[0]["bytes per second"]

@@ -145,7 +145,7 @@ def start_seconds(results):
 
 def million_triangle_groups(results):
     """Seconds of the groups of the largest mesh of about a million triangles, or None."""
-    for row in results["scale"]["results"]:
+    for row in results.get("scale", {}).get("results", []):
         if "failure" not in row and 0.9e6 < row["triangles"] < 2e6:
             return next(stage["seconds"] for stage in row["stages"]
                         if stage["stage"] == "neighbour groups")
@@ -175,8 +175,9 @@ def table_rows(results):
     rows.append(at_most("the kernel that takes longest to compile", compiled, 2, seconds) + ["", ""])
     rows.append(at_most("a start with compiled kernels: device and kernels", started, 0.1, seconds)
                 + ["", "clang's preprocessor: see [starting](#starting)"])
-    rows.append(at_most("groups of a mesh of a million triangles", million_triangle_groups(results),
-                        10, seconds) + ["", "see [scale](#scale)"])
+    if "scale" in results:
+        rows.append(at_most("groups of a mesh of a million triangles", million_triangle_groups(results),
+                            10, seconds) + ["", "see [scale](#scale)"])
     return rows
 
 

@@ -250,7 +250,8 @@ def main():
         return
     rows = [results[room.name] for room in ROOMS if room.name in results]
     record.write_text(json.dumps(rows, indent=1) + "\n")
-    replace_section(ROOT / "docs/daylight.md", "lighting/daylight.py", section(rows))
+    replace_section(ROOT / "docs/daylight.md", "lighting/daylight.py", section(rows),
+                    partly=given.only is not None)
 
 
 if __name__ == "__main__":

@@ -126,7 +126,8 @@ def main():
                 print(json.dumps(results[subject.name]))
     record.write_text(json.dumps(list(results.values()), indent=1) + "\n")
     if not given.quick:
-        replace_section(ROOT / "docs/gallery.md", "pictures/gallery.py", section(results))
+        replace_section(ROOT / "docs/gallery.md", "pictures/gallery.py", section(results),
+                        partly=given.only is not None)
 
 
 if __name__ == "__main__":

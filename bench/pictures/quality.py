@@ -322,7 +322,8 @@ def main():
                                for package in PACKAGES}, "results": rows}
         file.write_text(json.dumps(record, indent=1) + "\n")
     quality_report.write(json.loads(file.read_text()), options.results,
-                         None if options.quick else ROOT / "docs/quality.md")
+                         None if options.quick else ROOT / "docs/quality.md",
+                         partly=options.redraw or set(options.only) != set(VIEWS) or set(options.tool) != set(TOOLS))
 
 
 if __name__ == "__main__":

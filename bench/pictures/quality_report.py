@@ -152,10 +152,10 @@ def section(record):
     return "\n\n".join(parts) + "\n"
 
 
-def write(record, folder, page):
+def write(record, folder, page, partly=False):
     """The plots into `folder`; the tables into `page`, unless that is None."""
     for measure in MEASURES:
         draw(record["results"], measure, folder / f"{measure}.svg")
     text = section(record)
     if page:
-        replace_section(page, "pictures/quality.py", text)
+        replace_section(page, "pictures/quality.py", text, partly=partly)

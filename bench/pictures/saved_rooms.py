@@ -1,15 +1,14 @@
 #!/usr/bin/python3
-"""What it takes to open a room whose photons and light maps were saved: the table in
-docs/light-maps.md.
+"""What it takes to open a room whose photons and light maps were saved; writes the table of docs/light-maps.md.
 
     bench/pictures/saved_rooms.py [SCENES] [--photile COMMAND]
 
 SCENES holds <scene>/<scene>-diffuse.gltf and references/<scene>-diffuse-256x192.exr, as for
 bench/pictures/quality.py. `photile walk --quick` turns once round
 in each room, from where its camera stands, and saves photons and light maps; then it draws the first
-frame, and all of them, from the file. Prints wall-clock and processor seconds of whole processes, the
-shortest of five for single frames; and of frames of 256x192 with 16 samples, what each costs more than the
-first, and the error of the first. Needs the built command and the Debian packages python3-numpy and
+frame, and all of them, from the file. The table has processor seconds of whole processes, the least of five
+for single frames; and of frames of 256x192 with 16 samples, what each costs more than the first, and the error
+of the first. Needs the built command and the Debian packages python3-numpy and
 python3-openimageio.
 """
 
@@ -23,6 +22,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from tools import packages, scene_arguments
 from tools.processes import timed
+from tools.report_section import replace_section
 
 packages.require("numpy", "OpenImageIO")
 
@@ -76,8 +76,8 @@ def row(given, name, options, folder):
 
     window, small = ("frame.###.png", "512x512", 1), ("frame.###.exr", SIZE, 16)
     saved = walk("round", *window, "--save-maps", maps)
-    first = min(without_photons("one", *window) for _ in range(REPEATS))
-    whole = without_photons("round", *window)
+    first = min(without_photons("one", *window)[1] for _ in range(REPEATS))
+    whole = without_photons("round", *window)[1]
     size = maps.stat().st_size
     walk("one", *small, "--save-maps", maps)
     one = min(without_photons("one", *small)[1] for _ in range(REPEATS))
@@ -85,20 +85,21 @@ def row(given, name, options, folder):
     picture = picture_error.read_picture(folder / "frame.001.exr")
     error = picture_error.measure(picture, picture_error.read_picture(reference))
     return (f"| {name} | `{options}` | {saved[1]:.1f} | {size / 1e6:.0f} | "
-            f"{first[0]:.2f} ({first[1]:.2f}) | {whole[0]:.2f} ({whole[1]:.2f}) | "
+            f"{first:.2f} | {whole:.2f} | "
             f"{1000 * (still - one) / FRAMES:.0f} | "
             f"{picture_error.rel_mse_text(error)} |")
 
 
 def main():
     given = scene_arguments.parser(__doc__.splitlines()[0]).parse_args()
-    print("| | | look round and save, processor s | file, MB | first frame from the file, s "
-          f"(processor s) | {FRAMES + 1} frames round, s (processor s) | each further frame of 256x192, "
-          "16 samples, processor ms | its relMSE |")
-    print("|---|---|--:|--:|--:|--:|--:|--:|")
+    lines = ["| processor seconds | | look round and save | file, MB | first frame from the file "
+             f"| {FRAMES + 1} frames round | each further frame of 256x192, 16 samples, ms | its relMSE |",
+             "|---|---|--:|--:|--:|--:|--:|--:|"]
     with tempfile.TemporaryDirectory() as folder:
         for name, options in ROWS:
-            print(row(given, name, options, pathlib.Path(folder)), flush=True)
+            lines.append(row(given, name, options, pathlib.Path(folder)))
+            print(lines[-1], flush=True)
+    replace_section(scene_arguments.ROOT / "docs/light-maps.md", "pictures/saved_rooms.py", "\n".join(lines))
 
 
 if __name__ == "__main__":

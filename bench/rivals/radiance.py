@@ -23,7 +23,8 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
-from tools import plots, processes
+from tools import measured, plots, processes
+from tools.report_section import replace_page
 from rivals.radiance_scene import write_plain_gltf, write_radiance_scene
 
 RESULTS = ROOT / "docs/benchmarks/radiance.json"
@@ -45,8 +46,7 @@ REFERENCE = "--integrator path --rays 65536 --repeats 8"
 REFERENCE_SEEDS = (101, 102)
 DIRECT = "-dt 0.03 -dc 0.75 -ds 0.1 -dj 0.9"  # of rtrace: lamps subdivided and jittered
 RTRACE = {
-    "rtrace": ("-ab 3 -ad 256 -as 64 -aa 0.25 -ar 32", "-ab 4 -ad 512 -as 128 -aa 0.2 -ar 64",
-               "-ab 5 -ad 1024 -as 256 -aa 0.15 -ar 128"),
+    "rtrace": ("-ab 3 -ad 256 -as 64 -aa 0.25 -ar 32", "-ab 4 -ad 512 -as 128 -aa 0.2 -ar 64"),
     "rtrace -aa 0": (
         "-ab 8 -ad 64 -as 0 -aa 0 -lw 1e-2", "-ab 8 -ad 256 -as 0 -aa 0 -lw 4e-3",
         "-ab 8 -ad 1024 -as 0 -aa 0 -lw 1e-3", "-ab 8 -ad 4096 -as 0 -aa 0 -lw 2.5e-4"),
@@ -327,13 +327,6 @@ def draw(record):
     plots.save(figure, PLOT)
 
 
-def processor_name():
-    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return "unknown processor"
-
-
 def main():
     options = arguments()
     stored = RESULTS.is_file() and not options.again and not options.quick
@@ -344,14 +337,15 @@ def main():
             RESULTS.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
     if not options.redraw:
-        record |= {"cores": os.cpu_count(), "processor": processor_name(), "load_average": os.getloadavg()[2],
-                   "radiance": version(options)}
+        now = measured.now()
+        record |= {"cores": os.cpu_count(), "load_average": os.getloadavg()[2], "radiance": version(options),
+                   "processor": now["machine"], "commit": now["commit"], "date": now["date"]}
         measure(options, record, keep)
     if options.quick:
         print(page(record))
         return
     draw(record)
-    PAGE.write_text(page(record), encoding="utf-8")
+    replace_page(PAGE, "rivals/radiance.py", page(record), RESULTS)
 
 
 if __name__ == "__main__":

@@ -1,14 +1,18 @@
 #!/usr/bin/python3
-"""The figures of README.md and of the pages are those of docs/figures.json, which bench/figures.py writes.
+"""The figures of README.md and of the pages are those of docs/figures.json, which bench/figures.py writes, and what scripts
+write into pages is what docs/blocks.json records (bench/tools/report_section.py).
 
 Usage: figures.py SOURCE_FOLDER
 
 - A comment <!-- figure: NAME --> stands behind the numbers of that figure: each is its value, to the digits given.
 - In the sections of README.md that tell what is fast, accurate or not, every number has one.
-- No figure is older than what it measures by more than 200 commits. A commit that the history does not have is
-  looked for by its date; without a history (an archive) this is not checked.
+- Between <!-- begin: bench/SCRIPT --> and <!-- end --> is the text that was recorded; each such block has a record, and
+  each record a block.
+- No figure or block is older than what it measures by more than 200 commits. A commit that the history does not have is
+  looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked.
 """
 
+import hashlib
 import json
 import pathlib
 import re
@@ -19,6 +23,7 @@ OLDEST = 200  # commits
 SECTIONS = ("Three figures", "When not to use it")
 MARKER = re.compile(r"<!-- figure: ([\w.]+) -->")
 NUMBER = re.compile(r"(?<![\w.,])(\d[\d,]*(?:\.\d+)?)(?![\w]|[.,]\d)")
+BLOCK = re.compile(r"^<!-- begin: bench/(\S+) -->\n(.*?)^<!-- end -->$", re.MULTILINE | re.DOTALL)
 # Numbers that say what was measured, or name something.
 PLAIN = re.compile(r"k = \d+(?: and \d+)?|\d+x\d+|[HR]\d00|\d[\d,]* (?:photons|triangles|paths|seeds)|within \d+%"
                    r"|`[^`]*`|\]\([^)]*\)")
@@ -81,6 +86,30 @@ def commits_behind(source, figure):
     return int(count or 0)
 
 
+def check_age(source, what, figure, remedy, wrong):
+    behind = commits_behind(source, figure)
+    if behind > OLDEST:
+        wrong.append(f"{what} is {behind} commits older than what it measures; {remedy} measures it anew")
+
+
+def check_blocks(source, wrong):
+    """What scripts have written into the pages is what they recorded, and none of it is old."""
+    file = source / "docs/blocks.json"
+    records = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    blocks = {f"{page.name}: {script}": text.strip("\n") for page in sorted((source / "docs").glob("*.md"))
+              for script, text in BLOCK.findall(page.read_text(encoding="utf-8"))}
+    for name in sorted(blocks.keys() | records.keys()):
+        if name not in records:
+            wrong.append(f"docs/{name} has written a block that docs/blocks.json does not record")
+        elif name not in blocks:
+            wrong.append(f"docs/blocks.json: {name} is recorded, but the page has no such block")
+        else:
+            if hashlib.sha256(blocks[name].encode()).hexdigest() != records[name]["sha256"]:
+                wrong.append(f"docs/{name} has written another block than the one that is there; change the script, "
+                             "not the block")
+            check_age(source, f"docs/{name}", records[name], f"bench/{name.split()[1]}", wrong)
+
+
 def check(source):
     """What is wrong, in a line each."""
     figures = json.loads((source / "docs/figures.json").read_text(encoding="utf-8"))
@@ -96,15 +125,16 @@ def check(source):
                 wrong.append(f"README.md, {title}: {number} is no figure of docs/figures.json: "
                              f"...{paragraph[max(0, end - 40):end + 20]}...")
     for name, figure in figures.items():
-        behind = commits_behind(source, figure)
-        if behind > OLDEST:
-            wrong.append(f"docs/figures.json: {name} is {behind} commits older than what it measures; "
-                         f"{figure['command']} measures it anew")
+        check_age(source, f"docs/figures.json: {name}", figure, figure["command"], wrong)
+    check_blocks(source, wrong)
     return wrong
 
 
 def main():
-    wrong = check(pathlib.Path(sys.argv[1]))
+    source = pathlib.Path(sys.argv[1])
+    wrong = check(source)
+    if git(source, "rev-parse", "--is-shallow-repository") != "false":
+        print("The history is shallow or missing: figures older than it are not looked for.")
     print("\n".join(wrong))
     sys.exit(1 if wrong else 0)
 

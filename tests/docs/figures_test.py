@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What tests/docs/figures.py refuses."""
 
+import hashlib
 import json
 import pathlib
 import subprocess
@@ -58,6 +59,40 @@ class Figures(unittest.TestCase):
         self.assertEqual(figures.check(self.source), [])
         self.write({"room.s": {**FIGURE, "measures": ["kernels"]}}, "52 to 55<!-- figure: room.s -->")
         self.assertEqual(figures.check(self.source), [])
+
+    def write_block(self, text, **record):
+        (self.source / "docs/page.md").write_text(f"# A page\n\n<!-- begin: bench/a.py -->\n\n{text}\n<!-- end -->\n")
+        record = {**FIGURE, "sha256": hashlib.sha256(b"| 1 s |").hexdigest(), **record}
+        (self.source / "docs/blocks.json").write_text(json.dumps({"page.md: a.py": record}))
+
+    def test_a_block_as_it_was_recorded_passes(self):
+        self.write_block("| 1 s |")
+        self.assertEqual(figures.check(self.source), [])
+
+    def test_a_block_edited_by_hand_is_refused(self):
+        self.write_block("| 2 s |")
+        self.assertIn("change the script, not the block", figures.check(self.source)[0])
+
+    def test_a_block_without_a_record_and_a_record_without_a_block_are_refused(self):
+        self.write_block("| 1 s |")
+        (self.source / "docs/page.md").rename(self.source / "docs/other.md")
+        missing, left = figures.check(self.source)
+        self.assertIn("other.md: a.py has written a block that docs/blocks.json does not record", missing)
+        self.assertIn("page.md: a.py is recorded, but the page has no such block", left)
+
+    def test_an_old_block_is_refused(self):
+        self.write_block("| 1 s |")
+        self.commits(figures.OLDEST + 3)
+        self.assertIn("docs/page.md: a.py is 201 commits older", " ".join(figures.check(self.source)))
+
+    def test_a_shallow_clone_says_nothing_of_ages(self):
+        self.write_block("| 1 s |")
+        self.commits(figures.OLDEST + 3)
+        self.git("add", "-A")
+        self.git("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-q", "-m", "pages")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(["git", "clone", "-q", "--depth=3", f"file://{self.source}", folder], check=True)
+            self.assertEqual(figures.check(pathlib.Path(folder)), [])
 
     def git(self, *arguments, **more):
         return subprocess.run(["git", "-C", self.source, *arguments], check=True, capture_output=True, text=True,
