@@ -32,7 +32,7 @@ done
   echo "bench/run_all.sh: error: no matplotlib; install the Debian package python3-matplotlib" >&2
   exit 1
 }
-programs=(angle knn paper build relight lights kernels startup scale borders area)
+programs=(angle knn paper build frame relight lights kernels startup scale borders area)
 if [[ -z $benches ]]; then
   benches=build/release/bench
   cmake --preset release >/dev/null

@@ -99,7 +99,7 @@ class AreaBench {
       DensityKernel kernel;
       Estimator estimator;
       Timing timing;
-      Estimates estimates;
+      LightTable estimates;
     };
     std::vector<Case> cases;
     for (const AreaMode area : all_area_modes) {

@@ -107,7 +107,7 @@ class KernelsBench {
                           default_groups(subject.scene, subject.photons, radius),
                           {.radius = radius});
     Estimator estimator(maps, subject.scene, {.area = AreaMode::disc});
-    Estimates estimates;
+    LightTable estimates;
     const Timing timing = measure_returned(repeats_, [&] {
       return kernel_seconds_of(device_, [&] { estimates = estimator.estimate(subject.hits); });
     });
@@ -130,7 +130,7 @@ class KernelsBench {
     };
     const PhotonMaps maps = build();
     Estimator estimator(maps, subject.scene, {.neighbours = k, .area = AreaMode::disc});
-    Estimates estimates = estimator.estimate(subject.hits);  // compiles, as `build` has done
+    LightTable estimates = estimator.estimate(subject.hits);  // compiles, as `build` has done
     std::map<std::string, Timing> timings;
     for (int i = 0; i < repeats_.most; ++i) {
       const auto seconds = seconds_by_kernel_of(device_, [&] {
@@ -170,7 +170,7 @@ class KernelsBench {
                        {"hits", subject.hits.size()}};
     std::optional<PhotonMaps> maps;
     std::optional<Estimator> estimator;
-    Estimates estimates;
+    LightTable estimates;
     const auto build = [&] {
       estimator.reset();
       maps.emplace(structures::build(structure, device_, subject.scene, subject.photons, groups,
@@ -226,7 +226,7 @@ class KernelsBench {
   }
 
   void check(const Subject& subject, int k, double radius, Estimator& estimator,
-             const Estimates& estimates) {
+             const LightTable& estimates) {
     const reference::DensityOracle oracle(subject.scene, subject.photons,
                                           reference::PhotonFilter::grouped,
                                           defaults::group_angle_degrees);

@@ -272,7 +272,7 @@ class KnnBench {
     PhotonMaps maps;
     Estimator estimator;
     HitSample asked = {};  ///< of estimates
-    Estimates estimates = {};
+    LightTable estimates = {};
   };
 
   Contestant estimate_by(const Case& c, const structures::Structure& structure,

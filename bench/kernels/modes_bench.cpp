@@ -69,7 +69,7 @@ void measure_frame(Mode& mode, const RayScene& rays, const PrimaryHitParameters&
   const PrimaryHitBatch batch = trace_primary_hits(rays, rays.scene().cameras.front(), film, 0,
                                                    film.height, mode.maps->map_of());
   const double hits_done = processor_seconds();
-  const Estimates estimates = mode.estimator->estimate(batch.hits);
+  const LightTable estimates = mode.estimator->estimate(batch.hits);
   mode.frame.seconds.push_back(stopwatch.seconds());
   mode.hits_processor.seconds.push_back(hits_done - begin);
   mode.estimate_processor.seconds.push_back(processor_seconds() - hits_done);

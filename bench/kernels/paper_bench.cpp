@@ -71,7 +71,7 @@ bool run(BenchOptions& options) {
     const Timing kernels = measure_returned(options.repeats, [&] {
       return kernel_seconds_of(device, [&] { estimator.estimate(hits); });
     });
-    Estimates estimates;
+    LightTable estimates;
     const Timing whole = measure(options.repeats, [&] { estimates = estimator.estimate(hits); });
     const EstimateCheck check(oracle, photons.size(), {defaults::neighbours, radius}, hits);
     faults += check.count_faults(fmt::format("{}, maps of {}", structure, mode.name), estimator,

@@ -107,7 +107,7 @@ class StrategiesBench {
     struct Case {
       std::string name;
       Estimator estimator;
-      Estimates estimates = {};
+      LightTable estimates = {};
       double least = std::numeric_limits<double>::infinity();
     };
     std::vector<Case> cases;

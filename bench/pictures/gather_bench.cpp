@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cache/irradiance_gather.hpp"
-#include "estimate/light_at_points.hpp"
 #include "estimate/neighbour_choice.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/load_scene.hpp"
 #include "render/path_estimate.hpp"
 #include "support/bench_record.hpp"
@@ -67,14 +67,13 @@ PrimaryHits visible_points(const RayScene& rays, std::size_t count) {
 }
 
 /// Illuminance of all lights at each point.
-std::vector<double> totals(const Estimates& estimates, std::size_t points,
+std::vector<double> totals(const LightTable& estimates, std::size_t points,
                            std::span<const double> powers) {
   std::vector<double> result(points, 0.0);
   for (std::size_t point = 0; point < points; ++point) {
-    estimate::for_each_estimate(
-        estimates, point, powers.size(), [&](std::size_t layer, std::size_t i) {
-          result[point] += powers[layer] * luminance(glm::dvec3(estimates.irradiance[i]));
-        });
+    estimates.for_each(point, [&](std::size_t layer, std::size_t i) {
+      result[point] += powers[layer] * luminance(glm::dvec3(estimates.irradiance[i]));
+    });
   }
   return result;
 }
@@ -160,8 +159,7 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
     parameters.rays = gathering;
     parameters.light_samples = light_samples;
     cache::IrradianceGather gather = maps->gather(parameters);
-    cache::GatheredIrradiance light =
-        gather.gather(points, numbers(points.size()));  // compiles kernels
+    LightTable light = gather.gather(points, numbers(points.size()));  // compiles kernels
     cache::IrradianceGather timed_gather = maps->gather(parameters);
     const double seconds = timed([&] { timed_gather.gather(many, numbers(many.size())); }) /
                            static_cast<double>(many.size());
@@ -181,7 +179,7 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
                        {"estimated", costs.estimated}};
     double stated = 0, squares = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const cache::GatheredIrradiance::Total total = light.total(i, maps->layer_powers());
+      const LightTable::Total total = light.total(i, maps->layer_powers());
       const double variance = total.error * total.error + truth.variance[i];
       stated += total.error / std::max(1e-30, truth.lux[i]);
       squares += std::pow(total.luminance - truth.lux[i], 2) / std::max(1e-30, variance);
@@ -190,7 +188,7 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
     row["stated_error_of_all_light"] = stated / count;
     if (gathering > 0 && light_samples > 0) {
       row["rms_of_stated_errors"] = std::sqrt(squares / count);
-      row.update(errors_of(totals(light.mean, points.size(), maps->layer_powers()), truth));
+      row.update(errors_of(totals(light, points.size(), maps->layer_powers()), truth));
     }
     record.add(row);
   }
@@ -205,7 +203,7 @@ void measure_photons(const std::string& name, const RayScene& rays, Device& devi
     const double set_up = timed([&] {
       maps.emplace(rays, std::span(&device, 1), parameters_of(sizes.looked_up_photons, neighbours));
     });
-    const Estimates estimates = maps->light().at(points, Progress::none());  // compiles kernels
+    const LightTable estimates = maps->light().at(points, Progress::none());  // compiles kernels
     const double seconds = timed([&] { maps->light().at(many, Progress::none()); });
     nlohmann::json row{{"scene", name},
                        {"method", "photons"},

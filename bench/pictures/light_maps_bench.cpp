@@ -235,7 +235,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
 
 void measure_mixing(std::size_t nodes, std::size_t lights, const BenchOptions& options,
                     BenchRecord& record) {
-  Estimates values;
+  LightTable values(lights, false);
   values.irradiance.resize(nodes * lights);
   if (lights > max_dense_lights) {  // rows that hold every light: the worst case
     for (std::size_t node = 0; node <= nodes; ++node) values.first.push_back(node * lights);

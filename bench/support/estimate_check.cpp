@@ -91,7 +91,7 @@ EstimateCheck::EstimateCheck(const reference::DensityOracle& oracle, std::size_t
 }
 
 std::uint64_t EstimateCheck::count_faults(const std::string& timed, Estimator& estimator,
-                                          const Estimates& estimates) const {
+                                          const LightTable& estimates) const {
   const std::uint64_t faults = irradiances_that_differ(estimates.irradiance) +
                                radii_that_differ(estimator.nearest(hits_).squared_radius, index_);
   if (faults > 0) print_fault(timed, faults);

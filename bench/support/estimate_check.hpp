@@ -37,7 +37,7 @@ class EstimateCheck {
   /// How much of what an estimator found at all hits is not the oracle's. Says so in a line.
   ///   timed   names the case in that line
   std::uint64_t count_faults(const std::string& timed, Estimator& estimator,
-                             const Estimates& estimates) const;
+                             const LightTable& estimates) const;
 
   /// The hits that are checked, ascending.
   const std::vector<std::uint32_t>& index() const { return index_; }

@@ -51,7 +51,7 @@ struct SearchParameters {
 };
 
 struct DensityAnswers {
-  std::vector<glm::vec3> irradiance;  ///< [hit][light], as in Estimates
+  std::vector<glm::vec3> irradiance;  ///< [hit][light], as in LightTable
   std::vector<float> squared_radius;  ///< of the disc that flux is divided by, per hit
 };
 

@@ -154,7 +154,7 @@ class PointBench {
     return subject;
   }
 
-  Estimates estimate(Subject& subject, int k) const {
+  LightTable estimate(Subject& subject, int k) const {
     if (subject.cloud) {
       return subject.cloud->irradiance(queries_.position, queries_.normal, {.neighbours = k});
     }
@@ -191,7 +191,7 @@ class PointBench {
       row["build"] = build_watch.seconds();
       row["map bytes"] = subject->statistics().device_bytes;
       row["references"] = subject->statistics().references;
-      const auto estimates = std::make_shared<Estimates>();
+      const auto estimates = std::make_shared<LightTable>();
       *estimates = estimate(*subject, k);  // a device that has no memory for it says so now
       contestants.push_back(
           {std::move(row), [this, subject, estimates, k] { *estimates = estimate(*subject, k); },

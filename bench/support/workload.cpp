@@ -129,7 +129,7 @@ PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups)
   if (!groups.patches.empty()) {
     for (std::uint32_t& map : maps) map = groups.patches.map_of[map];
   }
-  const auto order = estimate::order_by_map(maps);
+  const auto order = estimate::order_by_map(maps, hits.position);
   if (order.empty()) return hits;
   PrimaryHits ordered = estimate::reordered(hits, 0, order);
   for (const std::uint32_t hit : order) {

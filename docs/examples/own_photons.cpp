@@ -21,7 +21,7 @@ int main() try {
   const std::vector<glm::vec3> points{{0, 0, 0}, {0.3f, -0.4f, 0}, {0, 0, 5}};
   const std::vector<glm::vec3> up(points.size(), glm::vec3(0, 0, 1));
   const photile::CloudNeighbours near = cloud.nearest(points, up, 8);
-  const photile::Estimates lux = cloud.irradiance(points, up, {.neighbours = 1000});
+  const photile::LightTable lux = cloud.irradiance(points, up, {.neighbours = 1000});
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::printf("point %zu: nearest photon %u, the 8th %.4f m away, %.1f lx\n", i,
                 near.photons[8 * i], std::sqrt(near.squared_distance[8 * i + 7]),

@@ -11,6 +11,7 @@
 
 #include "photile/defaults.hpp"
 #include "photile/device.hpp"
+#include "photile/light_table.hpp"
 #include "photile/photon_maps.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/surface_index.hpp"
@@ -105,25 +106,6 @@ struct EstimateParameters {
   std::shared_ptr<const SurfaceIndex> surface = nullptr;
 };
 
-/// Estimates of a batch of hits, each light at power 1. Row-major [hit][light]; with more than
-/// max_dense_lights lights only of those whose photons a hit found, at most min(k, lights).
-struct Estimates {
-  std::vector<glm::vec3> irradiance;  ///< W/m2 or lm/m2, linear RGB
-  /// Reflected radiance towards the eye. Where it is empty, as photon maps leave it unless the
-  /// scene is glossy, radiance is albedo / pi x irradiance.
-  std::vector<glm::vec3> radiance;
-  /// Luminance of irradiance by the normal, to first order: a plane of unit normal n there gets
-  /// dot(xyz, n) + w. Only of nodes that rays value, in scenes with smooth shading.
-  std::vector<glm::vec4> by_normal;
-
-  // With many lights, else empty:
-  std::vector<std::uint64_t> first;  ///< hit h's estimates are [first[h], first[h + 1])
-  std::vector<std::uint16_t> light;  ///< of each estimate; each once per hit, in no order
-
-  /// Appends the estimates of the hits that follow.
-  void append(Estimates part);
-};
-
 /// Whose order is requested of a list of neighbours.
 enum class ListOrder {
   ascending,  ///< by photon index: the same on every device
@@ -151,10 +133,10 @@ class Estimator {
 
   /// Radiance estimates; none depends on the other hits, in any bit. Hits in the order of their
   /// maps (trace_primary_hits with PhotonMaps::map_of) need not be sorted.
-  Estimates estimate(const PrimaryHits& hits);
+  LightTable estimate(const PrimaryHits& hits);
 
   /// Estimates hits [first, first + count) alone.
-  Estimates estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
+  LightTable estimate(const PrimaryHits& hits, std::size_t first, std::size_t count);
 
   /// The neighbours themselves, for tests and inspection.
   NeighbourLists nearest(const PrimaryHits& hits, ListOrder order = ListOrder::ascending);

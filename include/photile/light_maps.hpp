@@ -51,7 +51,7 @@ struct NodeBatch {
 
 /// The light of a batch's nodes.
 struct NodeValues {
-  Estimates irradiance;  ///< each light at power 1; radiance is not looked at
+  LightTable light;  ///< a row for each; radiance is not looked at
   /// Per node: standard error of the luminance of all lights at their powers; empty where it is
   /// that of k photons.
   std::vector<float> error;
@@ -130,7 +130,7 @@ struct LightMapContents {
   };
   std::string settings;  ///< in words: what the light depends on beside the scene and the photons
   std::vector<Coordinates> nodes;
-  Estimates values;                    ///< of the nodes
+  LightTable values;                   ///< of the nodes
   std::vector<float> error, distance;  ///< of the nodes, as NodeValues has them
   std::vector<Tile> tiles;             ///< each after the one that it refines
 };
@@ -180,7 +180,7 @@ class LightMaps {
   float distance(std::uint32_t node) const;
 
   /// What nodes hold, in the form of estimates: node n is hit n.
-  const Estimates& values() const;
+  const LightTable& values() const;
 
   /// What is held now; `settings` are left empty.
   LightMapContents contents() const;

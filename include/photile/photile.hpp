@@ -12,6 +12,7 @@
 #include "photile/light_layers.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/light_options.hpp"
+#include "photile/light_table.hpp"
 #include "photile/limits.hpp"
 #include "photile/load_scene.hpp"
 #include "photile/neighbour_groups.hpp"

@@ -72,8 +72,8 @@ class PhotonCloud {
 
   /// Flux per area at each point: that of its neighbours over the disc that they fill (Estimator,
   /// AreaMode::disc), per light. Errors: those of `nearest`.
-  Estimates irradiance(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
-                       const CloudEstimateParameters& parameters = {});
+  LightTable irradiance(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
+                        const CloudEstimateParameters& parameters = {});
 
  private:
   struct Impl;

@@ -108,6 +108,9 @@ struct RenderResult {
   /// What the picture was made with: as asked, and where that leaves a choice or cannot be had,
   /// what was found (the radius, of the first pass). Asked for these, `render` gives it again.
   RenderParameters used;
+  /// Relative standard error of what was read from nodes that gather, all lights together; 0 where
+  /// none is known.
+  double standard_error = 0;
   std::uint64_t stored_photons = 0;      ///< over all passes
   std::vector<double> device_fractions;  ///< each device's part of the hits, in [0, 1]
 };

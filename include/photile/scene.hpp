@@ -451,6 +451,8 @@ struct SceneNeeds {
 
   /// Whether photons and estimates tell lights apart.
   bool several_lights() const { return light_count > 1; }
+  /// Whether what points reflect is told beside what arrives there: it is not in proportion to it.
+  bool tells_radiance() const { return glossy || smooth_shading; }
   /// Whether only the lights that reach a point are kept for it.
   bool many_lights() const { return light_count > max_dense_lights; }
 };

@@ -138,7 +138,7 @@ class Maps {
         .neighbours = field<int>(options, "k"),
         .radius = field<double>(options, "radius"),
         .kernel = kernel_named(field<std::string>(options, "kernel"))};
-    Estimates found = [&] {
+    LightTable found = [&] {
       const Unlocked unlocked;
       const std::lock_guard lock(devices_->mutex);
       return cloud_->irradiance(where, facing, parameters);
@@ -163,7 +163,7 @@ class Maps {
 
  private:
   /// One row for each point, of all lights, from those of the lights that it found.
-  std::vector<glm::vec3> dense(const Estimates& sparse) const {
+  std::vector<glm::vec3> dense(const LightTable& sparse) const {
     const std::size_t points = sparse.first.size() - 1;
     std::vector<glm::vec3> rows(points * light_count_, glm::vec3(0.0f));
     for (std::size_t p = 0; p < points; ++p) {

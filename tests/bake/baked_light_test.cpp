@@ -129,9 +129,9 @@ TEST_CASE("Lookups beside a plate a little above the floor take nothing of the s
    public:
     explicit PlateSource(decltype(below) below) : below_(below) {}
     NodeValues value(const NodeBatch& batch, const Progress&) override {
-      NodeValues values;
+      NodeValues values{LightTable(1, false), {}, {}};
       for (const glm::vec3& p : batch.points.position) {
-        values.irradiance.irradiance.emplace_back(below_(p) ? 0.5f : 10.0f);
+        values.light.irradiance.emplace_back(below_(p) ? 0.5f : 10.0f);
         values.error.push_back(0.0f);
         values.distance.push_back(below_(p) ? 0.003f : 1.0f);
       }

@@ -32,7 +32,7 @@ TEST_CASE("gathering: rays are aimed at a bright plate, and find its light in cl
 
   const std::vector<Sensor> sensors =
       sensors_on({-1.9, -1.9, 0}, {3.8, 0, 0}, {0, 3.8, 0}, {0, 0, 1}, 12);
-  const cache::GatheredIrradiance light =
+  const LightTable light =
       room.gather({})
           .gather(trace::sensor_hits(room.rays, sensors), numbers(sensors.size()), 144, 96)
           .indirect;
@@ -49,7 +49,7 @@ TEST_CASE("gathering: rays are aimed at a bright plate, and find its light in cl
       truth += lit * albedo / pi * std::pow(height, 2) / std::pow(to_sensor, 4) *
                std::pow(side / cells, 2);
     }
-    const double found = luminance(glm::dvec3(light.mean.irradiance[2 * i]));
+    const double found = luminance(glm::dvec3(light.irradiance[2 * i]));
     CAPTURE(i, found, truth);
     CHECK(found == Approx(truth).epsilon(0.02).margin(5 * light.error(2 * i)));
     // By the cosine alone few of the rays would meet the plate: 40% of noise.

@@ -12,8 +12,8 @@
 #include <string>
 
 #include "cache/node_sources.hpp"
-#include "estimate/light_at_points.hpp"
 #include "gathering.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/light_maps.hpp"
 #include "test_scenes.hpp"
 #include "validation/analytic_cases.hpp"
@@ -47,11 +47,10 @@ struct GatheredMaps {
     REQUIRE(maps.find(hits.oriented_face[hit], hits.position[hit], bilinear));
     double sum = 0;
     for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-      estimate::for_each_estimate(maps.values(), bilinear.node[i], parameters.powers.size(),
-                                  [&](std::size_t layer, std::size_t value) {
-                                    sum += double{bilinear.weight[i]} * parameters.powers[layer] *
-                                           luminance(glm::dvec3(maps.values().irradiance[value]));
-                                  });
+      maps.values().for_each(bilinear.node[i], [&](std::size_t layer, std::size_t value) {
+        sum += double{bilinear.weight[i]} * parameters.powers[layer] *
+               luminance(glm::dvec3(maps.values().irradiance[value]));
+      });
     }
     return sum;
   }
@@ -169,12 +168,12 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   GatheredMaps maps(plain, few_rays, 0.04);
   maps.fill(floor);
   const auto [rms, mean] = errors_of(maps, floor, truth);
-  const cache::GatheredIrradiance raw =
+  const LightTable raw =
       plain.gather({.rays = 32, .light_samples = 32}).gather(floor, numbers(floor.size()));
   double squares = 0;
   for (std::size_t i = 0; i < floor.size(); ++i) {
     squares +=
-        std::pow(luminance(glm::dvec3(raw.mean.irradiance[i])) / truth(floor.position[i]) - 1, 2) /
+        std::pow(luminance(glm::dvec3(raw.irradiance[i])) / truth(floor.position[i]) - 1, 2) /
         static_cast<double>(floor.size());
   }
   CAPTURE(rms, mean, std::sqrt(squares));
@@ -209,7 +208,7 @@ TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few
       }
     batch.first_neighbour.push_back(static_cast<std::uint32_t>(batch.neighbour.size()));
   }
-  const auto sum_of = [](const Estimates& light) {
+  const auto sum_of = [](const LightTable& light) {
     return std::accumulate(light.irradiance.begin(), light.irradiance.end(), 0.0,
                            [](double sum, const glm::vec3& each) { return sum + each.g; });
   };
@@ -217,8 +216,8 @@ TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few
   const cache::GatheredParts raw =
       gather.gather(batch.points, batch.number, few.rays, few.light_samples);
   cache::GatheredNodes nodes(gather, scene.estimators.layer_powers(), {few, few});
-  const double filtered = sum_of(nodes.value(batch, Progress::none()).irradiance);
-  const double found = sum_of(raw.indirect.mean) + sum_of(raw.direct.mean);
+  const double filtered = sum_of(nodes.value(batch, Progress::none()).light);
+  const double found = sum_of(raw.indirect) + sum_of(raw.direct);
   CAPTURE(filtered / found);
   CHECK(found > 0);
   CHECK(filtered / found == Approx(1).margin(0.005));
@@ -327,7 +326,7 @@ TEST_CASE("gathered nodes: many lights, each in its layer, are what their group 
   GatheredMaps together(grouped, few_rays);
   together.fill(hits);
   // Each layer is averaged by its own noise: what is left of it differs, the light does not.
-  const cache::GatheredIrradiance many_rays =
+  const LightTable many_rays =
       grouped.gather({.rays = 400, .light_samples = 400}).gather(hits, numbers(hits.size()));
   const auto errors = [&](const std::vector<double>& lux) {
     double sum = 0, truth = 0, squares = 0;
@@ -375,8 +374,8 @@ TEST_CASE("gathered nodes: rays that go on from those before are those of both a
   const cache::GatheredPoints at_once = points_of(96, {});
   REQUIRE(before.row_of.size() > 100);
   REQUIRE(both.row_of.size() == before.row_of.size());
-  const auto lux = [](const cache::GatheredIrradiance& light, std::uint32_t row) {
-    return double{light.mean.irradiance[row].x};
+  const auto lux = [](const LightTable& light, std::uint32_t row) {
+    return double{light.irradiance[row].x};
   };
   double squares = 0;
   for (const auto& [number, row] : both.row_of) {

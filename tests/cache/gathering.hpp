@@ -37,8 +37,8 @@ class GatheringScene {
   cache::IrradianceGather gather(const cache::IrradianceGatherParameters& parameters) {
     return estimators.gather(parameters);
   }
-  cache::GatheredIrradiance at(const std::vector<Sensor>& sensors,
-                               const cache::IrradianceGatherParameters& parameters = {}) {
+  LightTable at(const std::vector<Sensor>& sensors,
+                const cache::IrradianceGatherParameters& parameters = {}) {
     return gather(parameters).gather(trace::sensor_hits(rays, sensors), numbers(sensors.size()));
   }
 

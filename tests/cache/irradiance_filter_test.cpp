@@ -48,9 +48,8 @@ using Truth = std::function<double(int x, int y)>;
 
 /// Grey light of `lights` layers, each the truth with noise of its own in every batch.
 ///   error   standard error of each layer
-cache::GatheredIrradiance noisy(const Truth& truth, double error, std::uint64_t seed,
-                                int lights = 1) {
-  cache::GatheredIrradiance result;
+LightTable noisy(const Truth& truth, double error, std::uint64_t seed, int lights = 1) {
+  LightTable result(static_cast<std::size_t>(lights), false);
   result.batches = batches;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
@@ -64,18 +63,18 @@ cache::GatheredIrradiance noisy(const Truth& truth, double error, std::uint64_t 
           result.batch.push_back(static_cast<float>(value));
           sum += value;
         }
-        result.mean.irradiance.emplace_back(static_cast<float>(sum / batches));
+        result.irradiance.emplace_back(static_cast<float>(sum / batches));
       }
   return result;
 }
 
 /// Over the columns [from, to), but for the border.
-double rms_error(const cache::GatheredIrradiance& light, const Truth& truth, int from, int to) {
+double rms_error(const LightTable& light, const Truth& truth, int from, int to) {
   double sum = 0;
   int count = 0;
   for (int y = border; y < side - border; ++y)
     for (int x = from; x < to; ++x, ++count) {
-      const double difference = double{light.mean.irradiance[index(x, y)].g} - truth(x, y);
+      const double difference = double{light.irradiance[index(x, y)].g} - truth(x, y);
       sum += difference * difference;
     }
   return std::sqrt(sum / count);
@@ -90,7 +89,7 @@ TEST_CASE("filter: noise on an even surface falls, and its error is known afterw
   constexpr int inner = side - 2 * border;
   double known = 0, found = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const cache::GatheredIrradiance after =
+    const LightTable after =
         cache::filter_irradiance(noisy(even, 0.05, seed), lattice(), one_light);
     found += std::pow(rms_error(after, even, border, side - border), 2) / 8;
     for (int y = border; y < side - border; ++y)
@@ -105,12 +104,11 @@ TEST_CASE("filter: noise on an even surface falls, and its error is known afterw
 TEST_CASE("filter: steps that exceed the noise stay, slopes stay what they are") {
   const double height = GENERATE(0.5, 1.0);  // 7 and 14 standard errors of a difference
   const Truth step = [&](int x, int) { return x < side / 2 ? 1.0 : 1.0 + height; };
-  const cache::GatheredIrradiance after =
-      cache::filter_irradiance(noisy(step, 0.05, 3), lattice(), one_light);
+  const LightTable after = cache::filter_irradiance(noisy(step, 0.05, 3), lattice(), one_light);
   double left = 0, right = 0;  // beside the step
   for (int y = border; y < side - border; ++y) {
-    left += double{after.mean.irradiance[index(side / 2 - 1, y)].g} / (side - 2 * border);
-    right += double{after.mean.irradiance[index(side / 2, y)].g} / (side - 2 * border);
+    left += double{after.irradiance[index(side / 2 - 1, y)].g} / (side - 2 * border);
+    right += double{after.irradiance[index(side / 2, y)].g} / (side - 2 * border);
   }
   CHECK(right - left == Approx(height).epsilon(0.1));
   const Truth slope = [](int x, int) { return 1.0 + 0.02 * x; };
@@ -128,18 +126,18 @@ TEST_CASE("filter: slopes go on to where surface ends") {
   double with_sides = 0, without = 0, squares = 0, squares_without = 0;
   constexpr int seeds = 8, rows = side - 2 * border;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    cache::GatheredIrradiance both = noisy(rising, 0.05, 2 * seed, 2);
-    const cache::GatheredIrradiance other = noisy(falling, 0.05, 2 * seed + 1, 2);
-    for (std::size_t i = 1; i < both.mean.irradiance.size(); i += 2) {
-      both.mean.irradiance[i] = other.mean.irradiance[i];
+    LightTable both = noisy(rising, 0.05, 2 * seed, 2);
+    const LightTable other = noisy(falling, 0.05, 2 * seed + 1, 2);
+    for (std::size_t i = 1; i < both.irradiance.size(); i += 2) {
+      both.irradiance[i] = other.irradiance[i];
       std::copy_n(other.batch.begin() + static_cast<std::ptrdiff_t>(i * batches), batches,
                   both.batch.begin() + static_cast<std::ptrdiff_t>(i * batches));
     }
     const auto at_end = [&](const cache::PointLinks& links, double& sum_of_squares) {
-      const cache::GatheredIrradiance after = cache::filter_irradiance(both, links, powers);
+      const LightTable after = cache::filter_irradiance(both, links, powers);
       double sum = 0;
       for (int y = border; y < side - border; ++y) {
-        const double off = double{after.mean.irradiance[2 * index(0, y)].g} - rising(0, y);
+        const double off = double{after.irradiance[2 * index(0, y)].g} - rising(0, y);
         sum += off / (rows * seeds);
         sum_of_squares += off * off / (rows * seeds);
       }
@@ -157,14 +155,14 @@ TEST_CASE("filter: slopes go on to where surface ends") {
 
 TEST_CASE("filter: without noise nothing changes, and what is dark stays dark") {
   const Truth waves = [](int x, int y) { return 2 + std::sin(x * 0.7) * std::cos(y * 0.9); };
-  const cache::GatheredIrradiance before = noisy(waves, 0, 1);
-  const cache::GatheredIrradiance after = cache::filter_irradiance(before, lattice(), one_light);
-  for (std::size_t i = 0; i < before.mean.irradiance.size(); ++i) {
-    REQUIRE(after.mean.irradiance[i].g == Approx(before.mean.irradiance[i].g).epsilon(1e-6));
+  const LightTable before = noisy(waves, 0, 1);
+  const LightTable after = cache::filter_irradiance(before, lattice(), one_light);
+  for (std::size_t i = 0; i < before.irradiance.size(); ++i) {
+    REQUIRE(after.irradiance[i].g == Approx(before.irradiance[i].g).epsilon(1e-6));
   }
   const Truth black = [](int, int) { return 0.0; };
   for (const glm::vec3& value :
-       cache::filter_irradiance(noisy(black, 0, 1), lattice(), one_light).mean.irradiance) {
+       cache::filter_irradiance(noisy(black, 0, 1), lattice(), one_light).irradiance) {
     REQUIRE(value == glm::vec3(0.0f));
   }
 }
@@ -174,8 +172,8 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
   // points of five found nothing, and do not know that they err.
   constexpr double found = 0.1;
   const Truth even = [](int, int) { return 1.0; };
-  cache::GatheredIrradiance rare = noisy(even, 0, 1);
-  for (std::size_t point = 0; point < rare.mean.irradiance.size(); ++point) {
+  LightTable rare = noisy(even, 0, 1);
+  for (std::size_t point = 0; point < rare.irradiance.size(); ++point) {
     double sum = 0;
     for (std::size_t b = 0; b < batches; ++b) {
       const auto random = trace::RandomStream(5, point, b).block(trace::Purpose::emission, 0);
@@ -183,16 +181,16 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
       rare.batch[point * batches + b] = static_cast<float>(value);
       sum += value;
     }
-    rare.mean.irradiance[point] = glm::vec3(static_cast<float>(sum / batches));
+    rare.irradiance[point] = glm::vec3(static_cast<float>(sum / batches));
   }
   const double before = rms_error(rare, even, border, side - border);
   const cache::NoiseTolerance of_looks{.errors = 3, .ratio = 2};
-  const cache::GatheredIrradiance after =
+  const LightTable after =
       cache::filter_irradiance(rare, lattice(), one_light, {.rounds = 8, .tolerated = of_looks});
   double mean = 0, of_found = 0;
-  for (std::size_t point = 0; point < after.mean.irradiance.size(); ++point) {
-    mean += double{after.mean.irradiance[point].g};
-    of_found += double{rare.mean.irradiance[point].g};
+  for (std::size_t point = 0; point < after.irradiance.size(); ++point) {
+    mean += double{after.irradiance[point].g};
+    of_found += double{rare.irradiance[point].g};
   }
   CAPTURE(before, mean / of_found);
   CHECK(mean / of_found == Approx(1).margin(0.05));
@@ -202,20 +200,20 @@ TEST_CASE("filter: light that few rays find is spread over the points that found
 TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does without the sun") {
   const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 90.0; };
   const Truth even = [](int, int) { return 2.0; };
-  const cache::GatheredIrradiance sun = noisy(step, 0.5, 5), lamp = noisy(even, 0.1, 6);
-  cache::GatheredIrradiance both;
+  const LightTable sun = noisy(step, 0.5, 5), lamp = noisy(even, 0.1, 6);
+  LightTable both;
   both.batches = batches;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    for (const cache::GatheredIrradiance* one : {&sun, &lamp}) both.append(*one, i, 1);
+    for (const LightTable* one : {&sun, &lamp}) both.append_row(*one, i);
   }
-  const cache::GatheredIrradiance layers =
-      cache::filter_irradiance(both, lattice(), std::vector<double>{1, 1});
-  cache::GatheredIrradiance of_sun, of_lamp;
+  both.lights = 2;
+  const LightTable layers = cache::filter_irradiance(both, lattice(), std::vector<double>{1, 1});
+  LightTable of_sun, of_lamp;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    of_sun.mean.irradiance.push_back(layers.mean.irradiance[2 * i]);
-    of_lamp.mean.irradiance.push_back(layers.mean.irradiance[2 * i + 1]);
+    of_sun.irradiance.push_back(layers.irradiance[2 * i]);
+    of_lamp.irradiance.push_back(layers.irradiance[2 * i + 1]);
   }
-  const auto beside_border = [](const cache::GatheredIrradiance& light, const Truth& truth) {
+  const auto beside_border = [](const LightTable& light, const Truth& truth) {
     return rms_error(light, truth, side / 2 - 2, side / 2 + 2);
   };
   const double alone = beside_border(cache::filter_irradiance(lamp, lattice(), one_light), even);
@@ -226,22 +224,22 @@ TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does
 
 TEST_CASE("filter: sparse layers are filtered as dense ones, on any number of threads") {
   const Truth step = [](int x, int) { return x < side / 2 ? 1.0 : 1.6; };
-  const cache::GatheredIrradiance dense = noisy(step, 0.05, 6, 2);
-  cache::GatheredIrradiance sparse = dense;
-  sparse.mean.first.push_back(0);
+  const LightTable dense = noisy(step, 0.05, 6, 2);
+  LightTable sparse = dense;
+  sparse.first.push_back(0);
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    sparse.mean.light.push_back(0);
-    sparse.mean.light.push_back(1);
-    sparse.mean.first.push_back(2 * (i + 1));
+    sparse.light.push_back(0);
+    sparse.light.push_back(1);
+    sparse.first.push_back(2 * (i + 1));
   }
   const std::vector<double> powers{1, 1};
-  const cache::GatheredIrradiance expected = cache::filter_irradiance(dense, lattice(), powers);
+  const LightTable expected = cache::filter_irradiance(dense, lattice(), powers);
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const cache::GatheredIrradiance after = cache::filter_irradiance(sparse, lattice(), powers);
-    CHECK(after.mean.irradiance == expected.mean.irradiance);
+    const LightTable after = cache::filter_irradiance(sparse, lattice(), powers);
+    CHECK(after.irradiance == expected.irradiance);
     CHECK(after.batch == expected.batch);
-    CHECK(after.mean.first == sparse.mean.first);
+    CHECK(after.first == sparse.first);
   }
 }
 
@@ -249,10 +247,10 @@ TEST_CASE("filter: the same bits whether the calling thread flushes denormal num
   // Libraries that a host program loads may have set either. Beside a border a point of no light
   // gets some 1e-40 of what is beyond.
   const auto lit_half = [] {
-    cache::GatheredIrradiance light = noisy([](int, int) { return 1.0; }, 0.05, 5);
-    for (std::size_t i = 0; i < light.mean.irradiance.size(); ++i) {
+    LightTable light = noisy([](int, int) { return 1.0; }, 0.05, 5);
+    for (std::size_t i = 0; i < light.irradiance.size(); ++i) {
       const float scale = i % side < side / 2 ? 0.0f : 1e-12f;
-      light.mean.irradiance[i] *= scale;
+      light.irradiance[i] *= scale;
       for (int b = 0; b < batches; ++b)
         light.batch[i * batches + static_cast<std::size_t>(b)] *= scale;
     }
@@ -262,14 +260,14 @@ TEST_CASE("filter: the same bits whether the calling thread flushes denormal num
   const auto filtered = [&] {
     return filter_irradiance(lit_half(), lattice(), powers, {.rounds = 2});
   };
-  const cache::GatheredIrradiance as_it_is = filtered();
-  cache::GatheredIrradiance flushed;
+  const LightTable as_it_is = filtered();
+  LightTable flushed;
   std::thread flushing([&] {  // TBB goes by what a thread does when it first shares work
     const trace::FlushDenormals flush_denormals;
     flushed = filtered();
   });
   flushing.join();
-  CHECK(as_it_is.mean.irradiance == flushed.mean.irradiance);
+  CHECK(as_it_is.irradiance == flushed.irradiance);
   CHECK(as_it_is.batch == flushed.batch);
 }
 

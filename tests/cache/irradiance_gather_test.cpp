@@ -25,8 +25,8 @@ using std::numbers::pi;
 
 const glm::dvec3 up(0, 0, 1);
 
-double lux(const cache::GatheredIrradiance& light, std::size_t estimate) {
-  return luminance(glm::dvec3(light.mean.irradiance[estimate]));
+double lux(const LightTable& light, std::size_t estimate) {
+  return luminance(glm::dvec3(light.irradiance[estimate]));
 }
 
 /// A closed cube of one metre whose walls all emit and reflect, the same everywhere.
@@ -72,7 +72,7 @@ PathReference by_paths(const RayScene& rays, const std::vector<Sensor>& sensors,
   for (int path = 0; path < paths; ++path) {
     std::vector<std::uint64_t> number = numbers(sensors.size());
     for (std::uint64_t& one : number) one = one * static_cast<std::uint64_t>(paths) + path;
-    const Estimates estimates = estimator.estimate(hits, number);
+    const LightTable estimates = estimator.estimate(hits, number);
     for (std::size_t i = 0; i < squares.size(); ++i) {
       const double value = luminance(glm::dvec3(estimates.irradiance[i]));
       result.lux[i] += value / paths;
@@ -101,9 +101,9 @@ void check_against_paths(const Scene& scene, double bias,
                          const cache::IrradianceGatherParameters& parameters = {}) {
   GatheringScene room(scene, looked_up(400'000));
   const std::vector<Sensor> sensors = room_sensors(5);
-  const cache::GatheredIrradiance light = room.at(sensors, parameters);
+  const LightTable light = room.at(sensors, parameters);
   const PathReference truth = by_paths(room.rays, sensors, 4096);
-  REQUIRE(light.mean.irradiance.size() == truth.lux.size());
+  REQUIRE(light.irradiance.size() == truth.lux.size());
   double squares = 0, relative = 0, error = 0;
   const auto count = static_cast<double>(truth.lux.size());
   for (std::size_t i = 0; i < truth.lux.size(); ++i) {
@@ -134,7 +134,7 @@ TEST_CASE("gathering: a furnace reads its closed form, in corners, too") {
     GatheringScene box(scene, looked_up(100'000, seed));
     cache::IrradianceGatherParameters parameters;
     parameters.seed = seed;
-    const cache::GatheredIrradiance light = box.at(sensors, parameters);
+    const LightTable light = box.at(sensors, parameters);
     middle.push_back(lux(light, 0));
     corners.push_back((lux(light, 1) + lux(light, 2) + lux(light, 3) + lux(light, 4)) / 4);
   }
@@ -150,7 +150,7 @@ TEST_CASE("gathering: direct light is that of form factors, within its own error
                builder.add(area_light("lamp")));
   GatheringScene plain(builder.build(), looked_up(20'000));
   const std::vector<Sensor> sensors = sensors_on({-1.5, -1.5, 0}, {3, 0, 0}, {0, 3, 0}, up, 20);
-  const cache::GatheredIrradiance light = plain.at(sensors);
+  const LightTable light = plain.at(sensors);
   double squares = 0, errors = 0, relative = 0;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const double truth =
@@ -174,7 +174,7 @@ TEST_CASE("gathering: lamps and suns without size are sampled once, which is exa
   builder.grid({-2, 0.9f, 0.5f}, {4, 0, 0}, {0, 0.2f, 0}, 1, black);  // it hides the bulb beyond
   GatheringScene place(builder.build(), looked_up(20'000));
   const std::vector<Sensor> sensors = sensors_on({-1.5, -1.5, 0}, {3, 0, 0}, {0, 3, 0}, up, 20);
-  const cache::GatheredIrradiance light = place.at(sensors);
+  const LightTable light = place.at(sensors);
   int dark = 0;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const std::size_t of_bulb = 2 * i + 1;
@@ -232,7 +232,7 @@ TEST_CASE("gathering: a board within a rim of metal is lit as paths find it") {
   for (const Sensor& sensor : sensors_on({0.005, -0.5, 0.0081}, {0.03, 0, 0}, {0, 1, 0}, up, 5)) {
     sensors.push_back(sensor);
   }
-  const cache::GatheredIrradiance light = room.at(sensors, {.near = 0.2});
+  const LightTable light = room.at(sensors, {.near = 0.2});
   const PathReference truth = by_paths(room.rays, sensors, 4096);
   double sum[2] = {0, 0}, expected[2] = {0, 0};
   for (std::size_t i = 0; i < sensors.size(); ++i) {
@@ -257,7 +257,7 @@ TEST_CASE("gathering: what slats reflect into a room is the light of the parts t
   }
   GatheringScene room(builder.build(), looked_up(200'000));
   const std::vector<Sensor> sensors = sensors_on({1, 0.8, 0}, {2, 0, 0}, {0, 1.6, 0}, up, 8);
-  const cache::GatheredIrradiance light = room.at(sensors, {.rays = 1024, .near = 0.08});
+  const LightTable light = room.at(sensors, {.rays = 1024, .near = 0.08});
   const PathReference truth = by_paths(room.rays, sensors, 4096);
   double sum = 0, expected = 0;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
@@ -286,7 +286,7 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
   double squares = 0, stated = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     GatheringScene place(scene, looked_up(60'000, seed));
-    const cache::GatheredIrradiance light = place.at(sensors);
+    const LightTable light = place.at(sensors);
     double sum = 0, truth = 0;
     for (std::size_t i = 0; i < sensors.size(); ++i) {
       const double expected = lux_of_image(sensors[i].position);
@@ -319,7 +319,7 @@ TEST_CASE("gathering: a caustic ends where the image of its mirror ends") {
   GatheringScene place(builder.build(), looked_up(60'000));
   const std::vector<Sensor> within = sensors_on({-0.6, 0.66, 0}, {1.2, 0, 0}, {0, 0.02, 0}, up, 6);
   const std::vector<Sensor> beyond = sensors_on({-0.6, 0.8, 0}, {1.2, 0, 0}, {0, 0.1, 0}, up, 6);
-  const cache::GatheredIrradiance lit = place.at(within), dark = place.at(beyond);
+  const LightTable lit = place.at(within), dark = place.at(beyond);
   double sum = 0, truth = 0, spilt = 0;
   for (std::size_t i = 0; i < within.size(); ++i) {
     const glm::dvec3 p = within[i].position;
@@ -337,13 +337,12 @@ TEST_CASE("gathering: no caustic shines through a screen that stands on the floo
   builder.grid({0, -2, 0}, {0, 4, 0}, {0, 0, 1.1f}, 1, 0);
   const Scene scene = builder.build();
   GatheringScene place(scene, looked_up(60'000, 1));
-  const cache::GatheredIrradiance behind =
-      place.at(sensors_on({-0.2, -0.3, 0}, {0.19, 0, 0}, {0, 0.6, 0}, up, 6));
+  const LightTable behind = place.at(sensors_on({-0.2, -0.3, 0}, {0.19, 0, 0}, {0, 0.6, 0}, up, 6));
   for (std::size_t i = 0; i < 36; ++i) CHECK(lux(behind, i) == 0.0);
 
   // Farther from it than all neighbours are, the floor is lit as without it.
   const std::vector<Sensor> before = sensors_on({0.35, -0.3, 0}, {0.35, 0, 0}, {0, 0.6, 0}, up, 6);
-  const cache::GatheredIrradiance lit = place.at(before);
+  const LightTable lit = place.at(before);
   double sum = 0, truth = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     sum += lux(lit, i);
@@ -359,7 +358,7 @@ TEST_CASE("gathering: surroundings are direct light, and seen once") {
   const Scene scene = builder.build();
   GatheringScene open(scene, looked_up(50'000));
   const std::vector<Sensor> sensors = sensors_on({-0.9, -0.9, 0}, {1.8, 0, 0}, {0, 1.8, 0}, up, 4);
-  const cache::GatheredIrradiance light = open.at(sensors);
+  const LightTable light = open.at(sensors);
   // Its flux falls on the disc of the scene's sphere: illuminance on a plane is 1 / that, times pi
   // over 4 pi's share of the sky's hemisphere.
   const double radius = bounding_sphere(scene).radius;
@@ -378,7 +377,7 @@ TEST_CASE("gathering: the stated error is the scatter of other random numbers") 
   for (int trial = 0; trial < trials; ++trial) {
     cache::IrradianceGatherParameters parameters;
     parameters.seed = 100 + static_cast<std::uint64_t>(trial);
-    const cache::GatheredIrradiance light = room.at(sensors, parameters);
+    const LightTable light = room.at(sensors, parameters);
     for (std::size_t i = 0; i < values; ++i) {
       sum[i] += lux(light, i) / trials;
       squares[i] += lux(light, i) * lux(light, i) / trials;
@@ -406,7 +405,7 @@ TEST_CASE("gathering: the same bits in any order of points and on any number of 
   cache::IrradianceGatherParameters parameters;
   parameters.rays = 512;
   parameters.light_samples = 16;
-  const cache::GatheredIrradiance expected = room.gather(parameters).gather(hits, number);
+  const LightTable expected = room.gather(parameters).gather(hits, number);
 
   // Every seventh point after another: 700 has to be put in another order without a remainder.
   std::vector<Sensor> shuffled(sensors.size());
@@ -419,13 +418,12 @@ TEST_CASE("gathering: the same bits in any order of points and on any number of 
   const PrimaryHits shuffled_hits = trace::sensor_hits(room.rays, shuffled);
   for (const std::size_t threads : {1u, 2u, 3u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const cache::GatheredIrradiance light =
-        room.gather(parameters).gather(shuffled_hits, shuffled_number);
+    const LightTable light = room.gather(parameters).gather(shuffled_hits, shuffled_number);
     bool same = true;
     for (std::size_t i = 0; i < sensors.size(); ++i)
       for (std::size_t layer = 0; layer < 2; ++layer) {
         const std::size_t a = 2 * i + layer, b = 2 * place(i) + layer;
-        same = same && expected.mean.irradiance[a] == light.mean.irradiance[b] &&
+        same = same && expected.irradiance[a] == light.irradiance[b] &&
                expected.error(a) == light.error(b);
       }
     CHECK(same);
@@ -439,10 +437,10 @@ TEST_CASE("gathering: layers are the same whatever the powers") {
   RenderParameters parameters = looked_up(50'000);
   parameters.photons.quota = PhotonQuota::equal;
   const std::vector<Sensor> sensors = room_sensors(3);
-  const cache::GatheredIrradiance dim = GatheringScene(scene, parameters).at(sensors);
+  const LightTable dim = GatheringScene(scene, parameters).at(sensors);
   scene.lights[0].power *= 1000;
-  const cache::GatheredIrradiance bright = GatheringScene(scene, parameters).at(sensors);
-  CHECK(dim.mean.irradiance == bright.mean.irradiance);
+  const LightTable bright = GatheringScene(scene, parameters).at(sensors);
+  CHECK(dim.irradiance == bright.irradiance);
   CHECK(dim.batch == bright.batch);
 }
 
@@ -453,15 +451,15 @@ TEST_CASE("gathering: many lights, each in its layer, are what their group is") 
   parameters.radius = 0.3;
   const std::vector<Sensor> sensors = room_sensors(3);
   GatheringScene alone(scene, parameters);
-  const cache::GatheredIrradiance layers = alone.at(sensors);
-  REQUIRE(layers.mean.first.size() == sensors.size() + 1);
+  const LightTable layers = alone.at(sensors);
+  REQUIRE(layers.first.size() == sensors.size() + 1);
   double power = 0;
   for (const Light& light : scene.lights) power += light.power;
   for (Light& light : scene.lights) light.group = "all";
-  const cache::GatheredIrradiance together = GatheringScene(scene, parameters).at(sensors);
-  REQUIRE(together.mean.irradiance.size() == sensors.size());
+  const LightTable together = GatheringScene(scene, parameters).at(sensors);
+  REQUIRE(together.irradiance.size() == sensors.size());
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const cache::GatheredIrradiance::Total total = layers.total(i, alone.estimators.layer_powers());
+    const LightTable::Total total = layers.total(i, alone.estimators.layer_powers());
     CHECK(power * lux(together, i) == Approx(total.luminance).epsilon(1e-4));
     CHECK(power * together.error(i) == Approx(total.error).epsilon(1e-3));
   }

@@ -19,9 +19,9 @@ class FormulaSource : public NodeSource {
   explicit FormulaSource(Formula formula) : formula_(std::move(formula)) {}
 
   NodeValues value(const NodeBatch& batch, const Progress&) override {
-    NodeValues values;
+    NodeValues values{LightTable(1, false), {}, {}};
     for (std::size_t i = 0; i < batch.points.size(); ++i) {
-      values.irradiance.irradiance.emplace_back(
+      values.light.irradiance.emplace_back(
           formula_(batch.points.position[i], batch.points.oriented_face[i]));
     }
     asked += batch.points.size();

@@ -46,11 +46,11 @@ Scene plates_above_floor() {
 class PlateSource : public NodeSource {
  public:
   NodeValues value(const NodeBatch& batch, const Progress&) override {
-    NodeValues values;
+    NodeValues values{LightTable(1, false), {}, {}};
     for (const glm::vec3& p : batch.points.position) {
       const bool open =
           p.y < 0.2f || p.y > 0.8f || p.x < 0.2f || p.x > 0.8f || (p.x > 0.4963f && p.x < 0.5043f);
-      values.irradiance.irradiance.emplace_back(open ? 10.0f : 0.0f);
+      values.light.irradiance.emplace_back(open ? 10.0f : 0.0f);
       values.error.push_back(0.0f);
       values.distance.push_back(open ? 1.0f : 0.003f);
     }

@@ -215,11 +215,11 @@ TEST_CASE("Many lights are shaded as smoothly") {
 class TurnedSource : public NodeSource {
  public:
   NodeValues value(const NodeBatch& batch, const Progress&) override {
-    NodeValues values;
+    NodeValues values{LightTable(1, false), {}, {}};
     for (std::size_t node = 0; node < batch.nodes; ++node) {
       const glm::vec3& at = batch.points.position[node];
-      values.irradiance.irradiance.emplace_back(1.0f + at.x * at.x);
-      values.irradiance.by_normal.emplace_back(at, 1.0f);
+      values.light.irradiance.emplace_back(1.0f + at.x * at.x);
+      values.light.by_normal.emplace_back(at, 1.0f);
       values.error.push_back(0.1f);
       values.distance.push_back(1.0f);
     }

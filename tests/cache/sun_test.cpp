@@ -55,7 +55,7 @@ TEST_CASE("gathering: the border of a sun's light is its closed form without noi
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const std::size_t of_sun = 2 * i;
     const double seen = seen_of_sun(sensors[i].position.y);
-    const double found = powers[0] * luminance(glm::dvec3(light.direct.mean.irradiance[of_sun]));
+    const double found = powers[0] * luminance(glm::dvec3(light.direct.irradiance[of_sun]));
     CAPTURE(sensors[i].position.y, seen);
     // To two of the samples that the edge parts.
     CHECK(found ==
@@ -91,8 +91,8 @@ TEST_CASE("gathering: lamps of many are chosen by chance, a sun among them, and 
   GatheringScene place(builder.build(), looked_up(50'000));
   CHECK(trace::LightSampler(place.scene).sampled_apart().empty());
   const std::vector<double> powers = estimate::layer_powers(place.scene);
-  const cache::GatheredIrradiance light = place.at({{{0.1, 0.2, 0}, {0, 0, 1}}});
-  const cache::GatheredIrradiance::Total total = light.total(0, powers);
+  const LightTable light = place.at({{{0.1, 0.2, 0}, {0, 0, 1}}});
+  const LightTable::Total total = light.total(0, powers);
   CHECK(total.luminance == Approx(lux).margin(5 * total.error + 1e-3 * lux));
   CHECK(total.error < 0.1 * lux);
 }

@@ -208,7 +208,8 @@ TEST_CASE("irradiance is the flux of the k - 1 nearest over the disc through the
                      {.radius = radius, .photons_per_cell = photons_per_cell});
     for (const int k : {20, 400}) {
       CAPTURE(photons_per_cell, k);
-      const Estimates found = maps.irradiance(cloud.points, cloud.point_normals, {.neighbours = k});
+      const LightTable found =
+          maps.irradiance(cloud.points, cloud.point_normals, {.neighbours = k});
       REQUIRE(found.irradiance.size() == 3 * cloud.points.size());
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < cloud.points.size(); ++i) {

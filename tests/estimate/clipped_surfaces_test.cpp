@@ -80,7 +80,7 @@ std::vector<double> readings(Reading reading) {
         {.radius = reading.radius});
     EstimateParameters parameters;
     parameters.area = reading.area;
-    const Estimates estimates = Estimator(maps, reading.scene, parameters).estimate(hits);
+    const LightTable estimates = Estimator(maps, reading.scene, parameters).estimate(hits);
     double sum = 0;
     for (const glm::vec3& irradiance : estimates.irradiance) sum += irradiance.g;
     means.push_back(sum / static_cast<double>(hits.position.size()) /
@@ -219,7 +219,7 @@ TEST_CASE("tiles on a floor read 1, in their middle and at the border of the flo
     photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
     const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.06, 60}),
                           {.radius = 0.06});
-    const Estimates estimates = Estimator(maps, scene, {}).estimate(hits);
+    const LightTable estimates = Estimator(maps, scene, {}).estimate(hits);
     double sum = 0;
     for (const glm::vec3& irradiance : estimates.irradiance) sum += irradiance.g;
     means.push_back(sum / static_cast<double>(hits.position.size()));
@@ -293,7 +293,7 @@ TEST_CASE("a uniformly lit plate reads its irradiance away from borders for any 
     const PhotonMaps maps(test::device(), scene, photons,
                           find_neighbour_groups(scene, {radius, 60}), {radius, 4});
     const PrimaryHits all = test::uniform_hits(scene, 40'000, 72, false);
-    const Estimates estimates = Estimator(maps, scene, {k, 0}).estimate(all);
+    const LightTable estimates = Estimator(maps, scene, {k, 0}).estimate(all);
     double sum = 0;
     std::size_t inner = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {

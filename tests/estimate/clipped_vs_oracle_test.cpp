@@ -50,7 +50,7 @@ void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const 
       parameters.kernel = kernel;
       parameters.tuning = tuning;
       parameters.surface = surface;
-      const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
+      const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
       const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
       REQUIRE(irradiance.size() == hits.size() * lights);
       CAPTURE(structure, name_of(tuning.strategy), name_of(kernel), k, radius, lights);

@@ -129,7 +129,7 @@ class Shares {
     parameters.neighbours = k;
     parameters.surface = surface_;
     Estimator estimator(*maps_, scene_, parameters);
-    const Estimates estimates = estimator.estimate(hits);
+    const LightTable estimates = estimator.estimate(hits);
     const NeighbourLists lists = estimator.nearest(hits);
     std::vector<Share> shares;
     for (std::size_t i = 0; i < hits.size(); ++i) {

@@ -119,7 +119,7 @@ Means means(const Scene& scene, const Where& open, const Where& seen, int neighb
       const auto surface = std::make_shared<const SurfaceIndex>(
           with_dark ? index_surface(scene, photons, widest, 60) : whole);
       EstimateParameters parameters{.neighbours = neighbours, .surface = surface};
-      const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
+      const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
       for (const glm::vec3& irradiance : estimates.irradiance) {
         sum[with_dark ? 0 : 1] += irradiance.g;
       }

@@ -27,7 +27,7 @@ void check_irradiance(const Scene& scene, const Photons& photons, const PrimaryH
   for (const structures::Structure& structure : structures::all()) {
     const PhotonMaps maps =
         structures::build(structure, test::device(), scene, photons, groups, {radius, 4});
-    const Estimates estimates =
+    const LightTable estimates =
         Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc}).estimate(hits);
     const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
     REQUIRE(irradiance.size() == hits.size() * lights);
@@ -102,7 +102,7 @@ TEST_CASE("glossy radiance equals the BSDF summed over the oracle's neighbours i
   const int k = 50;
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
-  const Estimates estimates =
+  const LightTable estimates =
       Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc}).estimate(hits);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
 
@@ -138,7 +138,7 @@ TEST_CASE("radiance under normal maps equals the BSDF summed over the oracle's n
   const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius);
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
     CAPTURE(name_of(tuning.strategy));
-    const Estimates estimates =
+    const LightTable estimates =
         Estimator(maps, scene, {.neighbours = k, .tuning = tuning, .area = AreaMode::disc})
             .estimate(hits);
     CHECK(test::worst_difference(estimates.radiance, expected) <= test::glossy_tolerance(k));
@@ -257,7 +257,7 @@ TEST_CASE("estimates of maps of patches equal those of triangles up to the order
     const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4});
     return Estimator(maps, scene, {50, 0}).estimate(hits);
   };
-  const Estimates triangles = estimate(MapMode::triangle), patches = estimate(MapMode::patch);
+  const LightTable triangles = estimate(MapMode::triangle), patches = estimate(MapMode::patch);
   REQUIRE(triangles.irradiance.size() == patches.irradiance.size());
   std::size_t different = 0;
   for (std::size_t i = 0; i < triangles.irradiance.size(); ++i) {

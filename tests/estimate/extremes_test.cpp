@@ -198,7 +198,7 @@ TEST_CASE("extremes: the second photon at a distance that selection compares wit
   hits.pixel.resize(1);
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius});
-  const Estimates estimates =
+  const LightTable estimates =
       Estimator(maps, scene, {.neighbours = 1, .area = AreaMode::disc}).estimate(hits);
   // The density of the nearer photon, over the disc through it.
   const double area = glm::pi<double>() * first * first;

@@ -106,8 +106,8 @@ TEST_CASE("a hit's estimate is the same bits, however many hits are estimated wi
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
                         {0.2, 4});
   Estimator estimator(maps, scene, {16, 0});
-  const Estimates expected = estimator.estimate(base);
-  const Estimates estimates = estimator.estimate(hits);
+  const LightTable expected = estimator.estimate(base);
+  const LightTable estimates = estimator.estimate(hits);
   REQUIRE(estimates.irradiance.size() == count);
   std::size_t differences = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -58,11 +58,11 @@ TEST_CASE("hits without photons are dark, whatever the hits before them were") {
   const PhotonMaps maps = maps_on(test::device(), scene, photons);
   const PrimaryHits hits = test::uniform_hits(scene, 2'000, 8);
   Estimator estimator(maps, scene, {});
-  const Estimates lit = estimator.estimate(on_plate(hits, false));
+  const LightTable lit = estimator.estimate(on_plate(hits, false));
   REQUIRE(lit.irradiance.size() > 900);
   for (const glm::vec3& irradiance : lit.irradiance) REQUIRE(irradiance.x > 0);
   const PrimaryHits far_hits = on_plate(hits, true);
-  const Estimates dark = estimator.estimate(far_hits);  // about as many
+  const LightTable dark = estimator.estimate(far_hits);  // about as many
   REQUIRE(dark.irradiance.size() == far_hits.size());
   for (const glm::vec3& irradiance : dark.irradiance) REQUIRE(irradiance == glm::vec3(0));
 }
@@ -89,11 +89,11 @@ TEST_CASE("hits of several batches are those of calls of their own") {
   // More than two batches where one is sent while another is computed.
   const PrimaryHits hits = test::uniform_hits(scene, 300'001, 9);
   Estimator estimator(maps, scene, {.neighbours = 5});
-  const Estimates together = estimator.estimate(hits);
+  const LightTable together = estimator.estimate(hits);
   REQUIRE(together.irradiance.size() == hits.size());
   constexpr std::size_t part = 70'001;
   for (std::size_t begin = 0; begin < hits.size(); begin += part) {
-    const Estimates alone = estimator.estimate(hits, begin, std::min(part, hits.size() - begin));
+    const LightTable alone = estimator.estimate(hits, begin, std::min(part, hits.size() - begin));
     CHECK(std::equal(alone.irradiance.begin(), alone.irradiance.end(),
                      together.irradiance.begin() + static_cast<std::ptrdiff_t>(begin)));
   }
@@ -109,7 +109,7 @@ TEST_CASE("kept estimates make room where memory runs out") {
   const PhotonMaps maps = maps_on(device, scene, photons);
   const PrimaryHits hits = on_plate(test::uniform_hits(scene, 2'000, 8), false);
   Estimator estimator(maps, scene, {});
-  const Estimates expected = estimator.estimate(hits);
+  const LightTable expected = estimator.estimate(hits);
   device::Context& context = device::context_of(device);
   {
     // One byte more than is left. The maps are asked last, and stay.

@@ -26,8 +26,8 @@ struct Subject {
     hits = test::uniform_hits(scene, 200, 54);
   }
 
-  Estimates estimate(DensityKernel kernel, int k, std::string_view structure = "uniform-grid",
-                     const std::optional<EstimateTuning>& tuning = std::nullopt) const {
+  LightTable estimate(DensityKernel kernel, int k, std::string_view structure = "uniform-grid",
+                      const std::optional<EstimateTuning>& tuning = std::nullopt) const {
     const PhotonMaps maps =
         structures::build(structures::named(structure), test::device(), scene, photons,
                           find_neighbour_groups(scene, {radius, 60}), {radius, 4});
@@ -39,7 +39,7 @@ struct Subject {
 
 /// Largest difference from the truth over what the photons would read at a weight of 1: a weight is
 /// right to a few units of 2^-24, however small it is.
-double worst_difference(const Subject& subject, const Estimates& estimates, DensityKernel kernel,
+double worst_difference(const Subject& subject, const LightTable& estimates, DensityKernel kernel,
                         int k) {
   const reference::DensityOracle oracle(subject.scene, subject.photons,
                                         reference::PhotonFilter::grouped, 60);
@@ -69,12 +69,12 @@ TEST_CASE("weighted irradiance equals the oracle's for every structure and strat
   CAPTURE(name_of(kernel));
   for (const structures::Structure& structure : structures::all()) {
     CAPTURE(structure.name);
-    const Estimates estimates = subject.estimate(kernel, k, structure.name);
+    const LightTable estimates = subject.estimate(kernel, k, structure.name);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
     CAPTURE(name_of(tuning.strategy));
-    const Estimates estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
+    const LightTable estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
 }
@@ -95,7 +95,7 @@ TEST_CASE("with fewer than k photons within the radius weights go by the full ra
   constexpr int k = 50;
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
     CAPTURE(name_of(kernel), name_of(tuning.strategy));
-    const Estimates estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
+    const LightTable estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
     CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
   }
 }
@@ -112,7 +112,7 @@ TEST_CASE("weighted glossy radiance equals the BSDF summed over the oracle's nei
   const DensityKernel kernel = GENERATE(from_range(weighting));
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
-  const Estimates estimates =
+  const LightTable estimates =
       Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc, .kernel = kernel})
           .estimate(hits);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);

@@ -72,7 +72,7 @@ struct Subject {
     return {scene, photons, reference::PhotonFilter::grouped, 60};
   }
 
-  Estimates estimate(const EstimateTuning& tuning, int neighbours, AreaMode area) const {
+  LightTable estimate(const EstimateTuning& tuning, int neighbours, AreaMode area) const {
     return Estimator(maps, scene, {.neighbours = neighbours, .tuning = tuning, .area = area})
         .estimate(hits);
   }
@@ -117,7 +117,7 @@ void check(const Kind& kind, const EstimateTuning& tuning, int neighbours, std::
     CHECK(count_differences(subject.hits, estimator.nearest(subject.hits), oracle, subject.photons,
                             radius) == 0);
   }
-  const Estimates estimates = subject.estimate(tuning, neighbours, kind.area);
+  const LightTable estimates = subject.estimate(tuning, neighbours, kind.area);
   // The oracle's clipped discs are polygons: clipped_vs_oracle_test.cpp.
   const double tolerance = kind.area == AreaMode::clipped ? 1e-3 : estimate_tolerance(neighbours);
   CHECK(worst_difference(by_light(estimates.irradiance, estimates, kind.lights),
@@ -143,10 +143,10 @@ TEST_CASE("every kind of estimate is the oracle's for k of 1 to 1,000", "[slow][
         DYNAMIC_SECTION("bits of shuffles and of local memory, " << kind.name
                                                                  << ", k = " << neighbours) {
           const Subject subject(kind, 61);
-          const Estimates shuffled = subject.estimate(tuning, neighbours, kind.area);
+          const LightTable shuffled = subject.estimate(tuning, neighbours, kind.area);
           EstimateTuning without = tuning;
           without.shuffles = false;
-          const Estimates plain = subject.estimate(without, neighbours, kind.area);
+          const LightTable plain = subject.estimate(without, neighbours, kind.area);
           CHECK(shuffled.irradiance == plain.irradiance);
           CHECK(shuffled.radiance == plain.radiance);
         }
@@ -173,8 +173,8 @@ TEST_CASE("lanes estimate every kind as the oracle does", "[slow]") {
 
 TEST_CASE("lanes differ from vectors in the order of sums alone") {
   const Subject subject({"several lights", 3}, 60);
-  const Estimates of_lanes = subject.estimate(lanes(32), k, AreaMode::disc);
-  const Estimates of_vectors =
+  const LightTable of_lanes = subject.estimate(lanes(32), k, AreaMode::disc);
+  const LightTable of_vectors =
       subject.estimate({EstimateStrategy::select, 16, 4, 16}, k, AreaMode::disc);
   // A sum of k positive numbers is right to k - 1 roundings, in any order.
   constexpr double bound = 2.0 * k * 0x1p-24;
@@ -194,11 +194,11 @@ TEST_CASE("shuffles give lanes the bits of local memory", "[slow][shuffles]") {
     for (const int width : {16, 32}) {
       const Subject subject(kind, 61);
       EstimateTuning tuning = lanes(width);
-      const Estimates plain = subject.estimate(tuning, k, kind.area);
+      const LightTable plain = subject.estimate(tuning, k, kind.area);
       tuning.shuffles = true;
       CAPTURE(kind.name, width);
       check(kind, tuning, k, 61);
-      const Estimates shuffled = subject.estimate(tuning, k, kind.area);
+      const LightTable shuffled = subject.estimate(tuning, k, kind.area);
       CHECK(shuffled.irradiance == plain.irradiance);
       CHECK(shuffled.radiance == plain.radiance);
     }
@@ -209,7 +209,7 @@ TEST_CASE("lanes that take hits in turn estimate the bits of each alone", "[slow
   const Subject subject({"several lights", 3}, 62);
   EstimateTuning tuning = lanes(32);
   REQUIRE(tuning.hits_per_item > 1);
-  const Estimates in_turn = subject.estimate(tuning, k, AreaMode::clipped);
+  const LightTable in_turn = subject.estimate(tuning, k, AreaMode::clipped);
   tuning.hits_per_item = 1;
   CHECK(subject.estimate(tuning, k, AreaMode::clipped).irradiance == in_turn.irradiance);
 }

@@ -24,8 +24,8 @@ Scene plate(std::size_t lights, bool glossy) {
   return scene;
 }
 
-Estimates estimate(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
-                   int neighbours = k) {
+LightTable estimate(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
+                    int neighbours = k) {
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
   return Estimator(maps, scene, {neighbours, 0}).estimate(hits);
@@ -76,11 +76,11 @@ TEST_CASE("each light's estimates are those of its photons alone", "[long]") {
   const Photons photons = test::uniform_photons(scene, 4000, 91);
   PrimaryHits hits = test::uniform_hits(scene, 150, 92);
   if (glossy) test::add_lobes(hits, scene, 93);
-  const Estimates together = estimate(scene, photons, hits, neighbours);
+  const LightTable together = estimate(scene, photons, hits, neighbours);
   const auto irradiance = test::by_light(together.irradiance, together, lights);
   const auto radiance = test::by_light(together.radiance, together, lights);
   for (const std::size_t light : {std::size_t{0}, std::size_t{3}, lights - 1}) {
-    const Estimates one = estimate(
+    const LightTable one = estimate(
         plate(1, glossy), alone(photons, static_cast<std::uint16_t>(light)), hits, neighbours);
     CAPTURE(light);
     CHECK(difference(layer(irradiance, light, lights), one.irradiance) <= tolerance);
@@ -93,8 +93,8 @@ TEST_CASE(
   const Scene dense_scene = plate(8, false);
   const Photons photons = test::uniform_photons(dense_scene, 4000, 94);
   const PrimaryHits hits = test::uniform_hits(dense_scene, 150, 95);
-  const Estimates dense = estimate(dense_scene, photons, hits);
-  const Estimates sparse = estimate(plate(9, false), photons, hits);
+  const LightTable dense = estimate(dense_scene, photons, hits);
+  const LightTable sparse = estimate(plate(9, false), photons, hits);
   REQUIRE(dense.first.empty());
   REQUIRE(sparse.first.size() == hits.size() + 1);
   const auto nine = test::by_light(sparse.irradiance, sparse, 9);
@@ -116,7 +116,7 @@ TEST_CASE("a hit keeps the lights that reach it, each once, however many there a
     photons.light[i] = static_cast<std::uint16_t>(quarter_of(photons.position[i]) + 256 * (i % 3));
   }
   const PrimaryHits hits = test::uniform_hits(scene, 200, 97);
-  const Estimates estimates = estimate(scene, photons, hits);
+  const LightTable estimates = estimate(scene, photons, hits);
   REQUIRE(estimates.first.size() == hits.size() + 1);
   CHECK(estimates.first.front() == 0);
   CHECK(estimates.first.back() == estimates.light.size());
@@ -160,7 +160,7 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
       parameters.neighbours = neighbours;
       parameters.compiled_neighbours = compiled;
       parameters.area = AreaMode::disc;
-      const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
+      const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
       test::ExpectedEstimates expected;
       for (std::size_t i = 0; i < hits.size(); ++i) {
         expected.push_back(
@@ -186,14 +186,14 @@ TEST_CASE("any number of lights up to 70 and any level of k keep to their buffer
     EstimateParameters parameters;
     parameters.neighbours = neighbours;
     parameters.compiled_neighbours = compiled;
-    const Estimates shared = Estimator(maps, scene, parameters).estimate(hits);
+    const LightTable shared = Estimator(maps, scene, parameters).estimate(hits);
     // The sum of one light is known: it is that of all lights. Slots that overlap would change it.
     const Scene single = plate(1, false);
     Photons together = photons;
     together.light.clear();
     const PhotonMaps single_maps(test::device(), single, together,
                                  find_neighbour_groups(single, {radius, 60}), {radius, 4});
-    const Estimates sums = Estimator(single_maps, single, parameters).estimate(hits);
+    const LightTable sums = Estimator(single_maps, single, parameters).estimate(hits);
     const auto by_light = test::by_light(shared.irradiance, shared, lights);
     std::vector<glm::vec3> all(hits.size(), glm::vec3(0.0f));
     for (std::size_t i = 0; i < by_light.size(); ++i) all[i / lights] += by_light[i];

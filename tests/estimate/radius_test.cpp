@@ -112,7 +112,7 @@ TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle'
   for (const AreaMode mode : all_area_modes) {
     EstimateParameters parameters;
     parameters.area = mode;
-    const Estimates estimates = Estimator(maps, scene, parameters).estimate(hits);
+    const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
     test::ExpectedEstimates expected;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const glm::vec3 hit = hits.position[i];

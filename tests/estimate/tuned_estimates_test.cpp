@@ -42,7 +42,7 @@ struct Case {
     }
     for (const EstimateTuning& tuning : tunings) {
       CAPTURE(name_of(tuning.strategy), tuning.vector_width, tuning.hits_per_item, k);
-      const Estimates estimates =
+      const LightTable estimates =
           Estimator(maps, scene, {.neighbours = k, .tuning = tuning, .area = AreaMode::disc})
               .estimate(hits);
       const std::size_t lights = scene.lights.size();
@@ -112,10 +112,10 @@ void check_bits_of_hits_in_turn(const Case& data, AreaMode area) {
                       .area = area})
         .estimate(data.hits);
   };
-  const Estimates alone = estimate(1);
+  const LightTable alone = estimate(1);
   for (const int hits_per_item : {16, 64}) {
     CAPTURE(hits_per_item, name_of(area), data.scene.lights.size());
-    const Estimates in_turn = estimate(hits_per_item);
+    const LightTable in_turn = estimate(hits_per_item);
     CHECK(in_turn.irradiance == alone.irradiance);
     CHECK(in_turn.radiance == alone.radiance);
     CHECK(in_turn.light == alone.light);

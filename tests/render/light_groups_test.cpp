@@ -131,15 +131,14 @@ PrimaryHitBatch random_batch(int first, int last, std::mt19937& random) {
 
 /// Estimates in both forms: a few lights per hit, in no order.
 struct BothForms {
-  Estimates dense, sparse;
+  LightTable dense, sparse;
 };
 
 BothForms random_both_forms(std::size_t hits, bool glossy, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
-  BothForms both;
+  BothForms both{LightTable(lights, false), LightTable(lights, true)};
   both.dense.irradiance.assign(hits * lights, glm::vec3(0.0f));
   if (glossy) both.dense.radiance = both.dense.irradiance;
-  both.sparse.first.push_back(0);
   for (std::size_t hit = 0; hit < hits; ++hit) {
     std::vector<std::uint16_t> order(lights);
     for (std::size_t i = 0; i < lights; ++i) order[i] = static_cast<std::uint16_t>(i);
@@ -190,7 +189,7 @@ TEST_CASE("sparse layers grow with the lights that reach a pixel, not with all")
   batch.hits.pixel.push_back(5);
   batch.hits.throughput.emplace_back(1.0f);
   batch.hits.diffuse_albedo.emplace_back(0.5f);
-  Estimates estimates;
+  LightTable estimates(8, true);
   estimates.first = {0, 1};
   estimates.light = {7};
   estimates.irradiance = {glm::vec3(2.0f)};
@@ -210,7 +209,7 @@ TEST_CASE("sparse layers grow with the lights that reach a pixel, not with all")
 
 TEST_CASE("a batch that saw nothing leaves sparse layers black") {
   LightLayers layers(width, height, named_lights());
-  add_to_film(layers, PrimaryHitBatch{}, Estimates{}, 1.0f);
+  add_to_film(layers, PrimaryHitBatch{}, LightTable{}, 1.0f);
   CHECK(test::same_bits(layers, dense_layers()));
 }
 

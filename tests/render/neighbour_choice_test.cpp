@@ -73,11 +73,11 @@ TEST_CASE("where light is uniform nearly all hits take the most neighbours, and 
 TEST_CASE("hits take all lights' estimates from one level") {
   // Two hits, two lights. The first hit agrees, the second changes at the last level.
   const auto grey = [](float value) { return glm::vec3(value); };
-  std::vector<Estimates> by_level(2);
+  std::vector<LightTable> by_level(2);
   by_level[0].irradiance = {grey(1), grey(2), grey(4), grey(8)};
   by_level[1].irradiance = {grey(1.01f), grey(2.02f), grey(1), grey(2)};
   const std::vector<int> neighbours{50, 200};
-  const Estimates chosen =
+  const LightTable chosen =
       estimate::estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
   CHECK(chosen.irradiance == std::vector{grey(1.01f), grey(2.02f), grey(4), grey(8)});
 
@@ -87,7 +87,7 @@ TEST_CASE("hits take all lights' estimates from one level") {
   by_level[1].irradiance = {grey(3.03f), grey(1), grey(2)};
   by_level[1].first = {0, 1, 3};
   by_level[1].light = {1, 1, 0};
-  const Estimates sparse =
+  const LightTable sparse =
       estimate::estimates_of_least_error(by_level, neighbours, std::vector{1.0, 1.0});
   CHECK(sparse.first == std::vector<std::uint64_t>{0, 1, 3});
   CHECK(sparse.light == std::vector<std::uint16_t>{1, 0, 1});
@@ -95,7 +95,7 @@ TEST_CASE("hits take all lights' estimates from one level") {
 }
 
 TEST_CASE("a light that is off has no say in the choice") {
-  std::vector<Estimates> by_level(2);
+  std::vector<LightTable> by_level(2);
   by_level[0].irradiance = {glm::vec3(1), glm::vec3(1)};
   by_level[1].irradiance = {glm::vec3(1), glm::vec3(9)};  // only the second light changes
   const std::vector<int> neighbours{50, 200};

@@ -235,11 +235,10 @@ LayerMixdown random_pooling(std::size_t lights, std::size_t layers, std::mt19937
 }
 
 /// Estimates of all lights where they are few; else of some at each hit, of none at every seventh.
-Estimates random_estimates(std::size_t lights, bool glossy, std::mt19937& random) {
+LightTable random_estimates(std::size_t lights, bool glossy, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0.1f, 1.0f);
-  Estimates estimates;
   const bool sparse = lights > max_dense_lights;
-  if (sparse) estimates.first.push_back(0);
+  LightTable estimates(lights, sparse);
   for (std::size_t hit = 0; hit < hits; ++hit) {
     const std::size_t count = !sparse ? lights : hit % 7 == 0 ? 0 : random() % lights;
     for (std::size_t i = 0; i < count; ++i) {
@@ -254,7 +253,7 @@ Estimates random_estimates(std::size_t lights, bool glossy, std::mt19937& random
 
 using Values = std::map<std::size_t, glm::dvec3>;  ///< by light or layer
 
-Values of_hit(const Estimates& estimates, const std::vector<glm::vec3>& values, std::size_t hit,
+Values of_hit(const LightTable& estimates, const std::vector<glm::vec3>& values, std::size_t hit,
               std::size_t lights) {
   Values result;
   if (estimates.first.empty()) {
@@ -271,12 +270,12 @@ Values of_hit(const Estimates& estimates, const std::vector<glm::vec3>& values, 
 void check_pooled(std::size_t lights, std::size_t layers, bool glossy) {
   std::mt19937 random(5);
   const LayerMixdown mixdown = random_pooling(lights, layers, random);
-  const Estimates estimates = random_estimates(lights, glossy, random);
-  const Estimates result = pooled(mixdown, estimates, hits);
+  const LightTable estimates = random_estimates(lights, glossy, random);
+  const LightTable result = pooled(mixdown, estimates);
   REQUIRE(result.first.empty() == (layers <= max_dense_lights));
   REQUIRE(result.radiance.empty() != glossy);
   double worst = 0;
-  const auto compare = [&](std::vector<glm::vec3> Estimates::*values) {
+  const auto compare = [&](std::vector<glm::vec3> LightTable::*values) {
     for (std::size_t hit = 0; hit < hits; ++hit) {
       Values expected;
       for (const auto& [light, value] : of_hit(estimates, estimates.*values, hit, lights)) {
@@ -289,8 +288,8 @@ void check_pooled(std::size_t lights, std::size_t layers, bool glossy) {
       }
     }
   };
-  compare(&Estimates::irradiance);
-  if (glossy) compare(&Estimates::radiance);
+  compare(&LightTable::irradiance);
+  if (glossy) compare(&LightTable::radiance);
   CHECK(worst < 1e-3);  // of sums of hundreds
 }
 

@@ -51,10 +51,7 @@ struct Studio {
                   RenderResult result;
                   result.used = of_parts(part, parts);
                   made.push_back(result.used);
-                  StageStatistics maps;
-                  maps.stage = "light maps";
-                  maps.figures.emplace_back("standard error percent", 100 * error(result.used));
-                  result.statistics.push_back(maps);
+                  result.standard_error = error(result.used);
                   return result;
                 },
             .finished =
@@ -107,14 +104,14 @@ TEST_CASE("refinement: a picture that is good enough is the only one") {
   const RenderResult result = studio.refine_to({.error = 0.025}, good());
   CHECK(studio.made.size() == 1);
   CHECK(result.used.light_map_rays == 64);
-  CHECK(standard_error_of(result) == Approx(0.02));
+  CHECK(result.standard_error == Approx(0.02));
 }
 
 TEST_CASE("refinement: rounds add parts until the error is reached, and no more") {
   Studio studio;
   const double requested = GENERATE(0.015, 0.01, 0.008);
   const RenderResult result = studio.refine_to({.error = requested}, good());
-  CHECK(standard_error_of(result) <= requested);
+  CHECK(result.standard_error <= requested);
   CHECK(studio.made.size() == studio.finished_at.size());
   REQUIRE(studio.made.size() > 1);
   CHECK(studio.error(studio.made[studio.made.size() - 2]) > requested);
@@ -184,8 +181,8 @@ TEST_CASE("refinement: with an error and a time, neither is exceeded by much") {
   const double seconds = GENERATE(10.0, 1000.0);
   const RenderResult result = studio.refine_to({.error = 0.008, .seconds = seconds}, good());
   CHECK(studio.clock <= 1.001 * seconds);
-  CHECK(standard_error_of(result) > 0.008 / std::sqrt(2.0));
-  if (seconds == 1000) CHECK(standard_error_of(result) <= 0.008);
+  CHECK(result.standard_error > 0.008 / std::sqrt(2.0));
+  if (seconds == 1000) CHECK(result.standard_error <= 0.008);
 }
 
 TEST_CASE("refinement: a round that is not likely to fit in what is left is not begun") {

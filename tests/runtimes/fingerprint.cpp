@@ -140,7 +140,7 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
       devices, test.scene,
       {std::make_shared<const std::vector<PhotonMaps>>(std::move(all_maps)), {test.parameters()}},
       powers);
-  const Estimates estimates = light.at(hits, Progress::none());
+  const LightTable estimates = light.at(hits, Progress::none());
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);
   if (!estimates.light.empty()) {

@@ -148,7 +148,7 @@ inline ExpectedEstimates expected_radiance(const reference::DensityOracle& oracl
 
 /// Estimates as [hit][light], whichever form they have.
 inline std::vector<glm::vec3> by_light(const std::vector<glm::vec3>& values,
-                                       const Estimates& estimates, std::size_t lights) {
+                                       const LightTable& estimates, std::size_t lights) {
   if (estimates.first.empty() || values.empty()) return values;
   const std::size_t hits = estimates.first.size() - 1;
   std::vector<glm::vec3> dense(hits * lights, glm::vec3(0.0f));

@@ -33,7 +33,7 @@ class GatheringPhotons {
                                    photons_.caustics.of_points.get(), parameters);
   }
   /// By photons of all light.
-  estimate::LightAtPoints& light() const { return *photons_.all.of_points; }
+  light::LightAtPoints& light() const { return *photons_.all.of_points; }
   std::span<const double> layer_powers() const { return layer_powers_; }
 
  private:

@@ -52,7 +52,7 @@ struct MapsUnderTest {
       CHECK(count_differences(hits, estimator.nearest(hits), oracle, photons,
                               static_cast<float>(radius)) == 0);
       if (!irradiance) continue;
-      const Estimates estimates = estimator.estimate(hits);
+      const LightTable estimates = estimator.estimate(hits);
       const auto found = by_light(estimates.irradiance, estimates, scene.lights.size());
       CHECK(worst_difference(found, expected(found, k)) <= estimate_tolerance(k));
     }

@@ -24,7 +24,7 @@ inline PathMeans path_means(const Scene& scene, const std::vector<Sensor>& senso
   }
   std::vector<std::uint64_t> number(repeated.size());
   for (std::size_t i = 0; i < number.size(); ++i) number[i] = i;
-  const Estimates estimates =
+  const LightTable estimates =
       PathEstimator(rays, seed).estimate(trace::sensor_hits(rays, repeated), number);
   const std::size_t lights = needs_of(scene).light_count;
   PathMeans means{std::vector<double>(lights), std::vector<double>(lights)};

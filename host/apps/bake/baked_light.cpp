@@ -35,34 +35,26 @@ void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_fa
 
 /// Calls visit(value) for each estimate of a layer at a node.
 template <class Visit>
-void for_each_value(const Estimates& values, std::uint32_t node, std::size_t layer,
-                    std::size_t layers, const Visit& visit) {
-  if (values.first.empty()) return visit(node * layers + layer);
-  for (std::uint64_t i = values.first[node]; i < values.first[node + 1]; ++i) {
-    if (values.light[i] == layer) visit(i);
-  }
-}
-
-/// Layers of a node, where each node has them all.
-std::size_t dense_layers(const Estimates& values, std::size_t nodes) {
-  return values.first.empty() && nodes > 0 ? values.irradiance.size() / nodes : 0;
+void for_each_value(const LightTable& values, std::uint32_t node, std::size_t layer,
+                    const Visit& visit) {
+  if (!values.sparse()) return visit(values.row(node).first + layer);
+  values.for_each(node, [&](std::size_t light, std::size_t i) {
+    if (light == layer) visit(i);
+  });
 }
 
 /// What a node holds of any layer.
-std::span<const glm::vec3> light_of(const Estimates& values, std::uint32_t node,
-                                    std::size_t nodes) {
-  const std::size_t lights = values.irradiance.size() / nodes;
-  const std::size_t first = values.first.empty() ? node * lights : values.first[node];
-  const std::size_t last = values.first.empty() ? first + lights : values.first[node + 1];
-  return std::span(values.irradiance).subspan(first, last - first);
+std::span<const glm::vec3> light_of(const LightTable& values, std::uint32_t node) {
+  const LightTable::Entries entries = values.row(node);
+  return std::span(values.irradiance).subspan(entries.first, entries.last - entries.first);
 }
 
 /// Light of a layer between nodes, at power 1.
-glm::vec3 interpolated(const Estimates& values, const BilinearWeights& bilinear, std::size_t layer,
-                       std::size_t layers) {
+glm::vec3 interpolated(const LightTable& values, const BilinearWeights& bilinear,
+                       std::size_t layer) {
   glm::vec3 light(0.0f);
   for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-    for_each_value(values, bilinear.node[i], layer, layers, [&](std::size_t value) {
+    for_each_value(values, bilinear.node[i], layer, [&](std::size_t value) {
       light += bilinear.weight[i] * values.irradiance[value];
     });
   }
@@ -70,15 +62,15 @@ glm::vec3 interpolated(const Estimates& values, const BilinearWeights& bilinear,
 }
 
 /// The irradiance of a plane of this normal.
-glm::vec3 turned(const Estimates& values, const BilinearWeights& bilinear, std::size_t layer,
-                 std::size_t layers, const glm::vec3& normal) {
+glm::vec3 turned(const LightTable& values, const BilinearWeights& bilinear, std::size_t layer,
+                 const glm::vec3& normal) {
   glm::vec4 by_normal(0.0f);
   for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-    for_each_value(values, bilinear.node[i], layer, layers, [&](std::size_t value) {
+    for_each_value(values, bilinear.node[i], layer, [&](std::size_t value) {
       by_normal += bilinear.weight[i] * values.by_normal[value];
     });
   }
-  return cache::turned(interpolated(values, bilinear, layer, layers), by_normal, normal);
+  return cache::turned(interpolated(values, bilinear, layer), by_normal, normal);
 }
 
 /// Metres: no surface is as large.
@@ -143,7 +135,7 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
     maps_.find(samples.oriented_face[i], samples.position[i], bilinear);
     for (std::size_t layer = 0; layer < layers; ++layer) {
       light_at[i] += parameters.powers[layer] *
-                     luminance(glm::dvec3(interpolated(maps_.values(), bilinear, layer, layers)));
+                     luminance(glm::dvec3(interpolated(maps_.values(), bilinear, layer)));
     }
   });
   std::vector<double> light(chart_of.size(), 0.0);
@@ -300,12 +292,11 @@ std::uint64_t BakedLight::used_texels() const {
 /// lookup beside the thing reaches.
 void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& visibility) {
   const std::vector<BilinearWeights> found = bilinear_;
-  const Estimates& values = maps_.values();
-  const std::size_t nodes = maps_.statistics().nodes;
+  const LightTable& values = maps_.values();
   const auto lit = [&](const BilinearWeights& bilinear) {
     for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
       if (bilinear.weight[i] == 0.0f) continue;
-      const auto light = light_of(values, bilinear.node[i], nodes);
+      const auto light = light_of(values, bilinear.node[i]);
       if (std::any_of(light.begin(), light.end(),
                       [](const glm::vec3& value) { return value.x + value.y + value.z > 0; })) {
         return true;
@@ -376,20 +367,18 @@ std::array<glm::vec2, 3> BakedLight::corners(std::uint32_t oriented_face) const 
 
 std::vector<glm::vec3> BakedLight::layer(std::size_t layer) const {
   std::vector<glm::vec3> texels(bilinear_.size(), glm::vec3(0.0f));
-  const Estimates& values = maps_.values();
-  const std::size_t layers = dense_layers(values, maps_.statistics().nodes);
+  const LightTable& values = maps_.values();
   tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
     if (bilinear_[i].node[0] == none) return;
-    texels[i] = normal_.empty() ? interpolated(values, bilinear_[i], layer, layers)
-                                : turned(values, bilinear_[i], layer, layers, normal_[i]);
+    texels[i] = normal_.empty() ? interpolated(values, bilinear_[i], layer)
+                                : turned(values, bilinear_[i], layer, normal_[i]);
   });
   return texels;
 }
 
 std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides,
                                       std::size_t layers) const {
-  const Estimates& values = maps_.values();
-  const std::size_t dense = dense_layers(values, maps_.statistics().nodes);
+  const LightTable& values = maps_.values();
   std::vector<bool> reached(layers, false);
   const glm::vec2 size(atlas_.width, atlas_.height);
   for (const std::uint32_t side : sides_) {
@@ -402,7 +391,7 @@ std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides,
         const BilinearWeights& bilinear = bilinear_[std::size_t{y} * atlas_.width + x];
         if (bilinear.node[0] == none) continue;
         for (std::size_t layer = 0; layer < layers; ++layer) {
-          if (!reached[layer] && interpolated(values, bilinear, layer, dense) != glm::vec3(0.0f)) {
+          if (!reached[layer] && interpolated(values, bilinear, layer) != glm::vec3(0.0f)) {
             reached[layer] = true;
           }
         }
@@ -412,18 +401,18 @@ std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides,
   return reached;
 }
 
-std::vector<float> BakedLight::errors(std::size_t layer, const Estimates& of_nodes) const {
+std::vector<float> BakedLight::errors(std::size_t layer, const LightTable& of_nodes) const {
   std::vector<float> texels(bilinear_.size(), 0.0f);
-  const std::size_t layers = dense_layers(of_nodes, maps_.statistics().nodes);
   tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
     if (bilinear_[i].node[0] == none) return;
-    const glm::vec3 error = interpolated(of_nodes, bilinear_[i], layer, layers);
+    const glm::vec3 error = interpolated(of_nodes, bilinear_[i], layer);
     texels[i] = static_cast<float>(luminance(glm::dvec3(error)));
   });
   return texels;
 }
 
-double BakedLight::standard_error(std::span<const double> powers, const Estimates& of_nodes) const {
+double BakedLight::standard_error(std::span<const double> powers,
+                                  const LightTable& of_nodes) const {
   double squares = 0, light = 0, lit = 0;
   std::vector<double> sum(bilinear_.size(), 0.0);
   for (std::size_t i = 0; i < powers.size(); ++i) {

@@ -94,11 +94,11 @@ class BakedLight {
   std::vector<glm::vec3> layer(std::size_t layer) const;
   /// Standard error of the luminance of `layer`, in the same form, from that of nodes.
   ///   of_nodes   as GatheredNodes::errors
-  std::vector<float> errors(std::size_t layer, const Estimates& of_nodes) const;
+  std::vector<float> errors(std::size_t layer, const LightTable& of_nodes) const;
   /// Root mean square of the standard errors of all light together, relative to the mean light:
   /// texels without light have none.
   ///   powers   per layer
-  double standard_error(std::span<const double> powers, const Estimates& of_nodes) const;
+  double standard_error(std::span<const double> powers, const LightTable& of_nodes) const;
   /// Per layer whether its light is on any texel of these sides.
   ///   sides   per oriented face 1, else 0
   std::vector<bool> reaches(std::span<const std::uint8_t> sides, std::size_t layers) const;

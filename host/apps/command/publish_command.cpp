@@ -32,7 +32,6 @@
 #include "publish/published_room.hpp"
 #include "render/quality.hpp"
 #include "render/refinement.hpp"
-#include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "view/moods.hpp"
 #include "view/moving_sky.hpp"
@@ -126,7 +125,7 @@ class LitRoom {
   }
 
   /// As GatheredNodes::errors; none where photons value nodes.
-  std::optional<Estimates> errors() {
+  std::optional<LightTable> errors() {
     const cache::GatheredNodes* nodes = session_.light().gathered();
     return nodes ? std::optional(nodes->errors()) : std::nullopt;
   }
@@ -181,7 +180,7 @@ void run_publish(PublishOptions& options) {
   const auto write = [&](LitRoom& lit) {
     reaches = lit.baked().reaches(seen, mix.lights.size());
     progress.begin("write files", 0, "");
-    const std::optional<Estimates> errors = lit.errors();
+    const std::optional<LightTable> errors = lit.errors();
     const bool has_page = std::any_of(options.outputs.begin(), options.outputs.end(), is_page);
     const ToneMapping display =
         has_page ? lit.shown(render.pictures, mix, progress) : ToneMapping();
@@ -232,14 +231,13 @@ void run_publish(PublishOptions& options) {
     } else {
       lit.emplace(prepared_scene, devices, part, options.baking, deadline);
     }
-    const double error = lit->baked().standard_error(options.baking.powers, *lit->errors());
     RenderResult result;
-    result.statistics = {stage("light maps", {}, {{"standard error percent", 100 * error}})};
+    result.standard_error = lit->baked().standard_error(options.baking.powers, *lit->errors());
     return result;
   };
   const auto finished = [&](int parts, const RenderResult& result) {
     write(*lit);
-    progress.note(fmt::format("standard error {:.2g}%, {}; {}", 100 * standard_error_of(result),
+    progress.note(fmt::format("standard error {:.2g}%, {}; {}", 100 * result.standard_error,
                               format_seconds(elapsed()),
                               options_text(of_parts(part, parts), without)));
   };

@@ -70,13 +70,13 @@ RenderResult render_refined(const RefinementGoal& goal, const RenderParameters& 
   const auto finished = [&](int parts, const RenderResult& picture) {
     steps.finished(parts, picture);
     progress.note(fmt::format("picture {}: standard error {}, {}; {}", ++pictures,
-                              percent(standard_error_of(picture)), format_seconds(steps.elapsed()),
+                              percent(picture.standard_error), format_seconds(steps.elapsed()),
                               options_text(of_parts(part, parts))));
   };
   RenderResult best = refine(goal, part, {steps.make, finished, steps.elapsed}, progress);
-  if (standard_error_of(best) > goal.error && goal.error > 0) {
+  if (best.standard_error > goal.error && goal.error > 0) {
     progress.warn(fmt::format("a standard error of {} was not reached, but {}", percent(goal.error),
-                              percent(standard_error_of(best))));
+                              percent(best.standard_error)));
   }
   return best;
 }

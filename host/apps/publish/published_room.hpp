@@ -41,9 +41,9 @@ const Camera& opening_camera(const Scene& scene);
 struct PublishedRoom {
   const Scene& scene;
   const bake::BakedLight& baked;
-  const LightMix& mix;           ///< as the page opens
-  const Estimates* node_errors;  ///< as GatheredNodes::errors; null where photons value nodes ...
-  double relative_error = 0;     ///< ... which all err by this part
+  const LightMix& mix;            ///< as the page opens
+  const LightTable* node_errors;  ///< as GatheredNodes::errors; null where photons value nodes ...
+  double relative_error = 0;      ///< ... which all err by this part
   std::vector<Preset> presets;
   SkyHours hours;
   ToneMapping display;  ///< of the picture by `photile render` from the first camera, as stops

@@ -227,9 +227,9 @@ CloudNeighbours PhotonCloud::nearest(std::span<const glm::vec3> points,
   return result;
 }
 
-Estimates PhotonCloud::irradiance(std::span<const glm::vec3> points,
-                                  std::span<const glm::vec3> normals,
-                                  const CloudEstimateParameters& parameters) {
+LightTable PhotonCloud::irradiance(std::span<const glm::vec3> points,
+                                   std::span<const glm::vec3> normals,
+                                   const CloudEstimateParameters& parameters) {
   Estimator estimator(impl_->photon_maps, Scene(),
                       {.neighbours = parameters.neighbours,
                        .radius = parameters.radius,

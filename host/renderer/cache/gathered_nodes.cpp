@@ -58,10 +58,10 @@ struct Contrast {
            std::span<const double> layer_powers) {
     thread_local std::vector<double> less;
     less.assign(layer_powers.size(), 0.0);
-    points.for_each_layer(a, [&](std::size_t layer, const GatheredIrradiance::Total& light) {
+    points.for_each_layer(a, [&](std::size_t layer, const LightTable::Total& light) {
       less[layer] = light.luminance;
     });
-    points.for_each_layer(b, [&](std::size_t layer, const GatheredIrradiance::Total& light) {
+    points.for_each_layer(b, [&](std::size_t layer, const LightTable::Total& light) {
       less[layer] -= light.luminance;
     });
     for (std::size_t layer = 0; layer < less.size(); ++layer) {
@@ -82,24 +82,23 @@ double times_where_few(const Scene& scene, double spacing) {
                     defaults::most_times_where_few);
 }
 
-void append(const GatheredParts& from, std::size_t point, std::size_t lights, GatheredParts& to) {
-  to.indirect.append(from.indirect, point, lights);
-  to.direct.append(from.direct, point, lights);
+void append(const GatheredParts& from, std::size_t point, GatheredParts& to) {
+  to.indirect.append_row(from.indirect, point);
+  to.direct.append_row(from.direct, point);
   to.distance.push_back(from.distance[point]);
 }
 
 /// The light that all rays and light samples found at the same points.
-GatheredParts mean_of(const GatheredParts& a, NodeRays of_a, const GatheredParts& b, NodeRays of_b,
-                      std::size_t lights) {
+GatheredParts mean_of(const GatheredParts& a, NodeRays of_a, const GatheredParts& b,
+                      NodeRays of_b) {
   const auto share = [](int one, int other) {
     return static_cast<float>(one) / static_cast<float>(std::max(1, one + other));
   };
   const float rays_a = share(of_a.rays, of_b.rays), rays_b = share(of_b.rays, of_a.rays);
-  GatheredParts mean{
-      sum_of(a.indirect, b.indirect, lights, rays_a, rays_b),
-      sum_of(a.direct, b.direct, lights, share(of_a.light_samples, of_b.light_samples),
-             share(of_b.light_samples, of_a.light_samples)),
-      {}};
+  GatheredParts mean{sum_of(a.indirect, b.indirect, rays_a, rays_b),
+                     sum_of(a.direct, b.direct, share(of_a.light_samples, of_b.light_samples),
+                            share(of_b.light_samples, of_a.light_samples)),
+                     {}};
   for (std::size_t i = 0; i < a.distance.size(); ++i) {
     mean.distance.push_back(1 / (rays_a / a.distance[i] + rays_b / b.distance[i]));
   }
@@ -150,7 +149,6 @@ void GatheredNodes::forget() {
 }
 
 NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {
-  const std::size_t lights = layer_powers_.size();
   std::vector<std::uint32_t> coarse, fine;
   for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
     (batch.coarse[i] ? coarse : fine).push_back(i);
@@ -162,43 +160,42 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   const PointLinks links = visible_links(batch, rows);
   const GatheredParts smooth = smoothed(links, rows, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  const GatheredIrradiance indirect =
-      with_neighbours(raw_.light.indirect, links, rows, fine, of_indirect);
-  const GatheredIrradiance direct =
-      with_neighbours(raw_.light.direct, links, rows, fine, of_direct);
+  const LightTable indirect = with_neighbours(raw_.light.indirect, links, rows, fine, of_indirect);
+  const LightTable direct = with_neighbours(raw_.light.direct, links, rows, fine, of_direct);
 
   GatheredParts own;
   std::size_t next_coarse = 0, next_fine = 0;
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
     if (batch.coarse[node]) {
-      append(smooth, next_coarse++, lights, own);
+      append(smooth, next_coarse++, own);
     } else {
-      own.indirect.append(indirect, next_fine, lights);
-      own.direct.append(direct, next_fine++, lights);
+      own.indirect.append_row(indirect, next_fine);
+      own.direct.append_row(direct, next_fine++);
       own.distance.push_back(raw_.light.distance[rows[node]]);
     }
   }
-  GatheredIrradiance all = sum_of(own.indirect, own.direct, lights);
+  LightTable all = sum_of(own.indirect, own.direct);
   NodeValues values;
   for (std::size_t node = 0; node < batch.nodes; ++node) {
     values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
     values.distance.push_back(own.distance[node]);
   }
-  values.irradiance = std::move(all.mean);
+  all.drop_batches();
+  values.light = std::move(all);
   nodes_.indirect.append(std::move(own.indirect));
   nodes_.direct.append(std::move(own.direct));
   return values;
 }
 
-Estimates GatheredNodes::errors() const {
-  const GatheredIrradiance all = sum_of(nodes_.indirect, nodes_.direct, layer_powers_.size());
-  Estimates errors = all.mean;
+LightTable GatheredNodes::errors() const {
+  LightTable errors = sum_of(nodes_.indirect, nodes_.direct);
   for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
-    const double light = luminance(glm::dvec3(all.mean.irradiance[i]));
-    const float relative = light > 0 ? static_cast<float>(all.error(i) / light) : 0.0f;
+    const double light = luminance(glm::dvec3(errors.irradiance[i]));
+    const float relative = light > 0 ? static_cast<float>(errors.error(i) / light) : 0.0f;
     errors.irradiance[i] *= relative;
     if (!errors.by_normal.empty()) errors.by_normal[i] *= relative;
   }
+  errors.drop_batches();
   return errors;
 }
 
@@ -212,7 +209,6 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
     const auto known = former_.row_of.find(number);
     with[known == former_.row_of.end() ? NodeRays{} : former_.rays[known->second]].push_back(point);
   }
-  const std::size_t lights = layer_powers_.size();
   for (const auto& [before, chosen] : with) {
     const NodeRays more{std::max(0, rays.rays - before.rays),
                         std::max(0, rays.light_samples - before.light_samples)};
@@ -224,9 +220,9 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
     }
     if (before != NodeRays{}) {
       for (const std::uint64_t number : numbers) {
-        append(former_.light, former_.row_of.at(number), lights, known);
+        append(former_.light, former_.row_of.at(number), known);
       }
-      light = more == NodeRays{} ? std::move(known) : mean_of(known, before, light, more, lights);
+      light = more == NodeRays{} ? std::move(known) : mean_of(known, before, light, more);
     }
     raw_.append(numbers, {before.rays + more.rays, before.light_samples + more.light_samples},
                 std::move(light));
@@ -274,10 +270,9 @@ PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
 /// Coarse points averaged with those around them.
 GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const std::size_t> rows,
                                       std::span<const std::uint32_t> coarse) const {
-  const std::size_t lights = layer_powers_.size();
   GatheredParts parts;
   for (const std::uint32_t point : coarse) {
-    append(raw_.light, rows[point], lights, parts);
+    append(raw_.light, rows[point], parts);
   }
   if (coarse.empty()) return parts;
   const PointLinks between = links_between(links, coarse);
@@ -289,11 +284,10 @@ GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const s
 }
 
 /// Finer nodes averaged with the points next to them, as gathered.
-GatheredIrradiance GatheredNodes::with_neighbours(const GatheredIrradiance& raw,
-                                                  const PointLinks& links,
-                                                  std::span<const std::size_t> rows,
-                                                  std::span<const std::uint32_t> fine,
-                                                  const NoiseTolerance& tolerated) const {
+LightTable GatheredNodes::with_neighbours(const LightTable& raw, const PointLinks& links,
+                                          std::span<const std::size_t> rows,
+                                          std::span<const std::uint32_t> fine,
+                                          const NoiseTolerance& tolerated) const {
   if (fine.empty()) return means_of(raw, 0, layer_powers_, [](std::size_t, auto&) {});
   const KnownPoints points(raw, {rows.begin(), rows.end()}, layer_powers_);
   return means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {

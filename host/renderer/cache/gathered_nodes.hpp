@@ -58,7 +58,7 @@ class GatheredNodes : public NodeSource {
 
   /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
   /// each light at power 1, in the colour of its light.
-  Estimates errors() const;
+  LightTable errors() const;
 
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points, NodeRays rays,
@@ -66,10 +66,9 @@ class GatheredNodes : public NodeSource {
   PointLinks visible_links(const NodeBatch& batch, std::span<const std::size_t> rows) const;
   GatheredParts smoothed(const PointLinks& links, std::span<const std::size_t> rows,
                          std::span<const std::uint32_t> coarse) const;
-  GatheredIrradiance with_neighbours(const GatheredIrradiance& raw, const PointLinks& links,
-                                     std::span<const std::size_t> rows,
-                                     std::span<const std::uint32_t> fine,
-                                     const NoiseTolerance& tolerated) const;
+  LightTable with_neighbours(const LightTable& raw, const PointLinks& links,
+                             std::span<const std::size_t> rows, std::span<const std::uint32_t> fine,
+                             const NoiseTolerance& tolerated) const;
 
   IrradianceGather& gather_;
   std::span<const double> layer_powers_;

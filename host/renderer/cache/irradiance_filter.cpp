@@ -10,14 +10,14 @@
 #include <numeric>
 #include <utility>
 
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::cache {
 
 namespace {
 
-using Total = GatheredIrradiance::Total;
+using Total = LightTable::Total;
 
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t known_points_per_task = 256;
@@ -120,14 +120,13 @@ double PlaneThroughPoints::share_of_slope(std::size_t own, std::span<const std::
 
 }  // namespace
 
-KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::size_t> rows,
+KnownPoints::KnownPoints(const LightTable& irradiance, std::vector<std::size_t> rows,
                          std::span<const double> layer_powers)
-    : irradiance_(irradiance), lights_(layer_powers.size()), rows_(std::move(rows)) {
+    : irradiance_(irradiance), rows_(std::move(rows)) {
   std::size_t estimates = 0;
   for (const std::size_t row : rows_) {
     first_.push_back(estimates);
-    estimate::for_each_estimate(irradiance.mean, row, lights_,
-                                [&](std::size_t, std::size_t) { ++estimates; });
+    irradiance.for_each(row, [&](std::size_t, std::size_t) { ++estimates; });
   }
   all_.resize(rows_.size());
   layers_.resize(estimates);
@@ -137,18 +136,16 @@ KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::
                       for (std::size_t point = range.begin(); point < range.end(); ++point) {
                         all_[point] = irradiance.total(rows_[point], layer_powers);
                         std::size_t next = first_[point];
-                        estimate::for_each_estimate(
-                            irradiance.mean, rows_[point], lights_,
-                            [&](std::size_t, std::size_t i) {
-                              const glm::dvec3 mean(irradiance.mean.irradiance[i]);
-                              layers_[next++] = {luminance(mean), irradiance.scatter(i)};
-                            });
+                        irradiance.for_each(rows_[point], [&](std::size_t, std::size_t i) {
+                          const glm::dvec3 mean(irradiance.irradiance[i]);
+                          layers_[next++] = {luminance(mean), irradiance.scatter(i)};
+                        });
                       }
                     });
 }
 
-KnownPoints::KnownPoints(const GatheredIrradiance& irradiance, std::span<const double> layer_powers)
-    : KnownPoints(irradiance, all_rows(irradiance.points(layer_powers.size())), layer_powers) {}
+KnownPoints::KnownPoints(const LightTable& irradiance, std::span<const double> layer_powers)
+    : KnownPoints(irradiance, all_rows(irradiance.rows()), layer_powers) {}
 
 void KnownLight::read(const KnownPoints& points, std::size_t point) {
   for (const std::uint16_t layer : lit_) layers_[layer] = {};
@@ -187,9 +184,9 @@ void Similarity::compare(const KnownLight& a, const KnownLight& b,
   of_others_ = errors * std::exp(-squared);
 }
 
-GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
-                                     std::span<const double> layer_powers,
-                                     const IrradianceFilterParameters& parameters) {
+LightTable filter_irradiance(LightTable irradiance, const PointLinks& links,
+                             std::span<const double> layer_powers,
+                             const IrradianceFilterParameters& parameters) {
   for (int round = 0; round < parameters.rounds; ++round) {
     const KnownPoints points(irradiance, layer_powers);
     tbb::enumerable_thread_specific<PlaneThroughPoints> planes(points, std::span(links.position),

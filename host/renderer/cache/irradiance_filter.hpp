@@ -14,8 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "cache/gathered_irradiance.hpp"
-#include "estimate/light_at_points.hpp"
+#include "light/row_sum.hpp"
 #include "photile/defaults.hpp"
 #include "trace/ray_query.hpp"
 
@@ -39,28 +38,26 @@ class KnownPoints {
  public:
   /// Keeps a reference.
   ///   rows   the points of `irradiance`, which are counted in this order
-  KnownPoints(const GatheredIrradiance& irradiance, std::vector<std::size_t> rows,
+  KnownPoints(const LightTable& irradiance, std::vector<std::size_t> rows,
               std::span<const double> layer_powers);
   /// All points of `irradiance`.
-  KnownPoints(const GatheredIrradiance& irradiance, std::span<const double> layer_powers);
+  KnownPoints(const LightTable& irradiance, std::span<const double> layer_powers);
 
-  const GatheredIrradiance& irradiance() const { return irradiance_; }
+  const LightTable& irradiance() const { return irradiance_; }
   std::size_t row(std::size_t point) const { return rows_[point]; }
-  const GatheredIrradiance::Total& all(std::size_t point) const { return all_[point]; }
+  const LightTable::Total& all(std::size_t point) const { return all_[point]; }
   /// Calls visit(layer, its light at power 1) for the layers that a point has.
   template <class Visit>
   void for_each_layer(std::size_t point, const Visit& visit) const {
     std::size_t next = first_[point];
-    estimate::for_each_estimate(
-        irradiance_.mean, rows_[point], lights_,
-        [&](std::size_t layer, std::size_t) { visit(layer, layers_[next++]); });
+    irradiance_.for_each(rows_[point],
+                         [&](std::size_t layer, std::size_t) { visit(layer, layers_[next++]); });
   }
 
  private:
-  const GatheredIrradiance& irradiance_;
-  std::size_t lights_;
+  const LightTable& irradiance_;
   std::vector<std::size_t> rows_, first_;
-  std::vector<GatheredIrradiance::Total> all_, layers_;
+  std::vector<LightTable::Total> all_, layers_;
 };
 
 /// One point of those.
@@ -71,10 +68,10 @@ class KnownLight {
   /// Keeps a reference until the next call.
   void read(const KnownPoints& points, std::size_t point);
 
-  const GatheredIrradiance::Total& all() const { return points_->all(point_); }
-  const GatheredIrradiance::Total& of_layer(std::size_t layer) const { return layers_[layer]; }
+  const LightTable::Total& all() const { return points_->all(point_); }
+  const LightTable::Total& of_layer(std::size_t layer) const { return layers_[layer]; }
   /// The light of all layers together at these powers.
-  GatheredIrradiance::Total at_powers(std::span<const double> layer_powers) const {
+  LightTable::Total at_powers(std::span<const double> layer_powers) const {
     return points_->irradiance().total(points_->row(point_), layer_powers);
   }
   std::span<const std::uint16_t> lit() const { return lit_; }  ///< layers that the point has
@@ -82,7 +79,7 @@ class KnownLight {
  private:
   const KnownPoints* points_ = nullptr;
   std::size_t point_ = 0;
-  std::vector<GatheredIrradiance::Total> layers_;  ///< at power 1
+  std::vector<LightTable::Total> layers_;  ///< at power 1
   std::vector<std::uint16_t> lit_;
 };
 
@@ -112,62 +109,65 @@ class Similarity {
 /// Weighted means of points, written one after another.
 class WeightedPoints {
  public:
-  /// `to` is empty.
+  /// The reference is kept.
   ///   like   batches, and form, of all points
-  WeightedPoints(std::size_t lights, const GatheredIrradiance& like, GatheredIrradiance& to)
+  ///   to     without rows
+  WeightedPoints(const LightTable& like, LightTable& to)
       : to_(to),
-        sparse_(!like.mean.first.empty()),
         shared_(!like.shared_variance.empty()),
         batches_(static_cast<std::size_t>(like.batches)),
-        sums_(lights),
-        batch_(lights * batches_, 0.0) {
+        sums_(like.lights),
+        batch_(like.lights * batches_, 0.0) {
+    to_ = LightTable(like.lights, like.sparse());
     to_.batches = like.batches;
-    if (sparse_) to_.mean.first.push_back(0);
   }
 
   /// Adds a point to the mean.
   ///   weight_of   of a layer, by its number
   ///   of_none     weight that it would give to a layer that no point so far has
   template <class Weight>
-  void add(const GatheredIrradiance& from, std::size_t point, double of_none,
-           const Weight& weight_of) {
-    estimate::for_each_estimate(from.mean, point, sums_.size(),
-                                [&](std::size_t layer, std::size_t) { light(layer); });
-    smooth_ = smooth_ || !from.mean.by_normal.empty();
-    for (const std::uint16_t layer : lit_) {
-      sums_[layer].weight = weight_of(layer);
-      sums_[layer].weights += sums_[layer].weight;
+  void add(const LightTable& from, std::size_t point, double of_none, const Weight& weight_of) {
+    from.for_each(point, [&](std::size_t layer, std::size_t) {
+      const bool known = sums_.has(layer);
+      Sums& sums = sums_.of(layer);
+      if (!known) sums.weights = of_none_;
+    });
+    smooth_ = smooth_ || !from.by_normal.empty();
+    for (const std::uint16_t layer : sums_.lit()) {
+      Sums& sums = sums_.of(layer);
+      sums.weight = weight_of(layer);
+      sums.weights += sums.weight;
     }
-    estimate::for_each_estimate(
-        from.mean, point, sums_.size(), [&](std::size_t layer, std::size_t i) {
-          Sums& sums = sums_[layer];
-          sums.irradiance += sums.weight * glm::dvec3(from.mean.irradiance[i]);
-          if (smooth_) sums.by_normal += sums.weight * glm::dvec4(from.mean.by_normal[i]);
-          for (std::size_t b = 0; b < batches_; ++b) {
-            batch_[layer * batches_ + b] += sums.weight * double{from.batch[i * batches_ + b]};
-          }
-          // Photons of caustics may be the same at all points: errors add up.
-          if (shared_) sums.error += sums.weight * std::sqrt(double{from.shared_variance[i]});
-        });
+    from.for_each(point, [&](std::size_t layer, std::size_t i) {
+      Sums& sums = sums_.of(layer);
+      sums.irradiance += sums.weight * glm::dvec3(from.irradiance[i]);
+      if (smooth_) sums.by_normal += sums.weight * glm::dvec4(from.by_normal[i]);
+      for (std::size_t b = 0; b < batches_; ++b) {
+        batch_[layer * batches_ + b] += sums.weight * double{from.batch[i * batches_ + b]};
+      }
+      // Photons of caustics may be the same at all points: errors add up.
+      if (shared_) sums.error += sums.weight * std::sqrt(double{from.shared_variance[i]});
+    });
     of_none_ += of_none;
   }
 
   void end_point() {
-    std::sort(lit_.begin(), lit_.end());
-    for (const std::uint16_t layer : lit_) write(layer);
-    if (sparse_) to_.mean.first.push_back(to_.mean.irradiance.size());
-    lit_.clear();
+    sums_.end_row(to_, [&](std::size_t layer, const Sums& sums) {
+      to_.irradiance.emplace_back(sums.irradiance / sums.weights);
+      if (smooth_) to_.by_normal.emplace_back(sums.by_normal / sums.weights);
+      for (std::size_t b = 0; b < batches_; ++b) {
+        double& sum = batch_[layer * batches_ + b];
+        to_.batch.push_back(static_cast<float>(sum / sums.weights));
+        sum = 0;
+      }
+      if (!shared_) return;
+      const double error = sums.error / sums.weights;
+      to_.shared_variance.push_back(static_cast<float>(error * error));
+    });
     of_none_ = 0;
   }
 
  private:
-  void light(std::size_t layer) {
-    if (sums_[layer].is_lit) return;
-    sums_[layer].is_lit = true;
-    sums_[layer].weights = of_none_;
-    lit_.push_back(static_cast<std::uint16_t>(layer));
-  }
-
   /// The sums of one layer, weighted.
   struct Sums {
     glm::dvec3 irradiance{0.0};
@@ -175,42 +175,22 @@ class WeightedPoints {
     double error = 0;  ///< that all batches share
     double weights = 0;
     double weight = 0;  ///< of the point that is being added
-    bool is_lit = false;
   };
 
-  void write(std::uint16_t layer) {
-    Sums& sums = sums_[layer];
-    to_.mean.irradiance.emplace_back(sums.irradiance / sums.weights);
-    if (smooth_) to_.mean.by_normal.emplace_back(sums.by_normal / sums.weights);
-    if (sparse_) to_.mean.light.push_back(layer);
-    for (std::size_t b = 0; b < batches_; ++b) {
-      double& sum = batch_[layer * batches_ + b];
-      to_.batch.push_back(static_cast<float>(sum / sums.weights));
-      sum = 0;
-    }
-    if (shared_) {
-      const double error = sums.error / sums.weights;
-      to_.shared_variance.push_back(static_cast<float>(error * error));
-    }
-    sums = {};
-  }
-
-  GatheredIrradiance& to_;
-  bool sparse_, shared_;
+  LightTable& to_;
+  bool shared_;
   bool smooth_ = false;  ///< once a point tells light by the normal, as all do that have light
   std::size_t batches_;
-  std::vector<Sums> sums_;     ///< per layer
+  light::RowSum<Sums> sums_;
   std::vector<double> batch_;  ///< [layer][batch], weighted
-  std::vector<std::uint16_t> lit_;
   double of_none_ = 0;
 };
 
 /// A point and those around it, of which it becomes the mean.
 class MeanOfPoints {
  public:
-  MeanOfPoints(std::span<const double> layer_powers, const GatheredIrradiance& like,
-               GatheredIrradiance& to)
-      : sums_(layer_powers.size(), like, to),
+  MeanOfPoints(std::span<const double> layer_powers, const LightTable& like, LightTable& to)
+      : sums_(like, to),
         own_(layer_powers.size()),
         other_(layer_powers.size()),
         similarity_(layer_powers) {}
@@ -238,11 +218,11 @@ class MeanOfPoints {
 
 /// Means that add(i, mean) makes of each of so many points; `like` has their batches and form.
 template <class Add>
-GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
-                            std::span<const double> layer_powers, const Add& add) {
+LightTable means_of(const LightTable& like, std::size_t count, std::span<const double> layer_powers,
+                    const Add& add) {
   // Large enough to make a task's cost vanish, small enough to share work.
   constexpr std::size_t per_task = 256;
-  std::vector<GatheredIrradiance> parts((count + per_task - 1) / per_task);
+  std::vector<LightTable> parts((count + per_task - 1) / per_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     // A point with 1e-40 of light is compared otherwise than one with none, and a library that the
     // program loads may have changed what threads make of such numbers.
@@ -254,10 +234,9 @@ GatheredIrradiance means_of(const GatheredIrradiance& like, std::size_t count,
       mean.end_point();
     }
   });
-  GatheredIrradiance all;
+  LightTable all(like.lights, like.sparse());
   all.batches = like.batches;
-  if (!like.mean.first.empty()) all.mean.first.push_back(0);
-  for (GatheredIrradiance& part : parts) all.append(std::move(part));
+  for (LightTable& part : parts) all.append(std::move(part));
   return all;
 }
 
@@ -289,8 +268,8 @@ struct IrradianceFilterParameters {
 /// batches of a layer have the same weights, so that errors are known afterwards, too. Points of no
 /// error stay what they are, but for equal ones. Does not depend on threads, nor on whether they
 /// flush denormal numbers.
-GatheredIrradiance filter_irradiance(GatheredIrradiance irradiance, const PointLinks& links,
-                                     std::span<const double> layer_powers,
-                                     const IrradianceFilterParameters& parameters = {});
+LightTable filter_irradiance(LightTable irradiance, const PointLinks& links,
+                             std::span<const double> layer_powers,
+                             const IrradianceFilterParameters& parameters = {});
 
 }  // namespace photile::cache

@@ -9,11 +9,10 @@
 #include <string>
 #include <utility>
 
-#include "cache/gathered_irradiance.hpp"
 #include "common/byte_stream.hpp"
-#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/neighbour_choice.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
@@ -52,7 +51,7 @@ struct RunLight {
   std::span<const std::uint64_t> number;
   const IndirectLight* traced;  ///< null where no rays are
   const SecondaryLight& secondary;
-  const Estimates& caustics;  ///< of all points; empty where there are none
+  const LightTable& caustics;  ///< of all points; empty where there are none
   double caustic_relative_variance;
   std::span<const double> layer_powers;
 
@@ -75,11 +74,10 @@ struct RunLight {
       add_visible_lights(i, sums);
     }
     if (caustics.irradiance.empty()) return;
-    estimate::for_each_estimate(
-        caustics, point, rays.needs().light_count, [&](std::size_t layer, std::size_t estimate) {
-          sums.add_to_all(static_cast<std::uint32_t>(layer), caustics.irradiance[estimate],
-                          caustic_relative_variance);
-        });
+    caustics.for_each(point, [&](std::size_t layer, std::size_t estimate) {
+      sums.add_to_all(static_cast<std::uint32_t>(layer), caustics.irradiance[estimate],
+                      caustic_relative_variance);
+    });
   }
   /// Harmonic mean, metres.
   float distance(std::size_t i) const {
@@ -253,11 +251,11 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
   }
 }
 
-void put(const GatheredIrradiance& part, ByteWriter& bytes) {
-  bytes.put(part.mean.irradiance);
-  bytes.put(part.mean.by_normal);
-  bytes.put(part.mean.first);
-  bytes.put(part.mean.light);
+void put(const LightTable& part, ByteWriter& bytes) {
+  bytes.put(part.irradiance);
+  bytes.put(part.by_normal);
+  bytes.put(part.first);
+  bytes.put(part.light);
   bytes.put(part.batch);
   bytes.put(part.shared_variance);
 }
@@ -270,13 +268,13 @@ std::vector<std::byte> bytes_of(const GatheredParts& parts) {
   return bytes.take();
 }
 
-void append(ByteReader& reader, GatheredIrradiance& all) {
-  GatheredIrradiance part;
+void append(ByteReader& reader, LightTable& all) {
+  LightTable part(all.lights, false);
   part.batches = all.batches;
-  reader.append_to(part.mean.irradiance);
-  reader.append_to(part.mean.by_normal);
-  reader.append_to(part.mean.first);
-  reader.append_to(part.mean.light);
+  reader.append_to(part.irradiance);
+  reader.append_to(part.by_normal);
+  reader.append_to(part.first);
+  reader.append_to(part.light);
   reader.append_to(part.batch);
   reader.append_to(part.shared_variance);
   all.append(std::move(part));
@@ -298,10 +296,10 @@ void check_range(const char* what, int value, int low, int high) {
 
 }  // namespace
 
-IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
-                                   estimate::LightAtPoints& of_nodes,
+IrradianceGather::IrradianceGather(const RayScene& rays, light::LightAtPoints& photons,
+                                   light::LightAtPoints& of_nodes,
                                    const LightMapParameters& secondary,
-                                   estimate::LightAtPoints* caustics,
+                                   light::LightAtPoints* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
       caustics_(caustics),
@@ -314,7 +312,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, estimate::LightAtPoints
       secondary_(rays, photons, of_nodes, secondary) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("light samples from a point", parameters.light_samples, 0, limits::max_direct_rays);
-  check_range("batches of rays", parameters.batches, 2, GatheredIrradiance::max_batches);
+  check_range("batches of rays", parameters.batches, 2, LightTable::max_batches);
 }
 
 GatheredParts IrradianceGather::gather(const PrimaryHits& points,
@@ -333,8 +331,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
   const GatheredParts part =
       gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
                  light_samples, before, most, progress);
-  GatheredParts all;
-  all.indirect.batches = all.direct.batches = parameters_.batches;
+  GatheredParts all = none_yet();
   for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);
   return all;
 }
@@ -345,7 +342,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            const Progress& progress) {
   const SecondaryLight::Costs costs_before = secondary_.costs();
   const Stopwatch caustics_watch;
-  const Estimates caustics = caustics_ ? caustics_->at(points, progress) : Estimates{};
+  const LightTable caustics = caustics_ ? caustics_->at(points, progress) : LightTable{};
   costs_.estimate_seconds += caustics_watch.seconds();
   costs_.estimated += caustics_ ? points.size() : 0;
 
@@ -375,12 +372,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
       std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
-  GatheredParts all;
-  all.indirect.batches = all.direct.batches = parameters_.batches;
-  if (rays_.needs().many_lights()) {
-    all.indirect.mean.first.push_back(0);
-    all.direct.mean.first.push_back(0);
-  }
+  GatheredParts all = none_yet();
   for (std::size_t round = 0; round < most; round += at_a_time) {
     progress.throw_if_cancelled();
     const std::size_t first = std::min(round, points.size());
@@ -423,12 +415,18 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
   return all;
 }
 
-GatheredIrradiance IrradianceGather::gather(const PrimaryHits& points,
-                                            std::span<const std::uint64_t> number,
-                                            const Progress& progress) {
+GatheredParts IrradianceGather::none_yet() const {
+  LightTable none(rays_.needs());
+  none.batches = parameters_.batches;
+  return {none, none, {}};
+}
+
+LightTable IrradianceGather::gather(const PrimaryHits& points,
+                                    std::span<const std::uint64_t> number,
+                                    const Progress& progress) {
   const GatheredParts parts =
       gather(points, number, parameters_.rays, parameters_.light_samples, progress);
-  return sum_of(parts.indirect, parts.direct, rays_.needs().light_count);
+  return sum_of(parts.indirect, parts.direct);
 }
 
 }  // namespace photile::cache

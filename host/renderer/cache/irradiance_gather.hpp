@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/gathered_irradiance.hpp"
 #include "cache/secondary_light.hpp"
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
@@ -48,8 +47,8 @@ struct IrradianceGatherParameters {
 
 /// Light at points in two parts, whose noise differs.
 struct GatheredParts {
-  GatheredIrradiance indirect;  ///< from other surfaces
-  GatheredIrradiance direct;    ///< of lights, and caustics
+  LightTable indirect;  ///< from other surfaces
+  LightTable direct;    ///< of lights, and caustics
   /// Per point: harmonic mean of the distances to what its rays met, metres; infinite where they
   /// met nothing.
   std::vector<float> distance;
@@ -77,9 +76,9 @@ class IrradianceGather {
   ///   secondary  light maps for these photons, read where rays meet surface
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
-  IrradianceGather(const RayScene& rays, estimate::LightAtPoints& photons,
-                   estimate::LightAtPoints& of_nodes, const LightMapParameters& secondary,
-                   estimate::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
+  IrradianceGather(const RayScene& rays, light::LightAtPoints& photons,
+                   light::LightAtPoints& of_nodes, const LightMapParameters& secondary,
+                   light::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
@@ -94,8 +93,8 @@ class IrradianceGather {
                        NodeRays before = {});
 
   /// All light together.
-  GatheredIrradiance gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
-                            const Progress& progress = Progress::none());
+  LightTable gather(const PrimaryHits& points, std::span<const std::uint64_t> number,
+                    const Progress& progress = Progress::none());
 
   const RayScene& rays() const { return rays_; }
   /// What rays find where they end.
@@ -117,13 +116,15 @@ class IrradianceGather {
   const Costs& costs() const { return costs_; }
 
  private:
+  /// Of no points.
+  GatheredParts none_yet() const;
   /// Gathers at this process's points, in as many rounds as so many points take.
   GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
                            int rays, int light_samples, NodeRays before, std::size_t most,
                            const Progress& progress);
 
   const RayScene& rays_;
-  estimate::LightAtPoints* caustics_;
+  light::LightAtPoints* caustics_;
   IrradianceGatherParameters parameters_;
   trace::LightSampler light_sampler_;
   std::vector<glm::vec3> emitted_;  ///< per light

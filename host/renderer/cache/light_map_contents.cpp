@@ -18,7 +18,7 @@ using cache::Tiles;
 namespace {
 
 /// Whether these are the light of so many nodes, as files may not have it.
-bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds& needs) {
+bool are_values_of(const LightTable& values, std::size_t nodes, const SceneNeeds& needs) {
   if (!values.radiance.empty()) return false;
   for (const glm::vec3& light : values.irradiance) {
     if (!std::isfinite(light.x + light.y + light.z)) return false;
@@ -34,7 +34,7 @@ bool are_values_of(const Estimates& values, std::size_t nodes, const SceneNeeds&
 
 /// Whether the values tell light by the normal, where rays found it and the scene asks for it
 /// alone.
-bool tell_by_normal(const Estimates& values, bool requested) {
+bool tell_by_normal(const LightTable& values, bool requested) {
   return values.by_normal.size() == (requested ? values.irradiance.size() : 0) &&
          std::all_of(values.by_normal.begin(), values.by_normal.end(), [](const glm::vec4& light) {
            return std::isfinite(light.x + light.y + light.z + light.w);
@@ -103,26 +103,16 @@ std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep)
   const std::vector<std::uint64_t> kept = kept_cells(impl_->tiles, keep);
   const std::vector<std::uint8_t> requested = corners_of(impl_->tiles, kept, keep.size());
   LightMapContents all = contents(), left;
-  const bool many = impl_->needs.many_lights();
-  const std::size_t lights = impl_->parameters.powers.size();
   std::vector<std::uint32_t> former;
-  if (many) left.values.first.push_back(0);
   for (std::uint32_t node = 0; node < requested.size(); ++node) {
     if (requested[node] == 0) continue;
     former.push_back(node);
     left.nodes.push_back(all.nodes[node]);
-    const std::size_t first = many ? all.values.first[node] : node * lights;
-    const std::size_t last = many ? all.values.first[node + 1] : first + lights;
-    for (std::size_t i = first; i < last; ++i) {
-      left.values.irradiance.push_back(all.values.irradiance[i]);
-      if (!all.values.by_normal.empty()) left.values.by_normal.push_back(all.values.by_normal[i]);
-      if (many) left.values.light.push_back(all.values.light[i]);
-    }
-    if (many) left.values.first.push_back(left.values.light.size());
     if (all.error.empty()) continue;
     left.error.push_back(all.error[node]);
     left.distance.push_back(all.distance[node]);
   }
+  left.values = all.values.gathered(former);
   for (std::uint32_t index = 0; index < kept.size(); ++index) {
     if (kept[index] == 0) continue;
     left.tiles.push_back(all.tiles[index]);
@@ -140,6 +130,7 @@ void LightMaps::restore(LightMapContents contents) {
   };
   Tiles& tiles = impl_->tiles;
   const std::size_t count = contents.nodes.size();
+  contents.values.lights = impl_->needs.light_count;
   fit(are_values_of(contents.values, count, impl_->needs));
   fit(tell_by_normal(contents.values, impl_->needs.smooth_shading && !contents.error.empty()));
   fit(are_errors_of(contents.error, contents.distance, count));

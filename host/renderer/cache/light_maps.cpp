@@ -88,8 +88,7 @@ LightMaps::Impl::Impl(const Scene& from, const LightMapParameters& given)
 void LightMaps::Impl::clear() {
   tiles.clear();
   node_at.clear();
-  values = {};
-  if (needs.many_lights()) values.first.push_back(0);
+  values = LightTable(needs);
   together.clear();
   error.clear();
   distance.clear();
@@ -172,26 +171,18 @@ std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(
 }
 
 /// The light of the nodes that follow, at the first of these points.
-void LightMaps::Impl::append(Estimates estimates, const PrimaryHits& at,
+void LightMaps::Impl::append(LightTable light, const PrimaryHits& at,
                              std::span<const NodeCoordinates> nodes) {
-  estimates.radiance.clear();
-  const std::size_t lights = parameters.powers.size();
+  light.radiance.clear();
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     double sum = 0;
-    const auto add = [&](std::size_t light, std::size_t i) {
-      sum += parameters.powers[light] * luminance(glm::dvec3(estimates.irradiance[i]));
-    };
-    if (needs.many_lights()) {
-      for (std::size_t i = estimates.first[node]; i < estimates.first[node + 1]; ++i) {
-        add(estimates.light[i], i);
-      }
-    } else {
-      for (std::size_t light = 0; light < lights; ++light) add(light, node * lights + light);
-    }
+    light.for_each(node, [&](std::size_t layer, std::size_t i) {
+      sum += parameters.powers[layer] * luminance(glm::dvec3(light.irradiance[i]));
+    });
     together.push_back(static_cast<float>(sum));
     points.push_back({at.position[node], at.oriented_face[node]});
   }
-  values.append(std::move(estimates));
+  values.append(std::move(light));
   coordinates.insert(coordinates.end(), nodes.begin(), nodes.end());
 }
 
@@ -262,7 +253,7 @@ void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress
     try {
       if (!added.empty()) {
         auto [values, points] = impl_->values_of(added, source, progress);
-        impl_->append(std::move(values.irradiance), points, added);
+        impl_->append(std::move(values.light), points, added);
         impl_->error.insert(impl_->error.end(), values.error.begin(), values.error.end());
         impl_->distance.insert(impl_->distance.end(), values.distance.begin(),
                                values.distance.end());
@@ -320,19 +311,15 @@ float LightMaps::distance(std::uint32_t node) const {
 const Charts& LightMaps::charts() const { return impl_->charts; }
 const Tiles& LightMaps::tiles() const { return impl_->tiles; }
 
-const Estimates& LightMaps::values() const { return impl_->values; }
+const LightTable& LightMaps::values() const { return impl_->values; }
 
 LightMapStatistics LightMaps::statistics() const {
-  const Estimates& values = impl_->values;
   return {
       .nodes = impl_->together.size(),
       .tiles = impl_->tiles.size(),
       .cells = impl_->cells,
       .charts = impl_->charts.size(),
-      .value_bytes = values.irradiance.size() * sizeof(glm::vec3) +
-                     values.first.size() * sizeof(std::uint64_t) +
-                     values.light.size() * sizeof(std::uint16_t) +
-                     values.by_normal.size() * sizeof(glm::vec4) +
+      .value_bytes = impl_->values.bytes() +
                      (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
                      impl_->points.size() * (sizeof(NodePoint) + sizeof(NodeCoordinates)),
       .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +

@@ -31,7 +31,7 @@ struct LightMaps::Impl {
   /// What the source says of nodes, and where they are.
   std::pair<NodeValues, PrimaryHits> values_of(std::span<const cache::NodeCoordinates> nodes,
                                                NodeSource& source, const Progress& progress);
-  void append(Estimates estimates, const PrimaryHits& at,
+  void append(LightTable light, const PrimaryHits& at,
               std::span<const cache::NodeCoordinates> nodes);
   bool differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const;
   bool is_dark(double light) const;
@@ -46,7 +46,7 @@ struct LightMaps::Impl {
   cache::Tiles tiles;
   cache::NodeIndex node_at;
   std::vector<cache::NodeCoordinates> coordinates;  ///< of nodes
-  Estimates values;                                 ///< of nodes
+  LightTable values;                                ///< of nodes
   /// Per node: luminance of all lights at their powers.
   std::vector<float> together;
   std::vector<float> error, distance;  ///< per node, where the source tells: see NodeValues

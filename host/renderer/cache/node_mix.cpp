@@ -44,7 +44,8 @@ class Sum {
 /// The sum of values [first, last), in this order.
 ///   power   of value i
 template <class Power>
-glm::vec4 summed(const Estimates& values, std::size_t first, std::size_t last, const Power& power) {
+glm::vec4 summed(const LightTable& values, std::size_t first, std::size_t last,
+                 const Power& power) {
   const std::size_t followed = std::min(last, values.irradiance.size() - 1);
   Sum sum;
   for (std::size_t i = first; i < followed; ++i) sum.add(values.irradiance[i], power(i));
@@ -57,7 +58,7 @@ glm::vec4 summed(const Estimates& values, std::size_t first, std::size_t last, c
 /// Nodes [begin, end) where each holds all of so many lights: a number known beforehand lets
 /// processors work at several nodes at once.
 template <std::size_t lights>
-void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
+void mix_dense(const LightTable& values, std::size_t begin, std::size_t end,
                std::span<const Four> all_powers, std::vector<glm::vec4>& mixed) {
   std::array<Four, lights> powers;  // where nothing that is written can lie
   std::copy_n(all_powers.begin(), lights, powers.begin());
@@ -74,7 +75,7 @@ void mix_dense(const Estimates& values, std::size_t begin, std::size_t end,
       summed(values, first, first + lights, [&](std::size_t i) { return powers[i - first]; });
 }
 
-using MixDense = void (*)(const Estimates&, std::size_t, std::size_t, std::span<const Four>,
+using MixDense = void (*)(const LightTable&, std::size_t, std::size_t, std::span<const Four>,
                           std::vector<glm::vec4>&);
 
 /// By number of lights, from one on.
@@ -86,7 +87,7 @@ constexpr auto dense_mixes(std::index_sequence<less_one...>) {
 /// Mixes light by the normal, which is in proportion to the luminance of the lights.
 ///   layer   of value i
 template <class Layer>
-glm::vec4 summed_by_normal(const Estimates& values, std::size_t first, std::size_t last,
+glm::vec4 summed_by_normal(const LightTable& values, std::size_t first, std::size_t last,
                            std::span<const glm::vec3> powers, const Layer& layer) {
   glm::vec4 sum(0.0f);
   for (std::size_t i = first; i < last; ++i) {
@@ -100,7 +101,7 @@ glm::vec4 summed_by_normal(const Estimates& values, std::size_t first, std::size
 }
 
 /// Whether a node holds a light, where nodes hold those alone that reach them.
-bool holds(const Estimates& values, std::size_t node, std::uint16_t light) {
+bool holds(const LightTable& values, std::size_t node, std::uint16_t light) {
   unsigned found = 0;
   for (std::size_t i = values.first[node]; i < values.first[node + 1]; ++i) {
     found |= values.light[i] == light ? 1u : 0u;
@@ -118,7 +119,7 @@ void NodeMix::keep(std::span<const std::uint32_t> nodes) {
   by_normal_.resize(nodes.size());
 }
 
-void NodeMix::mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers) {
+void NodeMix::mix(const LightTable& values, std::size_t nodes, std::span<const glm::vec3> powers) {
   std::vector<std::size_t> changed;
   for (std::size_t light = 0; light < powers.size(); ++light) {
     if (powers_.size() != powers.size() || powers[light] != powers_[light]) {

@@ -22,14 +22,14 @@ class NodeMix {
   /// shared by TBB.
   ///   values   what the nodes hold, see LightMaps::values
   ///   powers   per layer: power x tint
-  void mix(const Estimates& values, std::size_t nodes, std::span<const glm::vec3> powers);
+  void mix(const LightTable& values, std::size_t nodes, std::span<const glm::vec3> powers);
 
   /// Keeps these nodes alone, in this order.
   void keep(std::span<const std::uint32_t> nodes);
 
   /// Per node; the fourth is nothing.
   std::span<const glm::vec4> light() const { return light_; }
-  /// Per node the luminance by the normal, as Estimates has it; empty where nodes do not tell it.
+  /// Per node the luminance by the normal, as LightTable has it; empty where nodes do not tell it.
   std::span<const glm::vec4> by_normal() const { return by_normal_; }
   std::span<const glm::vec3> powers() const { return powers_; }
 
@@ -39,7 +39,7 @@ class NodeMix {
 };
 
 /// Irradiance of a plane of unit normal n, in the colour of that of the surface.
-///   by_normal   as Estimates has it
+///   by_normal   as LightTable has it
 inline glm::vec3 turned(const glm::vec3& irradiance, const glm::vec4& by_normal,
                         const glm::vec3& normal) {
   const auto light = static_cast<float>(luminance(glm::dvec3(irradiance)));

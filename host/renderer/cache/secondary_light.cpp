@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "cache/charts.hpp"
-#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
+#include "light/light_at_points.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
@@ -111,33 +111,29 @@ SecondaryLight::Costs SecondaryLight::costs() const {
 
 void SecondaryLight::add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
                                std::uint32_t rays_per_batch, BatchSums& sums) const {
-  const std::size_t lights = rays_.needs().light_count;
-  const Estimates& values = maps_->maps.values();
+  const LightTable& values = maps_->maps.values();
   for (std::size_t index = light.rays.first[point]; index < light.rays.first[point + 1]; ++index) {
     const trace::EyeHit& hit = light.rays.ray_hits.hits[index];
     const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
     const glm::vec3 direction = light.rays.direction_of(hit.pixel);
     if (light.own_of[index] != none) {
       const SecondaryEstimates& own = light.own;
-      estimate::for_each_estimate(
-          own.estimates, light.own_of[index], lights, [&](std::size_t layer, std::size_t i) {
-            sums.add_surface(
-                static_cast<std::uint32_t>(layer), batch,
-                light.weight[index] *
-                    estimate::reflected_radiance(own.hits, light.own_of[index], own.estimates, i),
-                direction);
-          });
+      own.estimates.for_each(light.own_of[index], [&](std::size_t layer, std::size_t i) {
+        sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                         light.weight[index] * light::reflected_radiance(
+                                                   own.hits, light.own_of[index], own.estimates, i),
+                         direction);
+      });
       continue;
     }
     const BilinearWeights& bilinear = light.nodes[index];
     for (std::size_t corner = 0; corner < bilinear.node.size(); ++corner) {
       if (bilinear.weight[corner] == 0.0f) continue;
       const glm::vec3 weight = bilinear.weight[corner] * light.weight[index];
-      estimate::for_each_estimate(values, bilinear.node[corner], lights,
-                                  [&](std::size_t layer, std::size_t i) {
-                                    sums.add_surface(static_cast<std::uint32_t>(layer), batch,
-                                                     weight * values.irradiance[i], direction);
-                                  });
+      values.for_each(bilinear.node[corner], [&](std::size_t layer, std::size_t i) {
+        sums.add_surface(static_cast<std::uint32_t>(layer), batch, weight * values.irradiance[i],
+                         direction);
+      });
     }
   }
 }
@@ -215,7 +211,7 @@ SecondaryEstimates SecondaryLight::estimates_at(const trace::EyeRecord& ray_hits
   std::vector<trace::HitIndex> indices;
   for (std::uint32_t i = 0; i < chosen.size(); ++i) indices.push_back({0, i});
   PrimaryHits hits = trace::hits_at({&record, 1}, indices);
-  Estimates estimates = photons_.at(hits, progress);
+  LightTable estimates = photons_.at(hits, progress);
   return {std::move(hits), std::move(estimates)};
 }
 

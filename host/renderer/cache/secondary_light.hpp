@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "cache/gathered_irradiance.hpp"
+#include "cache/batch_sums.hpp"
 #include "cache/node_visibility.hpp"
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/ray_scene.hpp"
@@ -21,7 +21,7 @@ namespace photile::cache {
 /// Photon estimates at some of the ends of rays.
 struct SecondaryEstimates {
   PrimaryHits hits;
-  Estimates estimates;  ///< of each hit
+  LightTable estimates;  ///< a row for each hit
 };
 
 /// What the rays of a run of points meet, and what counts there.
@@ -37,7 +37,7 @@ struct IndirectLight {
 class ValuedBy : public NodeSource {
  public:
   /// The reference is kept. What a point gets from it does not depend on the points beside it.
-  explicit ValuedBy(estimate::LightAtPoints& light) : light_(light) {}
+  explicit ValuedBy(light::LightAtPoints& light) : light_(light) {}
 
   NodeValues value(const NodeBatch& batch, const Progress&) override {
     valued_ += batch.points.size();
@@ -48,7 +48,7 @@ class ValuedBy : public NodeSource {
   std::uint64_t valued() const { return valued_; }
 
  private:
-  estimate::LightAtPoints& light_;
+  light::LightAtPoints& light_;
   std::uint64_t valued_ = 0;
 };
 
@@ -61,8 +61,8 @@ class SecondaryLight {
   ///             but where several processes have the photons. What a point gets does not depend on
   ///             the points beside it.
   ///   maps      of one level: a cell is known by its first node
-  SecondaryLight(const RayScene& rays, estimate::LightAtPoints& photons,
-                 estimate::LightAtPoints& of_nodes, const LightMapParameters& maps)
+  SecondaryLight(const RayScene& rays, light::LightAtPoints& photons,
+                 light::LightAtPoints& of_nodes, const LightMapParameters& maps)
       : rays_(rays), photons_(photons), nodes_(of_nodes), parameters_(maps) {}
 
   /// Finds an estimate for each ray hit.
@@ -76,7 +76,7 @@ class SecondaryLight {
   /// The nodes around hits, and what nodes hold, in the form of estimates: node n is hit n. They
   /// are valued where none did so yet. Errors: as DeviceEstimators; Interrupted.
   std::vector<BilinearWeights> nodes_around(const PrimaryHits& hits, const Progress& progress);
-  const Estimates& values() const { return maps_->maps.values(); }
+  const LightTable& values() const { return maps_->maps.values(); }
 
   /// The processes that have the photon maps, and make the same calls; null where this one is
   /// alone.
@@ -112,7 +112,7 @@ class SecondaryLight {
                                   std::span<const std::uint32_t> chosen, const Progress& progress);
 
   const RayScene& rays_;
-  estimate::LightAtPoints& photons_;
+  light::LightAtPoints& photons_;
   ValuedBy nodes_;
   /// What nodes of a cell must differ by to be looked at where something stands in it.
   static constexpr double any_contrast = 0;

@@ -11,8 +11,8 @@
 
 #include "cache/charts.hpp"
 #include "cache/node_mix.hpp"
-#include "estimate/light_at_points.hpp"
 #include "estimate/map_order.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -105,8 +105,8 @@ class Interpolation {
   ///   secondary   null where no hit reads it
   ///   row         per hit: that of its own estimate, or none
   Interpolation(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& hits,
-                const HitReading& reading, const Estimates& nodes, const Estimates* secondary,
-                const Estimates& alone, std::span<const std::uint32_t> row)
+                const HitReading& reading, const LightTable& nodes, const LightTable* secondary,
+                const LightTable& alone, std::span<const std::uint32_t> row)
       : scene_(scene),
         needs_(needs),
         hits_(hits),
@@ -116,23 +116,23 @@ class Interpolation {
         alone_(alone),
         row_(row) {}
 
-  /// The estimates of hits [first, last).
-  Estimates of(std::size_t first, std::size_t last) const {
-    Estimates estimates;
-    estimate::EstimateWriter writer(needs_, estimates);
-    std::vector<ByNormal> layers(nodes_.by_normal.empty() ? 0 : needs_.light_count);
+  /// The light of hits [first, last).
+  LightTable of(std::size_t first, std::size_t last) const {
+    LightTable rows(needs_);
+    Sums sums(needs_.light_count);
+    light::RowSum<ByNormal> layers(nodes_.by_normal.empty() ? 0 : needs_.light_count);
     for (std::size_t hit = first; hit < last; ++hit) {
-      if (row_[hit] == none && reading_.levels[hit] != HitReading::secondary && !layers.empty()) {
-        add_smoothly(hit, layers, writer);
+      if (row_[hit] == none && reading_.levels[hit] != HitReading::secondary && layers.size() > 0) {
+        add_smoothly(hit, layers, sums);
       } else if (row_[hit] == none) {
         add_from_maps(hit, reading_.levels[hit] == HitReading::secondary ? *secondary_ : nodes_,
-                      writer);
+                      sums);
       } else {
-        add_alone(hit, row_[hit], writer);
+        add_alone(hit, row_[hit], sums);
       }
-      writer.end_hit();
+      light::end_row(sums, rows, needs_.tells_radiance());
     }
-    return estimates;
+    return rows;
   }
 
   /// Sum of the squares of relative standard errors of hits [first, last) that nodes answer.
@@ -147,6 +147,7 @@ class Interpolation {
   }
 
  private:
+  using Sums = light::RowSum<light::Reflection>;
   /// What the nodes around a hit say of a layer.
   struct ByNormal {
     glm::vec3 irradiance{0.0f};
@@ -156,67 +157,57 @@ class Interpolation {
   /// Irradiance is that of the surface; what is reflected goes by the shading normal, or by that of
   /// a normal map, in the colour of the irradiance.
   ///   layers   of none
-  void add_smoothly(std::size_t hit, std::vector<ByNormal>& layers,
-                    estimate::EstimateWriter& writer) const {
+  void add_smoothly(std::size_t hit, light::RowSum<ByNormal>& layers, Sums& sums) const {
     const BilinearWeights& bilinear = reading_.bilinear[hit];
-    const auto for_each_corner = [&](const auto& visit) {
-      for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-        if (bilinear.weight[i] == 0.0f) continue;
-        estimate::for_each_estimate(nodes_, bilinear.node[i], needs_.light_count,
-                                    [&](std::size_t layer, std::size_t value) {
-                                      visit(layers[layer], layer, value, bilinear.weight[i]);
-                                    });
-      }
-    };
-    for_each_corner([&](ByNormal& light, std::size_t, std::size_t value, float weight) {
-      light.irradiance += weight * nodes_.irradiance[value];
-      light.by_normal += weight * nodes_.by_normal[value];
-    });
+    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+      const float weight = bilinear.weight[i];
+      if (weight == 0.0f) continue;
+      nodes_.for_each(bilinear.node[i], [&](std::size_t layer, std::size_t value) {
+        ByNormal& light = layers.of(layer);
+        light.irradiance += weight * nodes_.irradiance[value];
+        light.by_normal += weight * nodes_.by_normal[value];
+      });
+    }
     const glm::vec3 normal =
         material_of(scene_, hits_.oriented_face[hit]).normal_texture != none
             ? hits_.lobe[hit].normal
             : trace::shading_normal(scene_, hits_.oriented_face[hit], hits_.position[hit]);
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
-    for_each_corner([&](ByNormal& light, std::size_t layer, std::size_t, float) {
+    layers.take_lit([&](std::size_t layer, const ByNormal& light) {
       if (light.irradiance == glm::vec3(0.0f)) return;
-      writer.add(static_cast<std::uint32_t>(layer), light.irradiance,
-                 reflects * turned(light.irradiance, light.by_normal, normal));
-      light = {};
+      sums.of(layer).add(light.irradiance,
+                         reflects * turned(light.irradiance, light.by_normal, normal));
     });
   }
 
-  void add_from_maps(std::size_t hit, const Estimates& nodes,
-                     estimate::EstimateWriter& writer) const {
+  void add_from_maps(std::size_t hit, const LightTable& nodes, Sums& sums) const {
     const BilinearWeights& bilinear = reading_.bilinear[hit];
     const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
     for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
       if (bilinear.weight[i] == 0.0f) continue;
-      estimate::for_each_estimate(
-          nodes, bilinear.node[i], needs_.light_count, [&](std::size_t layer, std::size_t value) {
-            const glm::vec3 light = bilinear.weight[i] * nodes.irradiance[value];
-            writer.add(static_cast<std::uint32_t>(layer), light, reflects * light);
-          });
+      nodes.for_each(bilinear.node[i], [&](std::size_t layer, std::size_t value) {
+        const glm::vec3 light = bilinear.weight[i] * nodes.irradiance[value];
+        sums.of(layer).add(light, reflects * light);
+      });
     }
   }
 
-  void add_alone(std::size_t hit, std::uint32_t row, estimate::EstimateWriter& writer) const {
-    estimate::for_each_estimate(
-        alone_, row, needs_.light_count, [&](std::size_t layer, std::size_t value) {
-          const glm::vec3& light = alone_.irradiance[value];
-          writer.add(static_cast<std::uint32_t>(layer), light,
-                     alone_.radiance.empty()
-                         ? hits_.diffuse_albedo[hit] * glm::one_over_pi<float>() * light
-                         : alone_.radiance[value]);
-        });
+  void add_alone(std::size_t hit, std::uint32_t row, Sums& sums) const {
+    alone_.for_each(row, [&](std::size_t layer, std::size_t value) {
+      const glm::vec3& light = alone_.irradiance[value];
+      sums.of(layer).add(light, alone_.radiance.empty()
+                                    ? hits_.diffuse_albedo[hit] * glm::one_over_pi<float>() * light
+                                    : alone_.radiance[value]);
+    });
   }
 
   const Scene& scene_;
   const SceneNeeds& needs_;
   const PrimaryHits& hits_;
   const HitReading& reading_;
-  const Estimates& nodes_;
-  const Estimates* secondary_;
-  const Estimates& alone_;
+  const LightTable& nodes_;
+  const LightTable* secondary_;
+  const LightTable& alone_;
   std::span<const std::uint32_t> row_;
 };
 
@@ -252,7 +243,7 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
 }
 
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-                           estimate::LightAtPoints& elsewhere, NodeSource& source,
+                           light::LightAtPoints& elsewhere, NodeSource& source,
                            SecondaryLight* secondary)
     : scene_(rays.scene()),
       needs_(rays.needs()),
@@ -264,7 +255,7 @@ SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& param
       maps_(scene_, parameters),
       visibility_(rays, maps_) {}
 
-Estimates SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
+LightTable SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
   const HitReading reading = read(hits, progress);
   std::vector<std::uint32_t> alone, row(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
@@ -273,15 +264,15 @@ Estimates SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
     alone.push_back(hit);
   }
   hits_alone_ += alone.size();
-  const Estimates own = alone.empty() && !shared_
-                            ? Estimates{}
-                            : elsewhere_.at(estimate::reordered(hits, 0, alone), progress);
+  const LightTable own = alone.empty() && !shared_
+                             ? LightTable{}
+                             : elsewhere_.at(estimate::reordered(hits, 0, alone), progress);
   const bool reads_secondary = std::find(reading.levels.begin(), reading.levels.end(),
                                          int{HitReading::secondary}) != reading.levels.end();
-  const Estimates* secondary = reads_secondary ? &secondary_->values() : nullptr;
+  const LightTable* secondary = reads_secondary ? &secondary_->values() : nullptr;
   const Interpolation bilinear(scene_, needs_, hits, reading, maps_.values(), secondary, own, row);
-  std::vector<Estimates> parts((hits.size() + hits_per_interpolation_task - 1) /
-                               hits_per_interpolation_task);
+  std::vector<LightTable> parts((hits.size() + hits_per_interpolation_task - 1) /
+                                hits_per_interpolation_task);
   std::vector<double> squared_errors(parts.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = part * hits_per_interpolation_task;
@@ -295,20 +286,20 @@ Estimates SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
   return joined(std::move(parts));
 }
 
-Estimates SurfaceCache::errors(const PrimaryHits& hits, const Estimates& estimates,
-                               const Estimates& of_nodes) {
+LightTable SurfaceCache::errors(const PrimaryHits& hits, const LightTable& estimates,
+                                const LightTable& of_nodes) {
   const HitReading reading = read(hits, Progress::none());
   std::vector<std::uint32_t> row(hits.size(), none);
   for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
     if (reading.levels[hit] <= 0) row[hit] = hit;  // photons
   }
-  Estimates own = estimates;
+  LightTable own = estimates;
   const auto relative = static_cast<float>(photon_noise().noise);
   for (glm::vec3& light : own.irradiance) light *= relative;
   for (glm::vec3& light : own.radiance) light *= relative;
   const Interpolation bilinear(scene_, needs_, hits, reading, of_nodes, nullptr, own, row);
-  std::vector<Estimates> parts((hits.size() + hits_per_interpolation_task - 1) /
-                               hits_per_interpolation_task);
+  std::vector<LightTable> parts((hits.size() + hits_per_interpolation_task - 1) /
+                                hits_per_interpolation_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::size_t first = part * hits_per_interpolation_task;
     parts[part] = bilinear.of(first, std::min(hits.size(), first + hits_per_interpolation_task));
@@ -316,10 +307,9 @@ Estimates SurfaceCache::errors(const PrimaryHits& hits, const Estimates& estimat
   return joined(std::move(parts));
 }
 
-Estimates SurfaceCache::joined(std::vector<Estimates> parts) const {
-  Estimates all;
-  if (needs_.many_lights()) all.first.push_back(0);
-  for (Estimates& part : parts) all.append(std::move(part));
+LightTable SurfaceCache::joined(std::vector<LightTable> parts) const {
+  LightTable all(needs_);
+  for (LightTable& part : parts) all.append(std::move(part));
   return all;
 }
 

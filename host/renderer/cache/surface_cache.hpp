@@ -8,7 +8,7 @@
 
 #include "cache/node_visibility.hpp"
 #include "cache/secondary_light.hpp"
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
@@ -62,7 +62,7 @@ struct HitReading {
   std::vector<BilinearWeights> bilinear;  ///< of its nodes
 };
 
-class SurfaceCache : public estimate::LightAtPoints {
+class SurfaceCache : public light::LightAtPoints {
  public:
   /// References are kept.
   ///   elsewhere   answers for points that no node answers: those with a specular lobe, and those
@@ -73,16 +73,17 @@ class SurfaceCache : public estimate::LightAtPoints {
   ///               read it, too, where PrimaryHits::coarse says that it suffices; null where
   ///               photons value nodes: the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-               estimate::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* secondary);
+               light::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* secondary);
 
   /// The light at points in any order.
-  Estimates at(const PrimaryHits& points, const Progress& progress) override;
+  LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
   /// Standard errors of what `at` found at these hits, in the same form. Nodes around a hit
   /// are taken to err alike; where photons served, theirs is that of a density from k of them.
   ///   estimates   that were found
   ///   of_nodes    as GatheredNodes::errors
-  Estimates errors(const PrimaryHits& hits, const Estimates& estimates, const Estimates& of_nodes);
+  LightTable errors(const PrimaryHits& hits, const LightTable& estimates,
+                    const LightTable& of_nodes);
 
   /// The noise of the light that photons alone give.
   PhotonNoise photon_noise() const;
@@ -109,14 +110,14 @@ class SurfaceCache : public estimate::LightAtPoints {
   void find_secondary(const PrimaryHits& hits, const Progress& progress, HitReading& reading);
   void find_nodes(const PrimaryHits& hits, HitReading& reading) const;
 
-  /// Estimates of hits that follow each other.
-  Estimates joined(std::vector<Estimates> parts) const;
+  /// The light of hits that follow each other.
+  LightTable joined(std::vector<LightTable> parts) const;
 
   const Scene& scene_;
   const SceneNeeds needs_;
   const bool shared_;        ///< with other processes, which make the same calls
   const double neighbours_;  ///< of a photon estimate
-  estimate::LightAtPoints& elsewhere_;
+  light::LightAtPoints& elsewhere_;
   NodeSource& source_;
   SecondaryLight* secondary_;
   LightMaps maps_;

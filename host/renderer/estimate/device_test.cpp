@@ -171,7 +171,7 @@ bool are_nearest(std::span<const std::uint32_t> list, const Photons& photons, co
 }
 
 std::string compare(const estimate::PlaneSample& sample, const NeighbourLists& lists,
-                    const Estimates& estimates) {
+                    const LightTable& estimates) {
   const auto k = static_cast<std::size_t>(lists.k);
   const double flux = sample.photons.flux.front().g;
   double mean = 0;

@@ -83,7 +83,7 @@ bool EstimateBuffers::reclaim() {
   return true;
 }
 
-void EstimateBuffers::read(Estimates& result, std::size_t first) {
+void EstimateBuffers::read(LightTable& result, std::size_t first) {
   if (sums_.many_lights) {
     result.append(read_slots());
   } else {
@@ -103,7 +103,7 @@ void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,
 }
 
 /// Takes the empty slots out on the device: it is fast there, and less is read.
-Estimates EstimateBuffers::read_slots() {
+LightTable EstimateBuffers::read_slots() {
   device::Defines defines = maps::group_defines(context_.info());
   sums_.set_defines(defines);
   if (sums_.glossy) defines.set("GLOSSY");
@@ -129,7 +129,7 @@ Estimates EstimateBuffers::read_slots() {
       .set("radiance", packed_radiance);
   launch.run(hits_, maps::work_group_size);
 
-  Estimates estimates;
+  LightTable estimates(sums_.lights, true);
   estimates.first.assign(offsets.begin(), offsets.end());
   estimates.light.resize(total);
   if (total > 0) context_.read(light, std::span(estimates.light));

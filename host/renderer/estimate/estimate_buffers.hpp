@@ -58,7 +58,7 @@ class EstimateBuffers final : private device::Reclaimer {
   void begin(std::uint32_t hits);
   /// What the kernels left becomes the estimates of the hits [first, first + hits) in `result`,
   /// which has room for them; with many lights it is appended. Waits for the kernels.
-  void read(Estimates& result, std::size_t first);
+  void read(LightTable& result, std::size_t first);
 
   device::Buffer<float> irradiance, radiance;  ///< 3 per estimate; radiance in glossy scenes
   // With many lights:
@@ -69,7 +69,7 @@ class EstimateBuffers final : private device::Reclaimer {
   bool reclaim() override;
   void release();
   void allocate();
-  Estimates read_slots();
+  LightTable read_slots();
   void read_vectors(const device::Buffer<float>& buffer, std::span<glm::vec3> values);
 
   device::Context& context_;

@@ -84,7 +84,7 @@ struct Estimator::Impl {
   /// The estimates of hits [first, first + count) become those of hits from `offset` on in
   /// `result`.
   void estimate(const PrimaryHits& hits, std::size_t first, std::size_t count, std::size_t offset,
-                Estimates& result) {
+                LightTable& result) {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
                                                      clipped_to(), store.needs);
@@ -138,19 +138,18 @@ Estimator::Estimator(const PhotonMaps& maps, const Scene& scene,
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 
-Estimates Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
+LightTable Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
 
-Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
-  const auto order = estimate::order_by_map(impl_->store.maps_of(hits, begin, hit_count));
+LightTable Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
+  const auto order = estimate::order_by_map(impl_->store.maps_of(hits, begin, hit_count),
+                                            std::span(hits.position).subspan(begin, hit_count));
   if (!order.empty()) {
     return estimate::restored(estimate(estimate::reordered(hits, begin, order), 0, hit_count),
-                              order, impl_->store.needs.light_count);
+                              order);
   }
   const auto [largest, together] = impl_->query->sums().bytes_per_hit();
-  Estimates result;
-  if (impl_->store.needs.many_lights()) {
-    result.first.push_back(0);
-  } else {
+  LightTable result(impl_->store.needs);
+  if (!result.sparse()) {
     const std::size_t estimates = hit_count * impl_->store.needs.light_count;
     result.irradiance.resize(estimates);
     if (impl_->store.needs.glossy) result.radiance.resize(estimates);
@@ -173,7 +172,8 @@ Estimates Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::s
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits, ListOrder list_order) {
   const std::size_t k = impl_->neighbours;
-  const auto order = estimate::order_by_map(impl_->store.maps_of(hits, 0, hits.size()));
+  const auto order =
+      estimate::order_by_map(impl_->store.maps_of(hits, 0, hits.size()), hits.position);
   if (!order.empty()) {
     NeighbourLists result = nearest(estimate::reordered(hits, 0, order), list_order);
     estimate::restore_rows(result.photons, order, k);

@@ -13,19 +13,20 @@
 
 namespace photile::estimate {
 
-/// Positions of hits in ascending order of their maps, stable; empty if they are in that order
+/// Numbers of hits in ascending order of their maps, and on each map along a Morton curve: kernels
+/// find what is near one hit near the next. Empty where they are in the order of their maps
 /// already.
-///   maps   of the hits
-std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps);
+///   maps, position   of the hits
+std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps,
+                                        std::span<const glm::vec3> position);
 
 /// Hit i of the result is hit first + order[i]. Pixels and throughput, which no estimate reads, are
 /// left out.
 PrimaryHits reordered(const PrimaryHits& hits, std::size_t first,
                       std::span<const std::uint32_t> order);
 
-/// Estimates of reordered hits, put back: those of hit i become those of hit order[i].
-Estimates restored(Estimates estimates, std::span<const std::uint32_t> order,
-                   std::size_t light_count);
+/// The light at reordered hits, put back: row i becomes row order[i].
+LightTable restored(const LightTable& light, std::span<const std::uint32_t> order);
 
 /// Puts rows of `width` values back: row i of `values` becomes row order[i].
 template <class T>

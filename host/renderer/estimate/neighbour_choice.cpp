@@ -22,12 +22,12 @@ struct Row {
   std::size_t first, count;
 };
 
-Row row_of(const Estimates& estimates, std::size_t hit, std::size_t lights) {
+Row row_of(const LightTable& estimates, std::size_t hit, std::size_t lights) {
   if (estimates.first.empty()) return {hit * lights, lights};
   return {estimates.first[hit], estimates.first[hit + 1] - estimates.first[hit]};
 }
 
-double luminance_of(const Estimates& estimates, const Row& row, std::span<const double> weights) {
+double luminance_of(const LightTable& estimates, const Row& row, std::span<const double> weights) {
   double sum = 0;
   for (std::size_t i = 0; i < row.count; ++i) {
     const std::size_t light = estimates.light.empty() ? i : estimates.light[row.first + i];
@@ -70,8 +70,8 @@ std::size_t least_error_level(std::span<const double> values, std::span<const in
   return values.size() - 1;
 }
 
-Estimates estimates_of_least_error(std::vector<Estimates> levels, std::span<const int> neighbours,
-                                   std::span<const double> weights) {
+LightTable estimates_of_least_error(std::vector<LightTable> levels, std::span<const int> neighbours,
+                                    std::span<const double> weights) {
   const bool sparse = !levels.front().first.empty();
   const std::size_t lights = weights.size();
   const std::size_t hits =
@@ -79,15 +79,14 @@ Estimates estimates_of_least_error(std::vector<Estimates> levels, std::span<cons
   std::vector<std::uint8_t> chosen(hits);
   tbb::parallel_for(std::size_t{0}, hits, [&](std::size_t hit) {
     std::vector<double> values;
-    for (const Estimates& level : levels) {
+    for (const LightTable& level : levels) {
       values.push_back(luminance_of(level, row_of(level, hit, lights), weights));
     }
     chosen[hit] = static_cast<std::uint8_t>(least_error_level(values, neighbours));
   });
-  Estimates result;
-  if (sparse) result.first.push_back(0);
+  LightTable result(lights, sparse);
   for (std::size_t hit = 0; hit < hits; ++hit) {
-    const Estimates& level = levels[chosen[hit]];
+    const LightTable& level = levels[chosen[hit]];
     const Row row = row_of(level, hit, lights);
     append(result.irradiance, level.irradiance, row);
     append(result.radiance, level.radiance, row);

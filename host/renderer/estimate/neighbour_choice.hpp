@@ -23,8 +23,8 @@ std::size_t least_error_level(std::span<const double> values, std::span<const in
 /// their powers. The choice looks at the luminance of all lights together.
 ///   levels       the same hits by neighbours[level], ascending k
 ///   weights      per light: its power when the choice is made
-Estimates estimates_of_least_error(std::vector<Estimates> levels, std::span<const int> neighbours,
-                                   std::span<const double> weights);
+LightTable estimates_of_least_error(std::vector<LightTable> levels, std::span<const int> neighbours,
+                                    std::span<const double> weights);
 
 /// The powers of a scene's layers; all 1 where every light is off.
 std::vector<double> layer_powers(const Scene& scene);

@@ -8,9 +8,7 @@
 #include "estimate/load_balance.hpp"
 #include "estimate/map_order.hpp"
 #include "estimate/neighbour_choice.hpp"
-#include "geometry/radix_sort.hpp"
 #include "photile/statistics.hpp"
-#include "scene/scene_queries.hpp"
 
 namespace photile::estimate {
 namespace {
@@ -44,7 +42,6 @@ PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Pa
                                std::span<const double> layer_powers)
     : devices_(devices),
       layer_powers_(layer_powers),
-      cells_(scene::bounds_of(scene)),
       maps_(std::move(parts.maps)),
       seen_(std::move(parts.seen)) {
   for (const EstimateParameters& parameters : parts.levels) {
@@ -54,38 +51,8 @@ PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Pa
   }
 }
 
-Estimates PhotonEstimate::at(const PrimaryHits& points, const Progress&) {
-  const std::vector<std::uint32_t> order = order_of(points);
-  if (order.empty()) return estimate(points);
-  return restored(estimate(reordered(points, 0, order)), order, layer_powers_.size());
-}
-
-std::vector<std::uint32_t> PhotonEstimate::order_of(const PrimaryHits& points) const {
-  std::vector<std::uint32_t> maps = points.oriented_face;
-  if (!map_of().empty()) {
-    for (std::uint32_t& map : maps) map = map_of()[map];
-  }
-  if (std::is_sorted(maps.begin(), maps.end())) return {};
-  struct Key {
-    std::uint64_t order;
-    std::uint32_t point;
-  };
-  constexpr int code_bits = 3 * trace::HitCells::bits_per_axis;
-  std::vector<Key> keys(points.size());
-  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
-    // `none`, the map of points that have no other, loses its upper bit and stays the last.
-    keys[i] = {std::uint64_t{maps[i]} << code_bits | cells_.morton_code(points.position[i]),
-               static_cast<std::uint32_t>(i)};
-  });
-  geometry::radix_sort(keys, 64, [](const Key& key) { return key.order; });
-  std::vector<std::uint32_t> order;
-  order.reserve(keys.size());
-  for (const Key& key : keys) order.push_back(key.point);
-  return order;
-}
-
-Estimates PhotonEstimate::estimate(const PrimaryHits& points) {
-  std::vector<Estimates> by_level;
+LightTable PhotonEstimate::at(const PrimaryHits& points, const Progress&) {
+  std::vector<LightTable> by_level;
   std::vector<int> neighbours;
   for (Level& level : levels_) {
     by_level.push_back(estimate(level, points));
@@ -96,10 +63,10 @@ Estimates PhotonEstimate::estimate(const PrimaryHits& points) {
              : estimates_of_least_error(std::move(by_level), neighbours, layer_powers_);
 }
 
-Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
-  Estimates result;
+LightTable PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
+  LightTable result;
   std::vector<double> seconds(devices_.size());
-  std::vector<Estimates> parts(devices_.size());
+  std::vector<LightTable> parts(devices_.size());
   for (std::size_t first = 0; first < points.size();) {
     const std::size_t count = level.balance.round(points.size() - first);
     const std::vector<std::size_t> cuts = level.balance.cuts(count);
@@ -119,7 +86,7 @@ Estimates PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
   return result;
 }
 
-void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result) {
+void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, LightTable& result) {
   const std::vector<std::uint32_t> beside =
       seen_->beside_something(points, result, maps_->front().parameters().radius);
   const std::size_t lists =

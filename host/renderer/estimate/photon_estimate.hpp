@@ -7,12 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "estimate/light_at_points.hpp"
 #include "estimate/load_balance.hpp"
 #include "estimate/visible_photons.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/estimator.hpp"
 #include "photile/photon_maps.hpp"
-#include "trace/hit_batch.hpp"
 
 namespace photile::estimate {
 
@@ -26,9 +25,8 @@ std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scen
                                            std::span<const std::uint8_t> requested = {});
 
 /// Light by the k nearest photons of each point, found on every device at once. On devices of one
-/// kind the result is that of one device, bit for bit, however the points are shared. Points are
-/// put in the order of their maps here, and nowhere else.
-class PhotonEstimate : public LightAtPoints {
+/// kind the result is that of one device, bit for bit, however the points are shared.
+class PhotonEstimate : public light::LightAtPoints {
  public:
   struct Parts {
     std::shared_ptr<const std::vector<PhotonMaps>> maps;  ///< the same on each device
@@ -43,7 +41,7 @@ class PhotonEstimate : public LightAtPoints {
   PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts,
                  std::span<const double> layer_powers);
 
-  Estimates at(const PrimaryHits& points, const Progress& progress) override;
+  LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
   /// Per oriented face, as PhotonMaps has it: points in this order are not put in another.
   std::span<const std::uint32_t> map_of() const { return maps_->front().map_of(); }
@@ -59,18 +57,13 @@ class PhotonEstimate : public LightAtPoints {
     LoadBalance balance;
   };
 
-  /// Positions of points by their maps, and by position on each map; empty where they are in the
-  /// order of their maps.
-  std::vector<std::uint32_t> order_of(const PrimaryHits& points) const;
-  /// The light at points in the order of their maps, by the k of each level or by their own.
-  Estimates estimate(const PrimaryHits& points);
-  Estimates estimate(Level& level, const PrimaryHits& points);
+  /// The light at points by the k of a level.
+  LightTable estimate(Level& level, const PrimaryHits& points);
   /// Takes photons that their points do not see out of the estimates.
-  void leave_out_hidden(Level& level, const PrimaryHits& points, Estimates& result);
+  void leave_out_hidden(Level& level, const PrimaryHits& points, LightTable& result);
 
   std::span<Device> devices_;
   std::span<const double> layer_powers_;
-  trace::HitCells cells_;                                ///< of the scene
   std::shared_ptr<const std::vector<PhotonMaps>> maps_;  ///< on each device
   std::vector<Level> levels_;                            ///< ascending in k
   std::shared_ptr<const VisiblePhotons> seen_;

@@ -7,7 +7,7 @@
 #include <glm/gtc/constants.hpp>
 #include <optional>
 
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
 #include "scene/scene_queries.hpp"
@@ -77,14 +77,14 @@ VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, Den
 }
 
 std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& hits,
-                                                            const Estimates& estimates,
+                                                            const LightTable& estimates,
                                                             double radius) const {
   const Scene& scene = rays_.scene();
   const auto reach = static_cast<float>(radius);
   std::vector<std::uint8_t> chosen(hits.size(), 0);
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t hit) {
     bool lit = false;
-    for_each_estimate(estimates, hit, rays_.needs().light_count, [&](std::size_t, std::size_t i) {
+    estimates.for_each(hit, [&](std::size_t, std::size_t i) {
       lit = lit || estimates.irradiance[i] != glm::vec3(0.0f);
     });
     if (!lit) return;
@@ -254,7 +254,7 @@ void VisiblePhotons::sum_seen(const Disc& disc, bool full, std::vector<Layer>& l
 
 void VisiblePhotons::leave_out_hidden(const PrimaryHits& hits,
                                       std::span<const std::uint32_t> chosen,
-                                      const NeighbourLists& near, Estimates& estimates) const {
+                                      const NeighbourLists& near, LightTable& estimates) const {
   const std::size_t lights = rays_.needs().light_count;
   const auto k = static_cast<std::size_t>(near.k);
   tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t row) {
@@ -276,7 +276,7 @@ void VisiblePhotons::leave_out_hidden(const PrimaryHits& hits,
     if (!probe(disc, layers)) return;
     sum_seen(disc, list.size() == disc.photons.size(), layers);
     std::optional<double> area;  // for all layers
-    for_each_estimate(estimates, hit, lights, [&](std::size_t index, std::size_t i) {
+    estimates.for_each(hit, [&](std::size_t index, std::size_t i) {
       const Layer& layer = layers[index];
       const bool lit = estimates.irradiance[i] != glm::vec3(0.0f);
       if (!lit || !layer.doubtful() || !(layer.seen < layer.kept() * layer.all)) return;

@@ -30,7 +30,7 @@ class VisiblePhotons {
   /// The hits whose estimate is not 0, and near which something stands on the surface: those whose
   /// neighbours need to be looked at.
   ///   radius   metres, from which no neighbour is farther
-  std::vector<std::uint32_t> beside_something(const PrimaryHits& hits, const Estimates& estimates,
+  std::vector<std::uint32_t> beside_something(const PrimaryHits& hits, const LightTable& estimates,
                                               double radius) const;
 
   /// Where a hit sees so few of a light's photons that they say less than a quarter of the light,
@@ -40,7 +40,7 @@ class VisiblePhotons {
   ///   chosen   of the hits
   ///   near     of the chosen hits
   void leave_out_hidden(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
-                        const NeighbourLists& near, Estimates& estimates) const;
+                        const NeighbourLists& near, LightTable& estimates) const;
 
  private:
   struct Disc;

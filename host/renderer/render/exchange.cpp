@@ -38,44 +38,23 @@ void append_hits(std::span<const std::byte> bytes, PrimaryHits& hits) {
   reader.append_to(hits.lobe);
 }
 
-/// Estimates [first, first + count).
-Estimates part_of(const Estimates& all, std::size_t first, std::size_t count, std::size_t lights) {
-  const bool many = !all.first.empty();
-  const std::size_t begin = many ? all.first[first] : first * lights;
-  const std::size_t end = many ? all.first[first + count] : (first + count) * lights;
-  const auto slice = [&](const auto& values) {
-    using Values = std::remove_cvref_t<decltype(values)>;
-    if (values.empty()) return Values{};
-    return Values(values.begin() + static_cast<std::ptrdiff_t>(begin),
-                  values.begin() + static_cast<std::ptrdiff_t>(end));
-  };
-  Estimates part;
-  part.irradiance = slice(all.irradiance);
-  part.radiance = slice(all.radiance);
-  part.light = slice(all.light);
-  for (std::size_t hit = 0; many && hit <= count; ++hit) {
-    part.first.push_back(all.first[first + hit] - begin);
-  }
-  return part;
-}
-
-std::vector<std::byte> bytes_of(const Estimates& estimates) {
+std::vector<std::byte> bytes_of(const LightTable& rows) {
   ByteWriter bytes;
-  bytes.put(estimates.irradiance);
-  bytes.put(estimates.radiance);
-  bytes.put(estimates.first);
-  bytes.put(estimates.light);
+  bytes.put(rows.irradiance);
+  bytes.put(rows.radiance);
+  bytes.put(rows.first);
+  bytes.put(rows.light);
   return bytes.take();
 }
 
-void append_estimates(std::span<const std::byte> bytes, Estimates& estimates) {
+void append_rows(std::span<const std::byte> bytes, LightTable& all) {
   ByteReader reader(bytes);
-  Estimates part;
+  LightTable part(all.lights, false);
   part.irradiance = reader.take<glm::vec3>();
   part.radiance = reader.take<glm::vec3>();
   part.first = reader.take<std::uint64_t>();
   part.light = reader.take<std::uint16_t>();
-  estimates.append(std::move(part));
+  all.append(std::move(part));
 }
 
 /// Rows [first, first + count) of planes and sparse rows.
@@ -140,12 +119,6 @@ void set_rows(std::span<const std::byte> bytes, const Rows& rows, LightLayers& l
 
 }  // namespace
 
-Estimates Exchange::none_yet() const {
-  Estimates estimates;
-  if (many_) estimates.first.push_back(0);
-  return estimates;
-}
-
 std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& points) const {
   std::vector<std::vector<std::uint32_t>> of_owners(processes_.size());
   for (std::uint32_t point = 0; point < points.size(); ++point) {
@@ -154,20 +127,20 @@ std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& po
   return of_owners;
 }
 
-Estimates Exchange::in_order(std::span<const std::vector<std::uint32_t>> of_owners,
-                             std::span<const std::vector<std::byte>> bytes,
-                             std::size_t points) const {
+LightTable Exchange::in_order(std::span<const std::vector<std::uint32_t>> of_owners,
+                              std::span<const std::vector<std::byte>> bytes,
+                              std::size_t points) const {
   std::vector<std::uint32_t> order;
-  Estimates all = none_yet();
+  LightTable all = none_;
   order.reserve(points);
   for (std::size_t rank = 0; rank < of_owners.size(); ++rank) {
     order.insert(order.end(), of_owners[rank].begin(), of_owners[rank].end());
-    if (!of_owners[rank].empty()) append_estimates(bytes[rank], all);
+    if (!of_owners[rank].empty()) append_rows(bytes[rank], all);
   }
-  return estimate::restored(std::move(all), order, lights_);
+  return estimate::restored(all, order);
 }
 
-Estimates Exchange::at_own(const PrimaryHits& points, const Progress& progress) {
+LightTable Exchange::at_own(const PrimaryHits& points, const Progress& progress) {
   const std::uint32_t ranks = processes_.size(), own = processes_.rank();
   const std::vector<std::vector<std::uint32_t>> of_owners = by_owner(points);
   std::vector<Communicator::Bytes> asked(ranks);
@@ -186,19 +159,19 @@ Estimates Exchange::at_own(const PrimaryHits& points, const Progress& progress) 
     first.push_back(all.size());
     bytes = {};
   }
-  const Estimates found = all.size() > 0 ? here_->at(all, progress) : none_yet();
+  const LightTable found = all.size() > 0 ? here_->at(all, progress) : none_;
   std::vector<Communicator::Bytes> answers(ranks);
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
     const std::size_t count = first[rank + 1] - first[rank];
     if (count == 0) continue;
-    answers[rank] = bytes_of(part_of(found, first[rank], count, lights_));
+    answers[rank] = bytes_of(found.slice(first[rank], count));
     if (rank != own) traffic_.bytes += answers[rank].size();
   }
   answers = processes_.exchange(std::move(answers));
   return in_order(of_owners, answers, points.size());
 }
 
-Estimates Exchange::at_common(const PrimaryHits& points, const Progress& progress) {
+LightTable Exchange::at_common(const PrimaryHits& points, const Progress& progress) {
   const std::vector<std::vector<std::uint32_t>> of_owners = by_owner(points);
   const std::vector<std::uint32_t>& own = of_owners[processes_.rank()];
   const Communicator::Bytes bytes =

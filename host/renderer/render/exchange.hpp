@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/content_hash.hpp"
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/light_layers.hpp"
 #include "render/render_costs.hpp"
@@ -19,7 +19,7 @@ namespace photile {
 
 /// Sends points to the owners of their maps, and returns their estimates. What a point gets
 /// must not depend on the points beside it. Collective: all processes ask at the same time.
-class Exchange : public estimate::LightAtPoints {
+class Exchange : public light::LightAtPoints {
  public:
   enum class Points {
     own,    ///< each process asks for points of its own, or for none
@@ -28,39 +28,35 @@ class Exchange : public estimate::LightAtPoints {
 
   /// References are kept.
   ///   here          answers for maps of this process
-  ///   lights        layers of the scene
-  ///   many_lights   estimates have the form of many lights
+  ///   none          light of the scene at no points
   ///   traffic       is added to
   Exchange(Communicator& processes, std::shared_ptr<const MapOwners> owners,
-           std::shared_ptr<estimate::LightAtPoints> here, Points points, std::size_t lights,
-           bool many_lights, PointTraffic& traffic)
+           std::shared_ptr<light::LightAtPoints> here, Points points, LightTable none,
+           PointTraffic& traffic)
       : processes_(processes),
         owners_(std::move(owners)),
         here_(std::move(here)),
         points_(points),
-        lights_(lights),
-        many_(many_lights),
+        none_(std::move(none)),
         traffic_(traffic) {}
 
-  Estimates at(const PrimaryHits& points, const Progress& progress) override {
+  LightTable at(const PrimaryHits& points, const Progress& progress) override {
     return points_ == Points::own ? at_own(points, progress) : at_common(points, progress);
   }
 
  private:
-  Estimates at_own(const PrimaryHits& points, const Progress& progress);
-  Estimates at_common(const PrimaryHits& points, const Progress& progress);
-  Estimates none_yet() const;
+  LightTable at_own(const PrimaryHits& points, const Progress& progress);
+  LightTable at_common(const PrimaryHits& points, const Progress& progress);
   /// Positions of points, by their owners.
   std::vector<std::vector<std::uint32_t>> by_owner(const PrimaryHits& points) const;
-  Estimates in_order(std::span<const std::vector<std::uint32_t>> indices,
-                     std::span<const std::vector<std::byte>> bytes, std::size_t points) const;
+  LightTable in_order(std::span<const std::vector<std::uint32_t>> indices,
+                      std::span<const std::vector<std::byte>> bytes, std::size_t points) const;
 
   Communicator& processes_;
   std::shared_ptr<const MapOwners> owners_;
-  std::shared_ptr<estimate::LightAtPoints> here_;
+  std::shared_ptr<light::LightAtPoints> here_;
   Points points_;
-  std::size_t lights_;
-  bool many_;
+  LightTable none_;
   PointTraffic& traffic_;
 };
 

@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "estimate/light_at_points.hpp"
-#include "estimate/lit_lights.hpp"
+#include "light/light_at_points.hpp"
+#include "light/row_sum.hpp"
 #include "photile/scene.hpp"
 #include "trace/hit_batch.hpp"
 
@@ -22,40 +22,31 @@ namespace photile {
 
 namespace {
 
-/// The sums of one pixel, with room for every light.
-class PixelSums {
- public:
-  explicit PixelSums(std::size_t lights)
-      : radiance_(lights, glm::vec3(0.0f)), illuminance_(lights), lit_(lights) {}
+/// What a light gives to a pixel.
+struct PixelLight {
+  glm::vec3 radiance{0.0f};
+  float illuminance = 0;
 
-  void add(std::uint32_t light, const glm::vec3& radiance, float illuminance) {
-    lit_.add(light);
-    radiance_[light] += radiance;
-    illuminance_[light] += illuminance;
+  void add(const glm::vec3& seen, float arriving) {
+    radiance += seen;
+    illuminance += arriving;
   }
-
-  /// Appends the lights that were added to a row, and forgets them.
-  void move_to(LightLayers::Row& row) {
-    for (const std::uint16_t light : lit_.sorted()) {
-      row.light.push_back(light);
-      row.radiance.push_back(radiance_[light]);
-      row.illuminance.push_back(illuminance_[light]);
-      radiance_[light] = glm::vec3(0.0f);
-      illuminance_[light] = 0.0f;
-    }
-    lit_.clear();
-    row.first.push_back(static_cast<std::uint32_t>(row.light.size()));
-  }
-
- private:
-  std::vector<glm::vec3> radiance_;
-  std::vector<float> illuminance_;
-  estimate::LitLights lit_;
 };
+using PixelSums = light::RowSum<PixelLight>;
+
+/// Appends the lights that were added to a row, and forgets them.
+void move(PixelSums& sums, LightLayers::Row& row) {
+  sums.take_lit([&](std::uint16_t light, const PixelLight& sum) {
+    row.light.push_back(light);
+    row.radiance.push_back(sum.radiance);
+    row.illuminance.push_back(sum.illuminance);
+  });
+  row.first.push_back(static_cast<std::uint32_t>(row.light.size()));
+}
 
 void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
   for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
-    sums.add(row.light[i], row.radiance[i], row.illuminance[i]);
+    sums.of(row.light[i]).add(row.radiance[i], row.illuminance[i]);
   }
 }
 
@@ -64,19 +55,18 @@ float illuminance_weight(const PrimaryHits& hits, std::size_t hit, float sample_
   return hits.fraction.empty() ? sample_weight : sample_weight * hits.fraction[hit];
 }
 
-void add_hit(const PrimaryHits& hits, std::size_t hit, const Estimates& estimates,
+void add_hit(const PrimaryHits& hits, std::size_t hit, const LightTable& estimates,
              float sample_weight, PixelSums& sums) {
   const float weight = illuminance_weight(hits, hit, sample_weight);
-  for (std::uint64_t i = estimates.first[hit]; i < estimates.first[hit + 1]; ++i) {
-    sums.add(estimates.light[i],
-             hits.throughput[hit] * estimate::reflected_radiance(hits, hit, estimates, i),
-             weight * static_cast<float>(luminance(estimates.irradiance[i])));
-  }
+  estimates.for_each(hit, [&](std::size_t light, std::size_t i) {
+    sums.of(light).add(hits.throughput[hit] * light::reflected_radiance(hits, hit, estimates, i),
+                       weight * static_cast<float>(luminance(estimates.irradiance[i])));
+  });
 }
 
 /// Adds to layers of many lights; threads take rows of the picture.
 void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
-                        const Estimates& estimates, float sample_weight) {
+                        const LightTable& estimates, float sample_weight) {
   std::uint32_t lowest = none, highest = 0;
   const auto widen = [&](std::uint32_t pixel) {
     lowest = std::min(lowest, pixel);
@@ -107,9 +97,9 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
       }
       for (const std::uint32_t i : emission.of(pixel)) {
         const VisibleEmission& seen = batch.emission[i];
-        sums.add(seen.light, seen.radiance, seen.illuminance);
+        sums.of(seen.light).add(seen.radiance, seen.illuminance);
       }
-      sums.move_to(row);
+      move(sums, row);
     }
     row.light.shrink_to_fit();
     row.radiance.shrink_to_fit();
@@ -120,7 +110,7 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
 
 /// Adds the hits whose pixel lies in [first, last), each with all of its lights, in their order.
 void add_hits(LightLayers& layers, std::size_t first, std::size_t last, const PrimaryHits& hits,
-              const Estimates& estimates, float sample_weight) {
+              const LightTable& estimates, float sample_weight) {
   const std::size_t light_count = layers.layers.size();
   for (std::size_t hit = 0; hit < hits.size(); ++hit) {
     const std::size_t pixel = hits.pixel[hit];
@@ -130,7 +120,7 @@ void add_hits(LightLayers& layers, std::size_t first, std::size_t last, const Pr
       const std::size_t index = hit * light_count + light;
       LightLayers::Layer& layer = layers.layers[light];
       layer.radiance[pixel] +=
-          hits.throughput[hit] * estimate::reflected_radiance(hits, hit, estimates, index);
+          hits.throughput[hit] * light::reflected_radiance(hits, hit, estimates, index);
       layer.illuminance[pixel] +=
           weight * static_cast<float>(luminance(estimates.irradiance[index]));
     }
@@ -139,7 +129,7 @@ void add_hits(LightLayers& layers, std::size_t first, std::size_t last, const Pr
 
 }  // namespace
 
-void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estimates& estimates,
+void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const LightTable& estimates,
                  float sample_weight) {
   if (layers.sparse()) {
     add_to_sparse_film(layers, batch, estimates, sample_weight);
@@ -255,76 +245,27 @@ namespace {
 
 constexpr std::size_t hits_per_task = 1024;
 
-/// The sums of one hit, with room for every layer.
-struct Sums {
-  std::vector<glm::vec3> irradiance, radiance;
-  estimate::LitLights lit;
-
-  explicit Sums(std::size_t layers) : irradiance(layers), radiance(layers), lit(layers) {}
-
-  void clear() {
-    for (const std::uint16_t layer : lit.sorted()) {
-      irradiance[layer] = radiance[layer] = glm::vec3(0.0f);
-    }
-    lit.clear();
-  }
-};
-
-void sum_hit(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hit, Sums& sums) {
-  sums.clear();
-  estimate::for_each_estimate(estimates, hit, mixdown.layer_of.size(),
-                              [&](std::size_t light, std::size_t i) {
-                                const std::uint32_t layer = mixdown.layer_of[light];
-                                const float scale = mixdown.scale[light];
-                                sums.irradiance[layer] += scale * estimates.irradiance[i];
-                                if (!estimates.radiance.empty())
-                                  sums.radiance[layer] += scale * estimates.radiance[i];
-                                sums.lit.add(layer);
-                              });
-}
-
-template <class Work>
-void for_each_hit(std::size_t hits, std::size_t layers, const Work& work) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits, hits_per_task),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      Sums sums(layers);
-                      for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
-                        work(hit, sums);
-                      }
-                    });
-}
-
-/// Where each hit's layers lie among those that any light reaches.
-void store_layers(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits,
-                  Estimates& result) {
-  result.first.assign(hits + 1, 0);
-  for_each_hit(hits, mixdown.layers.size(), [&](std::size_t hit, Sums& sums) {
-    sum_hit(mixdown, estimates, hit, sums);
-    result.first[hit + 1] = sums.lit.count();
-  });
-  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-  result.light.resize(result.first.back());
-}
-
 }  // namespace
 
-Estimates pooled(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits) {
-  const std::size_t layers = mixdown.layers.size();
-  const bool sparse = layers > max_dense_lights, glossy = !estimates.radiance.empty();
-  Estimates result;
-  if (sparse) store_layers(mixdown, estimates, hits, result);
-  result.irradiance.resize(sparse ? result.light.size() : hits * layers);
-  if (glossy) result.radiance.resize(result.irradiance.size());
-  for_each_hit(hits, layers, [&](std::size_t hit, Sums& sums) {
-    sum_hit(mixdown, estimates, hit, sums);
-    std::size_t next = sparse ? static_cast<std::size_t>(result.first[hit]) : hit * layers;
-    for (const std::uint16_t layer : sums.lit.sorted()) {
-      const std::size_t to = sparse ? next++ : next + layer;  // the others stay 0
-      if (sparse) result.light[to] = layer;
-      result.irradiance[to] = sums.irradiance[layer];
-      if (glossy) result.radiance[to] = sums.radiance[layer];
+LightTable pooled(const LayerMixdown& mixdown, const LightTable& light) {
+  const std::size_t layers = mixdown.layers.size(), hits = light.rows();
+  const bool glossy = !light.radiance.empty();
+  std::vector<LightTable> parts((hits + hits_per_task - 1) / hits_per_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    LightTable& rows = parts[part] = LightTable(layers, layers > max_dense_lights);
+    light::RowSum<light::Reflection> sums(layers);
+    const std::size_t last = std::min(hits, (part + 1) * hits_per_task);
+    for (std::size_t hit = part * hits_per_task; hit < last; ++hit) {
+      light.for_each(hit, [&](std::size_t from, std::size_t i) {
+        const float scale = mixdown.scale[from];
+        sums.of(mixdown.layer_of[from])
+            .add(scale * light.irradiance[i], glossy ? scale * light.radiance[i] : glm::vec3(0.0f));
+      });
+      light::end_row(sums, rows, glossy);
     }
   });
+  LightTable result(layers, layers > max_dense_lights);
+  for (LightTable& part : parts) result.append(std::move(part));
   return result;
 }
 

@@ -16,7 +16,7 @@ namespace photile {
 /// thread.
 ///   sample_weight   1 / samples per pixel: what a whole sample counts in the illuminance of its
 ///   pixel
-void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const Estimates& estimates,
+void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const LightTable& estimates,
                  float sample_weight);
 
 /// Raises to zero what is below it in a finished picture.
@@ -33,8 +33,8 @@ void raise_to_zero(LightLayers& layers);
 ///            run of samples of pixel x
 void add_sample_errors(LightLayers& errors, const LightLayers& runs);
 
-/// The estimates of the pooled layers; those of a hit are summed in its own order.
-Estimates pooled(const LayerMixdown& mixdown, const Estimates& estimates, std::size_t hits);
+/// The light of the pooled layers; the lights of a row are summed in its own order.
+LightTable pooled(const LayerMixdown& mixdown, const LightTable& light);
 
 /// Pools the emission of visible lights.
 void pool_emission(const LayerMixdown& mixdown, PrimaryHitBatch& batch);

@@ -60,19 +60,11 @@ PrimaryHitBatch ReflectedHits::trace(const RayScene& rays, const PrimaryHitParam
 }
 
 PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParameters& film, int, int,
-                                  std::span<const std::uint32_t> map_of) const {
+                                  std::span<const std::uint32_t>) const {
   const PrimaryHits once = trace::sensor_hits(rays, sensors_);
-  const auto map = [&](std::uint32_t hit) {
-    const std::uint32_t own = once.oriented_face[hit];
-    return map_of.empty() ? own : map_of[own];
-  };
-  std::vector<std::uint32_t> order(once.size());
-  for (std::uint32_t hit = 0; hit < order.size(); ++hit) order[hit] = hit;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return map(a) < map(b); });
   PrimaryHitBatch batch;
   PrimaryHits& hits = batch.hits;
-  for (const std::uint32_t hit : order) {
+  for (std::uint32_t hit = 0; hit < once.size(); ++hit) {
     for (int sample = film.pass; sample < film.samples_per_pixel; sample += film.passes) {
       hits.position.push_back(once.position[hit]);
       hits.oriented_face.push_back(once.oriented_face[hit]);

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "estimate/light_at_points.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/renderer.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
@@ -45,14 +45,15 @@ constexpr std::size_t hits_per_chunk = 1024;
 PathEstimator::PathEstimator(const RayScene& rays, std::uint64_t seed)
     : rays_(rays), seed_(seed), needs_(rays.needs()), lights_(rays.scene()) {}
 
-Estimates PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::uint64_t> number,
-                                  const Progress& progress) const {
+LightTable PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::uint64_t> number,
+                                   const Progress& progress) const {
   const std::size_t chunks = (hits.size() + hits_per_chunk - 1) / hits_per_chunk;
-  std::vector<Estimates> parts(chunks);
+  std::vector<LightTable> parts(chunks);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     progress.throw_if_cancelled();
     const trace::FlushDenormals flush_denormals;
-    estimate::EstimateWriter writer(needs_, parts[chunk]);
+    LightTable& rows = parts[chunk] = LightTable(needs_);
+    light::RowSum<light::Reflection> sums(needs_.light_count);
     std::vector<PathLight> found;
     const std::size_t last = std::min(hits.size(), (chunk + 1) * hits_per_chunk);
     for (std::size_t hit = chunk * hits_per_chunk; hit < last; ++hit) {
@@ -62,14 +63,13 @@ Estimates PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::
       const trace::OpaqueBsdf bsdf = trace::bsdf_of(rays_.scene(), hits, hit, start);
       trace_surface_path(rays_, lights_, start, bsdf, random, found);
       for (const PathLight& light : found) {
-        writer.add(light.layer, light.irradiance, light.radiance);
+        sums.of(light.layer).add(light.irradiance, light.radiance);
       }
-      writer.end_hit();
+      light::end_row(sums, rows, needs_.tells_radiance());
     }
   });
-  Estimates all;
-  if (needs_.many_lights()) all.first.push_back(0);
-  for (Estimates& part : parts) all.append(std::move(part));
+  LightTable all(needs_);
+  for (LightTable& part : parts) all.append(std::move(part));
   return all;
 }
 
@@ -106,7 +106,7 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
       const PrimaryHitBatch batch = source.trace(rays, film, first, last, {});
       hits.add(hit_watch.taken());
       const Stopwatch path_watch;
-      const Estimates estimates =
+      const LightTable estimates =
           estimator.estimate(batch.hits, path_numbers(batch.hits, film, first, last), progress);
       paths.add(path_watch.taken());
       const Stopwatch film_watch;

@@ -29,8 +29,8 @@ class PathEstimator {
   /// One path from each hit; work is shared by TBB. Depends on the hits and the numbers alone.
   ///   number   of each hit's path, below 2^48: the same number and hit give the same path
   /// Errors: Interrupted, when `progress` says so.
-  Estimates estimate(const PrimaryHits& hits, std::span<const std::uint64_t> number,
-                     const Progress& progress = Progress::none()) const;
+  LightTable estimate(const PrimaryHits& hits, std::span<const std::uint64_t> number,
+                      const Progress& progress = Progress::none()) const;
 
  private:
   const RayScene& rays_;

@@ -22,12 +22,12 @@ namespace photile {
 namespace {
 
 /// Light that is made when it is first asked for.
-class LazyLight : public estimate::LightAtPoints {
+class LazyLight : public light::LightAtPoints {
  public:
-  using Make = std::function<std::shared_ptr<estimate::LightAtPoints>()>;
+  using Make = std::function<std::shared_ptr<light::LightAtPoints>()>;
   explicit LazyLight(Make make) : make_(std::move(make)) {}
 
-  Estimates at(const PrimaryHits& points, const Progress& progress) override {
+  LightTable at(const PrimaryHits& points, const Progress& progress) override {
     if (points.size() == 0) return {};
     if (!light_) light_ = make_();
     return light_->at(points, progress);
@@ -35,7 +35,7 @@ class LazyLight : public estimate::LightAtPoints {
 
  private:
   Make make_;
-  std::shared_ptr<estimate::LightAtPoints> light_;
+  std::shared_ptr<light::LightAtPoints> light_;
 };
 
 /// The same light maps, with nodes as close together as this spacing asks for, by levels that are
@@ -200,8 +200,8 @@ PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estim
   auto* const processes = plan_.used().processes;
   if (!processes) return {estimate, estimate, estimate};
   const auto by = [&](Exchange::Points points) {
-    return std::make_shared<Exchange>(*processes, owners_, estimate, points, layer_powers_.size(),
-                                      rays_.needs().many_lights(), costs_.points_sent);
+    return std::make_shared<Exchange>(*processes, owners_, estimate, points,
+                                      LightTable(rays_.needs()), costs_.points_sent);
   };
   return {by(Exchange::Points::own), by(Exchange::Points::common), estimate};
 }

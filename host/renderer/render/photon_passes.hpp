@@ -22,9 +22,9 @@ namespace photile {
 
 /// The photon estimate, as points ask for it.
 struct PhotonLight {
-  std::shared_ptr<estimate::LightAtPoints> of_points;
+  std::shared_ptr<light::LightAtPoints> of_points;
   /// The light at points that all processes ask for together; `own` where there is one process.
-  std::shared_ptr<estimate::LightAtPoints> of_nodes;
+  std::shared_ptr<light::LightAtPoints> of_nodes;
   std::shared_ptr<const estimate::PhotonEstimate>
       estimate;  ///< null where maps are built when they are needed
 };
@@ -60,8 +60,8 @@ class PassLight {
   void grow(int parts);
 
   /// All light at points: the end of the chain.
-  estimate::LightAtPoints& light() {
-    return cache_ ? static_cast<estimate::LightAtPoints&>(*cache_) : *photons_.all.of_points;
+  light::LightAtPoints& light() {
+    return cache_ ? static_cast<light::LightAtPoints&>(*cache_) : *photons_.all.of_points;
   }
 
   /// Null where light maps are not read.

@@ -98,6 +98,7 @@ RenderResult Picture::finish(double radius) {
   return {.layers = std::move(layers_),
           .statistics = costs.statistics(),
           .used = used,
+          .standard_error = costs.light_map_errors.mean(),
           .stored_photons = costs.stored_photons,
           .device_fractions = fractions_};
 }
@@ -137,10 +138,10 @@ PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& li
 void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
                        const Progress& progress) {
   const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
-    Estimates estimates = light_at(light, seen.hits, progress);
+    LightTable estimates = light_at(light, seen.hits, progress);
     const Stopwatch film_watch;
     if (mixdown_) {
-      estimates = pooled(*mixdown_, estimates, seen.hits.size());
+      estimates = pooled(*mixdown_, estimates);
       pool_emission(*mixdown_, seen);
     }
     if (source.errors()) {
@@ -166,13 +167,13 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
   add(reflected, 0.0f);  // the pixel's illuminance is not theirs
 }
 
-Estimates Picture::light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress) {
+LightTable Picture::light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress) {
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
   const TimeTaken built = costs_.build.time;  // maps may be built when they are first needed
   cache::SurfaceCache* const cache = light.cache();
   if (!cache) {
-    Estimates estimates = light.light().at(hits, progress);
+    LightTable estimates = light.light().at(hits, progress);
     costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built));
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
@@ -181,7 +182,7 @@ Estimates Picture::light_at(PassLight& light, const PrimaryHits& hits, const Pro
   const std::uint64_t alone_before = cache->hits_alone();
   const std::uint64_t nodes_before = cache->maps().statistics().nodes;
   const TimeTaken filled_before = cache->fill_time();
-  Estimates estimates = light.light().at(hits, progress);
+  LightTable estimates = light.light().at(hits, progress);
   const LightMapStatistics maps = cache->maps().statistics();
   const TimeTaken filling = cache->fill_time() - filled_before;
   costs_.light_maps.add(filling - (costs_.build.time - built), maps.value_bytes + maps.index_bytes);

@@ -38,7 +38,7 @@ class Picture {
   PrimaryHitBatch trace_rows(const HitSource& source, const PassLight& light, int first, int last);
   void add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
                 const Progress& progress);
-  Estimates light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress);
+  LightTable light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress);
   double compile_seconds() const;
 
   const RayScene& rays_;

@@ -85,15 +85,6 @@ void tell_out_of_reach(double error, double floor, Progress& progress) {
 
 }  // namespace
 
-double standard_error_of(const RenderResult& picture) {
-  for (const StageStatistics& stage : picture.statistics) {
-    for (const auto& [name, value] : stage.figures) {
-      if (name == "standard error percent") return value / 100;
-    }
-  }
-  return 0;
-}
-
 RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& asked) {
   if (goal.seconds == 0) return asked;
   RenderParameters part = with_work(asked, first_fraction);
@@ -119,7 +110,7 @@ RenderResult refine(const RefinementGoal& goal, const RenderParameters& part,
     }
     const int parts_before = std::exchange(parts, next);
     steps.finished(parts, *latest);
-    const double now = steps.elapsed(), error = standard_error_of(*latest);
+    const double now = steps.elapsed(), error = latest->standard_error;
     if (goal.error > 0) {
       if (error <= goal.error) return std::move(*latest);
       const double floor = error > stalled * before ? error : least_error(part, parts, error);

@@ -42,7 +42,4 @@ RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& 
 RenderResult refine(const RefinementGoal& goal, const RenderParameters& part,
                     const RefinementSteps& steps, Progress& progress);
 
-/// Relative standard error that the statistics of a picture state; 0 where none is known.
-double standard_error_of(const RenderResult& picture);
-
 }  // namespace photile

@@ -1,0 +1,35 @@
+// The one question that rendering asks: what light arrives at points of surfaces.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include "photile/light_table.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+
+namespace photile::light {
+
+/// Tells the irradiance and the reflected radiance of every light at points of opaque surfaces.
+/// The photon estimate answers by photons, rays that gather by asking another where they end, a
+/// cache by samples that another valued, and an exchange by asking the process that has the
+/// photons. PassLight says which of them a rendering is made of.
+class LightAtPoints {
+ public:
+  virtual ~LightAtPoints() = default;
+
+  /// A row for each point, in the order of the points.
+  /// Errors: DeviceError and what follows from it; Interrupted, when `progress` says so.
+  virtual LightTable at(const PrimaryHits& points, const Progress& progress) = 0;
+};
+
+/// Radiance that a point sends against the ray that arrived, of one entry of its row.
+inline glm::vec3 reflected_radiance(const PrimaryHits& points, std::size_t point,
+                                    const LightTable& light, std::size_t entry) {
+  return light.radiance.empty()
+             ? points.diffuse_albedo[point] * glm::one_over_pi<float>() * light.irradiance[entry]
+             : light.radiance[entry];
+}
+
+}  // namespace photile::light

@@ -1,0 +1,201 @@
+#include "photile/light_table.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "photile/defaults.hpp"
+
+namespace photile {
+namespace {
+
+/// Calls visit(column of a, column of b, values for each entry) for the columns of two tables.
+template <class A, class B, class Visit>
+void for_each_column(A& a, B& b, const Visit& visit) {
+  visit(a.irradiance, b.irradiance, std::size_t{1});
+  visit(a.radiance, b.radiance, std::size_t{1});
+  visit(a.by_normal, b.by_normal, std::size_t{1});
+  visit(a.batch, b.batch, static_cast<std::size_t>(b.batches));
+  visit(a.shared_variance, b.shared_variance, std::size_t{1});
+  visit(a.light, b.light, std::size_t{1});
+}
+
+void append_entries(LightTable& to, const LightTable& from, LightTable::Entries entries) {
+  for_each_column(to, from, [&](auto& column, const auto& values, std::size_t width) {
+    if (values.empty()) return;
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(entries.first * width);
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(entries.last * width);
+    column.insert(column.end(), begin, end);
+  });
+}
+
+/// The variance of the mean of independent values.
+template <class T>
+double squared_error_of_mean(std::span<const T> values) {
+  const auto count = static_cast<double>(values.size());
+  if (values.size() < 2) return 0;
+  double mean = 0, squares = 0;
+  for (const T value : values) mean += static_cast<double>(value) / count;
+  for (const T value : values) {
+    const double difference = static_cast<double>(value) - mean;
+    squares += difference * difference;
+  }
+  return squares / (count * (count - 1));
+}
+
+double error_of(const LightTable& table, std::size_t entry, double of_shared) {
+  const auto count = static_cast<std::size_t>(table.batches);
+  const double shared = table.shared_variance.empty() ? 0.0 : double{table.shared_variance[entry]};
+  return std::sqrt(squared_error_of_mean(std::span(table.batch).subspan(entry * count, count)) +
+                   of_shared * of_shared * shared);
+}
+
+}  // namespace
+
+LightTable::LightTable(const SceneNeeds& needs)
+    : LightTable(needs.light_count, needs.many_lights()) {}
+
+LightTable::LightTable(std::size_t of_scene, bool is_sparse) : lights(of_scene) {
+  if (is_sparse) first.push_back(0);
+}
+
+std::size_t LightTable::rows() const {
+  if (sparse()) return first.size() - 1;
+  return lights == 0 ? 0 : irradiance.size() / lights;
+}
+
+void LightTable::append(LightTable more) {
+  if (rows() == 0) {
+    if (more.rows() > 0) *this = std::move(more);
+    return;
+  }
+  const std::uint64_t before = irradiance.size();
+  append_entries(*this, more, {0, more.irradiance.size()});
+  for (std::size_t row = 1; row < more.first.size(); ++row) {
+    first.push_back(before + more.first[row]);
+  }
+}
+
+void LightTable::append_row(const LightTable& from, std::size_t at) {
+  lights = from.lights;
+  batches = from.batches;
+  append_entries(*this, from, from.row(at));
+  if (!from.sparse()) return;
+  if (first.empty()) first.push_back(0);
+  first.push_back(irradiance.size());
+}
+
+LightTable LightTable::gathered(std::span<const std::uint32_t> at) const {
+  LightTable result(lights, sparse());
+  result.batches = batches;
+  std::size_t entries = at.size() * lights;
+  if (sparse()) {
+    result.first.reserve(at.size() + 1);
+    for (const std::uint32_t from : at) {
+      result.first.push_back(result.first.back() + first[from + 1] - first[from]);
+    }
+    entries = result.first.back();
+  }
+  for_each_column(result, *this, [&](auto& column, const auto& values, std::size_t width) {
+    if (values.empty()) return;
+    column.resize(entries * width);
+    tbb::parallel_for(std::size_t{0}, at.size(), [&](std::size_t i) {
+      const Entries from = row(at[i]);
+      std::copy(values.begin() + static_cast<std::ptrdiff_t>(from.first * width),
+                values.begin() + static_cast<std::ptrdiff_t>(from.last * width),
+                column.begin() + static_cast<std::ptrdiff_t>(result.row(i).first * width));
+    });
+  });
+  return result;
+}
+
+LightTable LightTable::slice(std::size_t begin, std::size_t count) const {
+  LightTable result(lights, sparse());
+  result.batches = batches;
+  if (count == 0) return result;
+  const Entries entries{row(begin).first, row(begin + count - 1).last};
+  append_entries(result, *this, entries);
+  for (std::size_t i = 1; sparse() && i <= count; ++i) {
+    result.first.push_back(first[begin + i] - entries.first);
+  }
+  return result;
+}
+
+std::uint64_t LightTable::bytes() const {
+  std::uint64_t bytes = first.size() * sizeof first.front();
+  for_each_column(*this, *this, [&](const auto& column, const auto&, std::size_t) {
+    bytes += column.size() * sizeof column.front();
+  });
+  return bytes;
+}
+
+void LightTable::drop_batches() {
+  batch = shared_variance = {};
+  batches = 0;
+}
+
+double LightTable::error(std::size_t entry) const { return error_of(*this, entry, 1.0); }
+
+double LightTable::scatter(std::size_t entry) const {
+  return error_of(*this, entry, defaults::aimed_noise);
+}
+
+LightTable::Total LightTable::total(std::size_t row, std::span<const double> powers) const {
+  const auto count = static_cast<std::size_t>(batches);
+  std::array<double, max_batches> sums{};
+  double luminance_sum = 0, shared = 0;
+  for_each(row, [&](std::size_t layer, std::size_t entry) {
+    const double power = powers[layer];
+    luminance_sum += power * luminance(glm::dvec3(irradiance[entry]));
+    for (std::size_t b = 0; b < count; ++b) sums[b] += power * double{batch[entry * count + b]};
+    // Photons, or neighbours, that lights share may err in all of them alike.
+    if (!shared_variance.empty()) shared += power * std::sqrt(double{shared_variance[entry]});
+  });
+  shared *= defaults::aimed_noise;
+  return {luminance_sum,
+          std::sqrt(squared_error_of_mean(std::span<const double>(sums).first(count)) +
+                    shared * shared)};
+}
+
+LightTable sum_of(const LightTable& a, const LightTable& b, float share_a, float share_b) {
+  LightTable sum(a.lights, a.sparse());
+  sum.batches = a.batches;
+  const bool shared = !a.shared_variance.empty() || !b.shared_variance.empty();
+  const bool smooth = !a.by_normal.empty() || !b.by_normal.empty();
+  const auto count = static_cast<std::size_t>(a.batches);
+  std::vector<std::size_t> entry_of(a.lights);
+  for (std::size_t row = 0; row < a.rows(); ++row) {
+    const std::size_t first = sum.irradiance.size(), of_none = first + a.lights;
+    entry_of.assign(a.lights, of_none);
+    const auto add = [&](const LightTable& part, float share) {
+      part.for_each(row, [&](std::size_t layer, std::size_t entry) {
+        if (entry_of[layer] == of_none) {
+          entry_of[layer] = sum.irradiance.size();
+          sum.irradiance.emplace_back(0.0f);
+          if (smooth) sum.by_normal.emplace_back(0.0f);
+          sum.batch.resize(sum.batch.size() + count, 0.0f);
+          if (sum.sparse()) sum.light.push_back(static_cast<std::uint16_t>(layer));
+          if (shared) sum.shared_variance.push_back(0);
+        }
+        const std::size_t to = entry_of[layer];
+        sum.irradiance[to] += share * part.irradiance[entry];
+        if (smooth) sum.by_normal[to] += share * part.by_normal[entry];
+        for (std::size_t b = 0; b < count; ++b) {
+          sum.batch[to * count + b] += share * part.batch[entry * count + b];
+        }
+        if (!part.shared_variance.empty()) {
+          sum.shared_variance[to] += share * share * part.shared_variance[entry];
+        }
+      });
+    };
+    add(a, share_a);
+    add(b, share_b);
+    if (sum.sparse()) sum.first.push_back(sum.irradiance.size());
+  }
+  return sum;
+}
+
+}  // namespace photile

@@ -1,0 +1,91 @@
+// The sums of one row of a table of light.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "photile/light_table.hpp"
+
+namespace photile::light {
+
+/// What lights add to a row, with room for every light: those that were added to are known, so that
+/// few are read and set back. Sums run in the order in which they are added.
+///   Sums   of one light; those made by default are of nothing
+template <class Sums>
+class RowSum {
+ public:
+  explicit RowSum(std::size_t lights) : sums_(lights), is_lit_(lights) {}
+
+  /// The sums of a light, to add to.
+  Sums& of(std::size_t light) {
+    if (!is_lit_[light]) {
+      is_lit_[light] = 1;
+      lit_.push_back(static_cast<std::uint16_t>(light));
+    }
+    return sums_[light];
+  }
+  bool has(std::size_t light) const { return is_lit_[light] != 0; }
+  std::size_t size() const { return sums_.size(); }
+
+  /// The lights that were added to, in the order in which they came.
+  std::span<const std::uint16_t> lit() const { return lit_; }
+
+  /// Calls visit(light, its sums) for those that were added to, ascending, and forgets them.
+  template <class Visit>
+  void take_lit(const Visit& visit) {
+    std::sort(lit_.begin(), lit_.end());
+    for (const std::uint16_t light : lit_) {
+      visit(light, sums_[light]);
+      sums_[light] = Sums{};
+      is_lit_[light] = 0;
+    }
+    lit_.clear();
+  }
+
+  /// Ends the row: calls write(light, its sums) for each entry that it has, and begins the next.
+  template <class Write>
+  void end_row(LightTable& table, const Write& write) {
+    if (!table.sparse()) {
+      for (std::size_t light = 0; light < sums_.size(); ++light) write(light, sums_[light]);
+      take_lit([](std::size_t, const Sums&) {});
+      return;
+    }
+    take_lit([&](std::uint16_t light, const Sums& sums) {
+      write(light, sums);
+      table.light.push_back(light);
+    });
+    table.first.push_back(table.irradiance.size());
+  }
+
+ private:
+  std::vector<Sums> sums_;
+  std::vector<std::uint8_t> is_lit_;
+  std::vector<std::uint16_t> lit_;
+};
+
+/// What a light brings to a point, W/m2 or lm/m2, and what the point reflects of it, W/(m2 sr) or
+/// cd/m2.
+struct Reflection {
+  glm::vec3 irradiance{0.0f}, radiance{0.0f};
+
+  void add(const glm::vec3& arriving, const glm::vec3& reflected) {
+    irradiance += arriving;
+    radiance += reflected;
+  }
+};
+
+/// Ends a row of such sums.
+///   has_radiance   whether radiance is a column of the table
+inline void end_row(RowSum<Reflection>& sums, LightTable& table, bool has_radiance) {
+  sums.end_row(table, [&](std::size_t, const Reflection& sum) {
+    table.irradiance.push_back(sum.irradiance);
+    if (has_radiance) table.radiance.push_back(sum.radiance);
+  });
+}
+
+}  // namespace photile::light
