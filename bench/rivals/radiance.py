@@ -42,7 +42,7 @@ SCENES = {
 GRID = {"name": "plane", "origin": [0.05, 0.4, 0.05], "u": [0, 0, 0.45], "v": [0.45, 0, 0],
         "columns": 9, "rows": 9}  # above the blocks
 
-REFERENCE = "--integrator path --rays 65536 --repeats 8"
+REFERENCE = "--integrator path --rays 32768 --repeats 4"
 REFERENCE_SEEDS = (101, 102)
 DIRECT = "-dt 0.03 -dc 0.75 -ds 0.1 -dj 0.9"  # of rtrace: lamps subdivided and jittered
 RTRACE = {

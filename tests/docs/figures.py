@@ -6,6 +6,7 @@ Usage: figures.py SOURCE_FOLDER
 
 - A comment <!-- figure: NAME --> stands behind the numbers of that figure: each is its value, to the digits given.
 - In the sections of README.md that tell what is fast, accurate or not, every number has one.
+- A table of which more than half is numbers stands in such a block, or has a comment <!-- not measured --> before it.
 - Between <!-- begin: bench/SCRIPT --> and <!-- end --> is the text that was recorded; each such block has a record, and
   each record a block.
 - No figure or block is older than what it measures by more than 200 commits. A commit that the history does not have is
@@ -20,10 +21,15 @@ import subprocess
 import sys
 
 OLDEST = 200  # commits
+# Tables of the first two are compared with what the command prints by tests/command; bench/rivals/radiance.py makes the
+# third a block when it is run next, for which lamps of triangles have to be sampled by rtrace without loss.
+LEFT_OUT = ("command-line.md", "settings.md", "beside-radiance.md")
 SECTIONS = ("Three figures", "When not to use it")
 MARKER = re.compile(r"<!-- figure: ([\w.]+) -->")
 NUMBER = re.compile(r"(?<![\w.,])(\d[\d,]*(?:\.\d+)?)(?![\w]|[.,]\d)")
 BLOCK = re.compile(r"^<!-- begin: bench/(\S+) -->\n(.*?)^<!-- end -->$", re.MULTILINE | re.DOTALL)
+TABLE = re.compile(r"(?:^\|.*\n)+", re.MULTILINE)
+MEASURED_CELL = re.compile(r"\W*\d[\d,.]*\W*(?:s|ms|ns|[kMG]B|[kM]|x|times)?(?: \(.*\))?")
 # Numbers that say what was measured, or name something.
 PLAIN = re.compile(r"k = \d+(?: and \d+)?|\d+x\d+|[HR]\d00|\d[\d,]* (?:photons|triangles|paths|seeds)|within \d+%"
                    r"|`[^`]*`|\]\([^)]*\)")
@@ -110,6 +116,16 @@ def check_blocks(source, wrong):
             check_age(source, f"docs/{name}", records[name], f"bench/{name.split()[1]}", wrong)
 
 
+def check_tables(page, text, wrong):
+    """No table of measured numbers is written by hand."""
+    by_hand = BLOCK.sub("", text)
+    for table in TABLE.finditer(by_hand):
+        cells = [cell.strip() for row in table[0].splitlines()[2:] for cell in row.split("|")[1:-1]]
+        numbers_in = sum(MEASURED_CELL.fullmatch(cell) is not None for cell in cells)
+        if 2 * numbers_in > len(cells) and not by_hand[:table.start()].endswith("<!-- not measured -->\n\n"):
+            wrong.append(f"docs/{page}: the table {table[0].splitlines()[0]} is of numbers, and no script wrote it")
+
+
 def check(source):
     """What is wrong, in a line each."""
     figures = json.loads((source / "docs/figures.json").read_text(encoding="utf-8"))
@@ -118,6 +134,8 @@ def check(source):
         text = page.read_text(encoding="utf-8")
         for paragraph in re.split(r"\n\s*\n|\n(?=- )", text):
             check_text(page.name, " ".join(paragraph.split()), figures, wrong)
+        if page.name not in LEFT_OUT:
+            check_tables(page.name, text, wrong)
     for title, paragraph in sections((source / "README.md").read_text(encoding="utf-8")):
         told = check_text("README.md", paragraph, figures, [])
         for end, number in numbers(MARKER.sub(lambda match: " " * len(match[0]), paragraph)):

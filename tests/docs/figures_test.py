@@ -80,6 +80,15 @@ class Figures(unittest.TestCase):
         self.assertIn("other.md: a.py has written a block that docs/blocks.json does not record", missing)
         self.assertIn("page.md: a.py is recorded, but the page has no such block", left)
 
+    def test_a_table_of_numbers_by_hand_is_refused(self):
+        table = "| | s | error |\n|---|--:|--:|\n| room | 1.5 | **2%** |\n\n"
+        page = self.source / "docs/page.md"
+        page.write_text(f"# A page\n\n{table}")
+        self.assertEqual(figures.check(self.source),
+                         ["docs/page.md: the table | | s | error | is of numbers, and no script wrote it"])
+        page.write_text(f"# A page\n\n<!-- not measured -->\n\n{table}| name | value |\n|---|---|\n| k | 50 |\n")
+        self.assertEqual(figures.check(self.source), [])
+
     def test_an_old_block_is_refused(self):
         self.write_block("| 1 s |")
         self.commits(figures.OLDEST + 3)
