@@ -1,6 +1,7 @@
 #include "cache/surface_cache.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,9 +11,11 @@
 #include <vector>
 
 #include "cache/charts.hpp"
+#include "cache/gathered_nodes.hpp"
 #include "cache/node_mix.hpp"
 #include "estimate/map_order.hpp"
 #include "light/light_at_points.hpp"
+#include "light/row_sum.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -25,16 +28,9 @@ namespace photile::cache {
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
-constexpr std::size_t hits_per_interpolation_task = 1024;
+constexpr std::size_t points_per_task = 1024;
 
-/// Hits of these levels.
-std::vector<std::uint32_t> hits_of(std::span<const int> levels, int level) {
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t hit = 0; hit < levels.size(); ++hit) {
-    if (levels[hit] == level) chosen.push_back(hit);
-  }
-  return chosen;
-}
+constexpr int coarsest_level = 1;
 
 /// Per oriented face: flux of its photons at the powers, luminance. Of those that this process
 /// answers for, where there are several.
@@ -98,118 +94,85 @@ const Material& material_of(const Scene& scene, std::uint32_t oriented_face) {
   return scene.materials[scene.triangle_material[triangle_of(oriented_face)]];
 }
 
-/// Writes the light of hits, or its errors, one after another, from nodes, from the coarser
-/// cache that rays read, or from their own estimates.
-class Interpolation {
- public:
-  ///   secondary   null where no hit reads it
-  ///   row         per hit: that of its own estimate, or none
-  Interpolation(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& hits,
-                const HitReading& reading, const LightTable& nodes, const LightTable* secondary,
-                const LightTable& alone, std::span<const std::uint32_t> row)
-      : scene_(scene),
-        needs_(needs),
-        hits_(hits),
-        reading_(reading),
-        nodes_(nodes),
-        secondary_(secondary),
-        alone_(alone),
-        row_(row) {}
-
-  /// The light of hits [first, last).
-  LightTable of(std::size_t first, std::size_t last) const {
-    LightTable rows(needs_);
-    Sums sums(needs_.light_count);
-    light::RowSum<ByNormal> layers(nodes_.by_normal.empty() ? 0 : needs_.light_count);
-    for (std::size_t hit = first; hit < last; ++hit) {
-      if (row_[hit] == none && reading_.levels[hit] != HitReading::secondary && layers.size() > 0) {
-        add_smoothly(hit, layers, sums);
-      } else if (row_[hit] == none) {
-        add_from_maps(hit, reading_.levels[hit] == HitReading::secondary ? *secondary_ : nodes_,
-                      sums);
-      } else {
-        add_alone(hit, row_[hit], sums);
-      }
-      light::end_row(sums, rows, needs_.tells_radiance());
+/// Calls write(point, sums) for each of so many points, which adds the lights of its row. Work is
+/// shared by TBB.
+template <class Write>
+LightTable rows_of(std::size_t points, const SceneNeeds& needs, const Write& write) {
+  std::vector<LightTable> parts((points + points_per_task - 1) / points_per_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    LightTable& rows = parts[part] = LightTable(needs);
+    light::RowSum<light::Reflection> sums(needs.light_count);
+    const std::size_t last = std::min(points, (part + 1) * points_per_task);
+    for (std::size_t point = part * points_per_task; point < last; ++point) {
+      write(point, sums);
+      light::end_row(sums, rows, needs.tells_radiance());
     }
-    return rows;
-  }
+  });
+  LightTable all(needs);
+  for (LightTable& part : parts) all.append(std::move(part));
+  return all;
+}
 
-  /// Sum of the squares of relative standard errors of hits [first, last) that nodes answer.
-  double squared_errors(const LightMaps& maps, std::size_t first, std::size_t last) const {
-    double sum = 0;
-    for (std::size_t hit = first; hit < last; ++hit) {
-      if (reading_.levels[hit] <= 0) continue;
-      const double error = maps.relative_error(reading_.bilinear[hit]);
-      sum += error * error;
-    }
-    return sum;
-  }
+/// What the nodes around a point say of a light.
+struct ByNormal {
+  glm::vec3 irradiance{0.0f};
+  glm::vec4 by_normal{0.0f};
+};
 
- private:
-  using Sums = light::RowSum<light::Reflection>;
-  /// What the nodes around a hit say of a layer.
-  struct ByNormal {
-    glm::vec3 irradiance{0.0f};
-    glm::vec4 by_normal{0.0f};
-  };
-
-  /// Irradiance is that of the surface; what is reflected goes by the shading normal, or by that of
-  /// a normal map, in the colour of the irradiance.
-  ///   layers   of none
-  void add_smoothly(std::size_t hit, light::RowSum<ByNormal>& layers, Sums& sums) const {
-    const BilinearWeights& bilinear = reading_.bilinear[hit];
-    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-      const float weight = bilinear.weight[i];
+/// The light of points between nodes, or its errors. Irradiance is that of the surface. Where nodes
+/// tell light by the normal, what is reflected goes by the shading normal, or by that of a normal
+/// map, in the colour of the irradiance.
+///   nodes   of each point
+///   of      the nodes
+LightTable interpolated(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& points,
+                        std::span<const BilinearWeights> nodes, const LightTable& of) {
+  const auto for_each = [&](std::size_t point, const auto& visit) {
+    for (std::size_t i = 0; i < nodes[point].node.size(); ++i) {
+      const float weight = nodes[point].weight[i];
       if (weight == 0.0f) continue;
-      nodes_.for_each(bilinear.node[i], [&](std::size_t layer, std::size_t value) {
-        ByNormal& light = layers.of(layer);
-        light.irradiance += weight * nodes_.irradiance[value];
-        light.by_normal += weight * nodes_.by_normal[value];
-      });
+      of.for_each(nodes[point].node[i],
+                  [&](std::size_t layer, std::size_t entry) { visit(layer, entry, weight); });
     }
+  };
+  if (of.by_normal.empty()) {
+    return rows_of(points.size(), needs, [&](std::size_t point, auto& sums) {
+      const glm::vec3 reflects = points.diffuse_albedo[point] * glm::one_over_pi<float>();
+      for_each(point, [&](std::size_t layer, std::size_t entry, float weight) {
+        const glm::vec3 light = weight * of.irradiance[entry];
+        sums.of(layer).add(light, reflects * light);
+      });
+    });
+  }
+  tbb::enumerable_thread_specific<light::RowSum<ByNormal>> layers_of_threads(needs.light_count);
+  return rows_of(points.size(), needs, [&](std::size_t point, auto& sums) {
+    light::RowSum<ByNormal>& layers = layers_of_threads.local();
+    for_each(point, [&](std::size_t layer, std::size_t entry, float weight) {
+      ByNormal& light = layers.of(layer);
+      light.irradiance += weight * of.irradiance[entry];
+      light.by_normal += weight * of.by_normal[entry];
+    });
     const glm::vec3 normal =
-        material_of(scene_, hits_.oriented_face[hit]).normal_texture != none
-            ? hits_.lobe[hit].normal
-            : trace::shading_normal(scene_, hits_.oriented_face[hit], hits_.position[hit]);
-    const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
+        material_of(scene, points.oriented_face[point]).normal_texture != none
+            ? points.lobe[point].normal
+            : trace::shading_normal(scene, points.oriented_face[point], points.position[point]);
+    const glm::vec3 reflects = points.diffuse_albedo[point] * glm::one_over_pi<float>();
     layers.take_lit([&](std::size_t layer, const ByNormal& light) {
       if (light.irradiance == glm::vec3(0.0f)) return;
       sums.of(layer).add(light.irradiance,
                          reflects * turned(light.irradiance, light.by_normal, normal));
     });
-  }
+  });
+}
 
-  void add_from_maps(std::size_t hit, const LightTable& nodes, Sums& sums) const {
-    const BilinearWeights& bilinear = reading_.bilinear[hit];
-    const glm::vec3 reflects = hits_.diffuse_albedo[hit] * glm::one_over_pi<float>();
-    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-      if (bilinear.weight[i] == 0.0f) continue;
-      nodes.for_each(bilinear.node[i], [&](std::size_t layer, std::size_t value) {
-        const glm::vec3 light = bilinear.weight[i] * nodes.irradiance[value];
-        sums.of(layer).add(light, reflects * light);
-      });
-    }
-  }
-
-  void add_alone(std::size_t hit, std::uint32_t row, Sums& sums) const {
-    alone_.for_each(row, [&](std::size_t layer, std::size_t value) {
-      const glm::vec3& light = alone_.irradiance[value];
-      sums.of(layer).add(light, alone_.radiance.empty()
-                                    ? hits_.diffuse_albedo[hit] * glm::one_over_pi<float>() * light
-                                    : alone_.radiance[value]);
+/// Light that was found at the points themselves, in the form of that which lies between nodes.
+LightTable completed(const SceneNeeds& needs, const PrimaryHits& points, const LightTable& found) {
+  return rows_of(points.size(), needs, [&](std::size_t point, auto& sums) {
+    found.for_each(point, [&](std::size_t layer, std::size_t entry) {
+      sums.of(layer).add(found.irradiance[entry],
+                         light::reflected_radiance(points, point, found, entry));
     });
-  }
-
-  const Scene& scene_;
-  const SceneNeeds& needs_;
-  const PrimaryHits& hits_;
-  const HitReading& reading_;
-  const LightTable& nodes_;
-  const LightTable* secondary_;
-  const LightTable& alone_;
-  std::span<const std::uint32_t> row_;
-};
+  });
+}
 
 }  // namespace
 
@@ -255,124 +218,132 @@ SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& param
       maps_(scene_, parameters),
       visibility_(rays, maps_) {}
 
-LightTable SurfaceCache::at(const PrimaryHits& hits, const Progress& progress) {
-  const HitReading reading = read(hits, progress);
-  std::vector<std::uint32_t> alone, row(hits.size(), none);
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (reading.levels[hit] != HitReading::own_estimate) continue;
-    row[hit] = static_cast<std::uint32_t>(alone.size());
-    alone.push_back(hit);
+/// What answers for points, by their positions among all, and the points.
+struct SurfaceCache::Reading {
+  struct Part {
+    std::vector<std::uint32_t> row;
+    PrimaryHits points;
+    std::vector<BilinearWeights> nodes;  ///< of each point; of none where the point is alone
+
+    explicit Part(std::vector<std::uint32_t> rows, const PrimaryHits& all)
+        : row(std::move(rows)), points(estimate::reordered(all, 0, row)), nodes(row.size()) {}
+  };
+  Part alone;   ///< have estimates of their own
+  Part fine;    ///< lie between nodes
+  Part coarse;  ///< are answered by the light where rays end, or by the coarsest nodes
+
+  /// Rows of the parts, one part after another, in the order of all points.
+  LightTable in_order(LightTable rows, const LightTable& of_fine,
+                      const LightTable& of_coarse) const {
+    rows.append(of_fine);
+    rows.append(of_coarse);
+    std::vector<std::uint32_t> order = alone.row;
+    order.insert(order.end(), fine.row.begin(), fine.row.end());
+    order.insert(order.end(), coarse.row.begin(), coarse.row.end());
+    return estimate::restored(rows, order);
   }
-  hits_alone_ += alone.size();
-  const LightTable own = alone.empty() && !shared_
-                             ? LightTable{}
-                             : elsewhere_.at(estimate::reordered(hits, 0, alone), progress);
-  const bool reads_secondary = std::find(reading.levels.begin(), reading.levels.end(),
-                                         int{HitReading::secondary}) != reading.levels.end();
-  const LightTable* secondary = reads_secondary ? &secondary_->values() : nullptr;
-  const Interpolation bilinear(scene_, needs_, hits, reading, maps_.values(), secondary, own, row);
-  std::vector<LightTable> parts((hits.size() + hits_per_interpolation_task - 1) /
-                                hits_per_interpolation_task);
-  std::vector<double> squared_errors(parts.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    const std::size_t first = part * hits_per_interpolation_task;
-    const std::size_t last = std::min(hits.size(), first + hits_per_interpolation_task);
-    parts[part] = bilinear.of(first, last);
-    squared_errors[part] = bilinear.squared_errors(maps_, first, last);
-  });
-  for (const double part : squared_errors) errors_read_.squares += part;
-  errors_read_.hits += static_cast<std::uint64_t>(
-      std::count_if(reading.levels.begin(), reading.levels.end(), [](int l) { return l > 0; }));
-  return joined(std::move(parts));
+};
+
+LightTable SurfaceCache::at(const PrimaryHits& points, const Progress& progress) {
+  return light_of(read(points, progress), progress);
 }
 
-LightTable SurfaceCache::errors(const PrimaryHits& hits, const LightTable& estimates,
-                                const LightTable& of_nodes) {
-  const HitReading reading = read(hits, Progress::none());
-  std::vector<std::uint32_t> row(hits.size(), none);
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (reading.levels[hit] <= 0) row[hit] = hit;  // photons
-  }
-  LightTable own = estimates;
+LightAndErrors SurfaceCache::with_errors(const PrimaryHits& points, const GatheredNodes& nodes,
+                                         const Progress& progress) {
+  const Reading reading = read(points, progress);
+  LightTable light = light_of(reading, progress);
   const auto relative = static_cast<float>(photon_noise().noise);
-  for (glm::vec3& light : own.irradiance) light *= relative;
-  for (glm::vec3& light : own.radiance) light *= relative;
-  const Interpolation bilinear(scene_, needs_, hits, reading, of_nodes, nullptr, own, row);
-  std::vector<LightTable> parts((hits.size() + hits_per_interpolation_task - 1) /
-                                hits_per_interpolation_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    const std::size_t first = part * hits_per_interpolation_task;
-    parts[part] = bilinear.of(first, std::min(hits.size(), first + hits_per_interpolation_task));
-  });
-  return joined(std::move(parts));
+  const auto by_photons = [&](const Reading::Part& part) {
+    LightTable errors = light.gathered(part.row);
+    for (glm::vec3& value : errors.irradiance) value *= relative;
+    for (glm::vec3& value : errors.radiance) value *= relative;
+    return completed(needs_, part.points, errors);
+  };
+  const Reading::Part& fine = reading.fine;
+  LightTable errors =
+      reading.in_order(by_photons(reading.alone),
+                       interpolated(scene_, needs_, fine.points, fine.nodes, nodes.errors()),
+                       by_photons(reading.coarse));
+  return {std::move(light), std::move(errors)};
 }
 
-LightTable SurfaceCache::joined(std::vector<LightTable> parts) const {
-  LightTable all(needs_);
-  for (LightTable& part : parts) all.append(std::move(part));
-  return all;
+LightTable SurfaceCache::light_of(const Reading& reading, const Progress& progress) {
+  const auto& [alone, fine, coarse] = reading;
+  hits_alone_ += alone.row.size();
+  const LightTable found =
+      alone.row.empty() && !shared_ ? LightTable{} : elsewhere_.at(alone.points, progress);
+  const LightTable& of_coarse =
+      secondary_ && !coarse.row.empty() ? secondary_->values() : maps_.values();
+  return reading.in_order(completed(needs_, alone.points, found),
+                          interpolated(scene_, needs_, fine.points, fine.nodes, maps_.values()),
+                          interpolated(scene_, needs_, coarse.points, coarse.nodes, of_coarse));
 }
 
-HitReading SurfaceCache::read(const PrimaryHits& hits, const Progress& progress) {
-  HitReading reading{std::vector<int>(hits.size(), LightMaps::all_rounds),
-                     std::vector<BilinearWeights>(hits.size())};
-  for (std::size_t hit = 0; hit < hits.size(); ++hit) {
-    if (!serves(hits, hit)) {
-      reading.levels[hit] = HitReading::own_estimate;
-    } else if (!hits.coarse.empty() && hits.coarse[hit] != 0) {
-      reading.levels[hit] = secondary_ ? HitReading::secondary : 1;
-    }
+/// Values what the points read, and finds it.
+SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progress& progress) {
+  std::vector<std::uint32_t> alone, fine, coarse;
+  for (std::uint32_t point = 0; point < points.size(); ++point) {
+    const bool is_coarse = !points.coarse.empty() && points.coarse[point] != 0;
+    (!serves(points, point) ? alone : is_coarse ? coarse : fine).push_back(point);
   }
+  Reading::Part between(std::move(fine), points), coarser(std::move(coarse), points);
   const Stopwatch stopwatch;
-  fill(hits, reading.levels, progress);
-  find_secondary(hits, progress, reading);
+  if (shared_ || !between.row.empty()) maps_.fill(between.points, source_, progress);
+  if (secondary_) {
+    if (shared_ || !coarser.row.empty()) {
+      coarser.nodes = secondary_->nodes_around(coarser.points, progress);
+    }
+  } else if (shared_ || !coarser.row.empty()) {
+    maps_.fill(coarser.points, source_, progress, LightMaps::all_rounds, coarsest_level);
+  }
   fill_time_ += stopwatch.taken();
-  find_nodes(hits, reading);
-  return reading;
-}
-
-/// Values the nodes that hits read.
-void SurfaceCache::fill(const PrimaryHits& hits, std::span<const int> levels,
-                        const Progress& progress) {
-  const bool all =
-      std::all_of(levels.begin(), levels.end(), [](int l) { return l == LightMaps::all_rounds; });
-  if (all && !shared_) {
-    maps_.fill(hits, source_, progress);
-    return;
+  if (!secondary_) find_nodes(coarser.points, coarsest_level, coarser.nodes);
+  const std::vector<std::uint8_t> seen =
+      find_nodes(between.points, LightMaps::all_rounds, between.nodes);
+  // Where photons value nodes they would say no more at a point which no node sees, and may have
+  // to be traced first.
+  if (secondary_ && std::find(seen.begin(), seen.end(), 0) != seen.end()) {
+    std::vector<BilinearWeights> nodes;
+    std::vector<std::uint32_t> rows;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i] == 0) {
+        alone.push_back(between.row[i]);
+      } else {
+        rows.push_back(between.row[i]);
+        nodes.push_back(between.nodes[i]);
+      }
+    }
+    std::sort(alone.begin(), alone.end());
+    between = Reading::Part(std::move(rows), points);
+    between.nodes = std::move(nodes);
   }
-  for (const int level : {LightMaps::all_rounds, 1}) {
-    maps_.fill(estimate::reordered(hits, 0, hits_of(levels, level)), source_, progress,
-               LightMaps::all_rounds, level);
-  }
+  count_errors(between.nodes);
+  if (!secondary_) count_errors(coarser.nodes);
+  return {Reading::Part(std::move(alone), points), std::move(between), std::move(coarser)};
 }
 
-void SurfaceCache::find_secondary(const PrimaryHits& hits, const Progress& progress,
-                                  HitReading& reading) {
-  const std::vector<std::uint32_t> chosen = hits_of(reading.levels, HitReading::secondary);
-  if (chosen.empty() && !(secondary_ && shared_)) return;
-  const std::vector<BilinearWeights> bilinear =
-      secondary_->nodes_around(estimate::reordered(hits, 0, chosen), progress);
-  for (std::size_t i = 0; i < chosen.size(); ++i) reading.bilinear[chosen[i]] = bilinear[i];
-}
-
-/// Hits that no node sees are to have estimates of their own.
-void SurfaceCache::find_nodes(const PrimaryHits& hits, HitReading& reading) const {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, hits.size(), hits_per_interpolation_task),
+/// The nodes around points. Returns 1 for each of them that one of its nodes sees, else 0.
+std::vector<std::uint8_t> SurfaceCache::find_nodes(const PrimaryHits& points, int levels,
+                                                   std::span<BilinearWeights> nodes) const {
+  std::vector<std::uint8_t> seen(points.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), points_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
-                      for (std::size_t hit = range.begin(); hit < range.end(); ++hit) {
-                        int& levels = reading.levels[hit];
-                        if (levels <= 0) continue;
-                        const std::uint32_t face = hits.oriented_face[hit];
-                        BilinearWeights& bilinear = reading.bilinear[hit];
-                        maps_.find(face, hits.position[hit], bilinear, levels);
-                        const bool seen =
-                            visibility_.keep_visible(face, hits.position[hit], bilinear);
-                        // Where photons value nodes they would say no more at the hit, and may
-                        // have to be traced first.
-                        if (secondary_ && !seen && levels > 1) levels = HitReading::own_estimate;
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        const std::uint32_t face = points.oriented_face[i];
+                        maps_.find(face, points.position[i], nodes[i], levels);
+                        seen[i] = visibility_.keep_visible(face, points.position[i], nodes[i]);
                       }
                     });
+  return seen;
+}
+
+void SurfaceCache::count_errors(std::span<const BilinearWeights> nodes) {
+  for (const BilinearWeights& bilinear : nodes) {
+    const double error = maps_.relative_error(bilinear);
+    errors_read_.squares += error * error;
+  }
+  errors_read_.hits += nodes.size();
 }
 
 PhotonNoise SurfaceCache::photon_noise() const {

@@ -17,6 +17,8 @@
 
 namespace photile::cache {
 
+class GatheredNodes;
+
 /// What photon estimates show of their noise.
 struct PhotonNoise {
   double width;  ///< metres, over which estimates err alike
@@ -55,13 +57,12 @@ LightMapParameters light_map_parameters(const Scene& scene, const Photons& photo
                                         double radius, double angle_degrees, double spacing,
                                         double detail, std::span<const double> powers);
 
-/// What the light of hits is read from.
-struct HitReading {
-  static constexpr int own_estimate = -1, secondary = 0;
-  std::vector<int> levels;                ///< of nodes; or `secondary`, or `own_estimate`
-  std::vector<BilinearWeights> bilinear;  ///< of its nodes
+/// Light at points, and its standard errors in the same form.
+struct LightAndErrors {
+  LightTable light, errors;
 };
 
+/// Light read between nodes on the surface, where it does not ask from where it comes.
 class SurfaceCache : public light::LightAtPoints {
  public:
   /// References are kept.
@@ -78,12 +79,11 @@ class SurfaceCache : public light::LightAtPoints {
   /// The light at points in any order.
   LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
-  /// Standard errors of what `at` found at these hits, in the same form. Nodes around a hit
-  /// are taken to err alike; where photons served, theirs is that of a density from k of them.
-  ///   estimates   that were found
-  ///   of_nodes    as GatheredNodes::errors
-  LightTable errors(const PrimaryHits& hits, const LightTable& estimates,
-                    const LightTable& of_nodes);
+  /// The same light, and its errors. Nodes around a point are taken to err alike; where photons
+  /// served, the error is that of a density from k of them.
+  ///   nodes   the source that values the nodes
+  LightAndErrors with_errors(const PrimaryHits& points, const GatheredNodes& nodes,
+                             const Progress& progress);
 
   /// The noise of the light that photons alone give.
   PhotonNoise photon_noise() const;
@@ -104,14 +104,12 @@ class SurfaceCache : public light::LightAtPoints {
   /// from, nor a normal map, unless nodes tell how their light depends on the normal.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
-  /// Values what the hits read.
-  HitReading read(const PrimaryHits& hits, const Progress& progress);
-  void fill(const PrimaryHits& hits, std::span<const int> levels, const Progress& progress);
-  void find_secondary(const PrimaryHits& hits, const Progress& progress, HitReading& reading);
-  void find_nodes(const PrimaryHits& hits, HitReading& reading) const;
-
-  /// The light of hits that follow each other.
-  LightTable joined(std::vector<LightTable> parts) const;
+  struct Reading;
+  Reading read(const PrimaryHits& points, const Progress& progress);
+  std::vector<std::uint8_t> find_nodes(const PrimaryHits& points, int levels,
+                                       std::span<BilinearWeights> nodes) const;
+  LightTable light_of(const Reading& reading, const Progress& progress);
+  void count_errors(std::span<const BilinearWeights> nodes);
 
   const Scene& scene_;
   const SceneNeeds needs_;

@@ -138,7 +138,8 @@ PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& li
 void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
                        const Progress& progress) {
   const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
-    LightTable estimates = light_at(light, seen.hits, progress);
+    const bool has_errors = source.errors() && light.gathered();
+    auto [estimates, errors] = light_at(light, seen.hits, has_errors, progress);
     const Stopwatch film_watch;
     if (mixdown_) {
       estimates = pooled(*mixdown_, estimates);
@@ -150,11 +151,9 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
     }
     add_to_film(layers_, seen, estimates, illuminance_weight);
     costs_.film.add(film_watch.taken());
-    if (!source.errors() || !light.gathered()) return;
+    if (!has_errors) return;
     seen.emission.clear();  // its samples alone err
-    add_to_film(*source.errors(), seen,
-                light.cache()->errors(seen.hits, estimates, light.gathered()->errors()),
-                illuminance_weight);
+    add_to_film(*source.errors(), seen, errors, illuminance_weight);
   };
   PrimaryHitBatch reflected;
   if (batch.reflected.size() > 0 && light.cache()) {
@@ -167,7 +166,8 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
   add(reflected, 0.0f);  // the pixel's illuminance is not theirs
 }
 
-LightTable Picture::light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress) {
+cache::LightAndErrors Picture::light_at(PassLight& light, const PrimaryHits& hits, bool with_errors,
+                                        const Progress& progress) {
   const Stopwatch stopwatch;
   const double compiled = compile_seconds();
   const TimeTaken built = costs_.build.time;  // maps may be built when they are first needed
@@ -177,12 +177,13 @@ LightTable Picture::light_at(PassLight& light, const PrimaryHits& hits, const Pr
     costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built));
     costs_.estimate_compile_seconds += compile_seconds() - compiled;
     costs_.hit_count += hits.size();
-    return estimates;
+    return {std::move(estimates), {}};
   }
   const std::uint64_t alone_before = cache->hits_alone();
   const std::uint64_t nodes_before = cache->maps().statistics().nodes;
   const TimeTaken filled_before = cache->fill_time();
-  LightTable estimates = light.light().at(hits, progress);
+  cache::LightAndErrors found = with_errors ? cache->with_errors(hits, *light.gathered(), progress)
+                                            : cache::LightAndErrors{cache->at(hits, progress), {}};
   const LightMapStatistics maps = cache->maps().statistics();
   const TimeTaken filling = cache->fill_time() - filled_before;
   costs_.light_maps.add(filling - (costs_.build.time - built), maps.value_bytes + maps.index_bytes);
@@ -190,7 +191,7 @@ LightTable Picture::light_at(PassLight& light, const PrimaryHits& hits, const Pr
   costs_.light_map_errors = cache->errors_read();
   costs_.estimate.add(stopwatch.taken() - filling);
   costs_.hit_count += cache->hits_alone() - alone_before;
-  return estimates;
+  return found;
 }
 
 }  // namespace photile

@@ -38,7 +38,9 @@ class Picture {
   PrimaryHitBatch trace_rows(const HitSource& source, const PassLight& light, int first, int last);
   void add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
                 const Progress& progress);
-  LightTable light_at(PassLight& light, const PrimaryHits& hits, const Progress& progress);
+  /// Errors are empty unless they are asked for.
+  cache::LightAndErrors light_at(PassLight& light, const PrimaryHits& hits, bool with_errors,
+                                 const Progress& progress);
   double compile_seconds() const;
 
   const RayScene& rays_;
