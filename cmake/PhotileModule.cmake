@@ -27,6 +27,9 @@ endfunction()
 set(PHOTILE_MODULE_FOLDER ${CMAKE_INSTALL_LIBDIR}/photile)
 set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/build/denoiser/lib)
 
+set(PHOTILE_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING
+  "Where the Python module is installed, below the prefix")
+
 # photile_find_modules(<target> <folder>): where the target that is installed in this folder, below the
 # prefix, finds them.
 function(photile_find_modules target folder)

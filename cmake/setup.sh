@@ -57,7 +57,9 @@ libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
 libbenchmark-dev       | benches
 python3-matplotlib     | benches: plots
-weasyprint             | prints reports as PDF
+python3-jinja2         | reports: pages
+python3-contourpy      | reports: isolines of plans
+weasyprint             | reports: PDF
 clang                  | tests: compiles every kernel file as it lies there
 python3                | scripts of the docs and the tests
 python3-dev            | the Python module

@@ -105,7 +105,7 @@ FURTHER_TESTS = {
     "gltf": (("fuzz", "corpus"),), "obj": (("fuzz", "corpus"),),
     "image": (("loading", "textures"),),
     "measuring": (("command", "measure"),), "daylight": (("command", "daylight"),), "glare": (("command", "glare"),),
-    "report": (("measuring", "plan_drawing"), ("measuring", "plan_surroundings"), ("measuring", "isolines"),
+    "report": (("measuring", "plan_surroundings"), ("measuring", "isolines"),
                ("measuring", "false_colour_picture"), ("measuring", "sensor_files"), ("image", "colours"),
                ("command", "pictures"), ("command", "measure"), ("command", "glare"), ("command", "daylight")),
     "saved_maps": (("command", "saved_maps"),), "cloud": (), "view": (), "denoise": (("render", "denoiser"),),

@@ -53,7 +53,7 @@ std::size_t LLVMFuzzerCustomMutator(std::uint8_t* bytes, std::size_t size, std::
                                     unsigned seed) {
   static const bool json = target_name() == "gltf" || target_name() == "planes" ||
                            target_name() == "moods" || target_name() == "camera_path" ||
-                           target_name() == "luminaires" || target_name() == "results";
+                           target_name() == "luminaires";
   if (json && seed % 2 == 0) {
     const std::string changed = mutated_json({bytes, size}, seed / 2);
     if (!changed.empty() && changed.size() <= most) {

@@ -280,7 +280,6 @@ const std::map<std::string_view, FuzzTarget>& fuzz_targets() {
                                                               {"points", fuzz_points},
                                                               {"radiance", fuzz_radiance},
                                                               {"relight", fuzz_relight},
-                                                              {"results", fuzz_results},
                                                               {"saved_maps", fuzz_saved_maps},
                                                               {"schedules", fuzz_schedules},
                                                               {"texture", fuzz_texture},

@@ -1,4 +1,4 @@
-// What is placed in and around a scene: luminaires, and the weather. What reports include.
+// What is placed in and around a scene: luminaires, and the weather.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -9,10 +9,8 @@
 #include "files/scene_files.hpp"
 #include "fuzz_files.hpp"
 #include "loading/luminaires.hpp"
-#include "measuring/requirements.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
-#include "report/included_results.hpp"
 #include "scene/light_names.hpp"
 #include "test_scenes.hpp"
 #include "weather/sky_patches.hpp"
@@ -106,19 +104,6 @@ bool fuzz_schedules(Bytes bytes) {
   static const std::vector<daylight::SkyHour> hours(24);
   return accepts([&] {
     require(daylight::occupied_hours(hours, occupancy).size() == hours.size(), "hours that lack");
-  });
-}
-
-bool fuzz_results(Bytes bytes) {
-  const auto file = file_of("results.json", bytes);
-  return accepts([&] {
-    const auto results =
-        report::included_results(std::span(&file, 1), measuring::parse_requirement("office-desk"));
-    require(results.tables.size() == 1, "another number of tables");
-    for (const auto& row : results.tables[0].rows) {
-      require(row.size() == results.tables[0].columns.size(), "a row of another length");
-    }
-    if (results.glare) require(std::isfinite(results.glare->measured.value), "no rating");
   });
 }
 

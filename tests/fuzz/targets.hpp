@@ -38,7 +38,6 @@ bool fuzz_picture(Bytes bytes);  ///< of any format, as compare and walk read it
 bool fuzz_points(Bytes bytes);  ///< sensors, or observers
 bool fuzz_planes(Bytes bytes);
 bool fuzz_moods(Bytes bytes);
-bool fuzz_results(Bytes bytes);  ///< of glare or daylight, that reports include
 
 bool fuzz_saved_maps(Bytes bytes);  ///< photons and light maps, whose digests are put right
 

@@ -6,7 +6,7 @@
 
 #include "photile/errors.hpp"
 #include "report/false_colour.hpp"
-#include "report/plan_lines.hpp"
+#include "report/plan_surroundings.hpp"
 
 namespace photile::test {
 namespace {
@@ -29,43 +29,6 @@ TEST_CASE("the isoline of a slope is exactly straight") {
   for (const report::Segment& segment : segments) {
     for (const glm::dvec2& end : segment) CHECK(2 * end.x + end.y == Approx(7.3));
   }
-}
-
-TEST_CASE("values between middles keep those given, follow slopes and leave gaps") {
-  auto values = field(5, 4, [](double x, double y) { return 3 * x - 2 * y + 10; });
-  report::FineValues fine = report::refined(values, 5, 4);
-  REQUIRE(fine.per_cell > 1);
-  for (int y = 0; y < fine.rows; ++y) {
-    for (int x = 0; x < fine.columns; ++x) {
-      const glm::dvec2 cells = fine.in_cells({x + 0.5, y + 0.5});
-      const double value = fine.values[static_cast<std::size_t>(y * fine.columns + x)];
-      CHECK(value == Approx(3 * cells.x - 2 * cells.y + 10));
-    }
-  }
-  values[0] = 100;  // a peak is kept, whatever its neighbours are
-  fine = report::refined(values, 5, 4);
-  CHECK(fine.values[0] == 100);
-  values[7] = std::numeric_limits<double>::quiet_NaN();
-  fine = report::refined(values, 5, 4);
-  const int at_gap = fine.per_cell * (fine.columns + 2);
-  CHECK(std::isnan(fine.values[static_cast<std::size_t>(at_gap)]));
-  CHECK(fine.values[static_cast<std::size_t>(fine.rows * fine.columns - 1)] ==
-        Approx(3 * 4.5 - 2 * 3.5 + 10));
-}
-
-TEST_CASE("isolines of few values are curves, not chords") {
-  // A ring of 5 cells radius on 12 x 12: chords of whole cells leave its circle by several
-  // hundredths.
-  const auto values =
-      field(12, 12, [](double x, double y) { return 100 - (x - 6) * (x - 6) - (y - 6) * (y - 6); });
-  const report::FineValues fine = report::refined(values, 12, 12);
-  double worst = 0;
-  for (const auto& segment : report::isoline(fine.values, fine.columns, fine.rows, 84)) {
-    const glm::dvec2 middle = 0.5 * (fine.in_cells(segment[0]) + fine.in_cells(segment[1]));
-    worst = std::max(worst, std::abs(glm::length(middle - glm::dvec2(6)) - 4));
-  }
-  CHECK(worst > 0);
-  CHECK(worst < 0.01);
 }
 
 TEST_CASE("the isolines of a hill are closed curves of its circumference") {
@@ -97,41 +60,6 @@ TEST_CASE("cells without a value have no lines") {
   auto values = field(3, 3, [](double x, double) { return x; });
   values[4] = std::numeric_limits<double>::quiet_NaN();
   CHECK(report::isoline(values, 3, 3, 1.2).empty());
-}
-
-TEST_CASE("the isoband of a slope has the area between its isolines") {
-  const auto values = field(6, 5, [](double x, double) { return x; });
-  double area = 0;
-  for (const report::Polygon& polygon : report::isoband(values, 6, 5, 1.7, 3.2)) {
-    double twice = 0;  // shoelace formula
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-      twice += a.x * b.y - b.x * a.y;
-      CHECK(a.x == Approx(std::clamp(a.x, 1.7, 3.2)));
-    }
-    area += std::abs(twice) / 2;
-  }
-  CHECK(area == Approx(1.5 * 4));  // between the middles of the first and the last row
-}
-
-TEST_CASE("the isoband of a hill is a ring, whole where all is inside, gone where nothing is") {
-  const auto values =
-      field(80, 80, [](double x, double y) { return 100 - std::hypot(x - 40, y - 40); });
-  const auto area = [&](double low, double high) {
-    double sum = 0;
-    for (const report::Polygon& polygon : report::isoband(values, 80, 80, low, high)) {
-      double twice = 0;
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        twice += a.x * b.y - b.x * a.y;
-      }
-      sum += std::abs(twice) / 2;
-    }
-    return sum;
-  };
-  CHECK(area(70, 80) == Approx(3.14159265 * (30 * 30 - 20 * 20)).epsilon(0.002));
-  CHECK(area(0, 200) == Approx(79 * 79));
-  CHECK(area(150, 200) == 0);
 }
 
 TEST_CASE("bands are the middle fifth of each step, and posterized values have its colour") {

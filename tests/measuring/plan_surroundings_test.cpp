@@ -1,9 +1,10 @@
 // Walls, furniture and lamps on plans, of a room that is known.
+#include "report/plan_surroundings.hpp"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "measuring/working_plane.hpp"
-#include "report/plan_lines.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -80,6 +81,19 @@ TEST_CASE("a plan's furniture is outlined where it stands, and its lamps have th
   REQUIRE(around.lamps.size() == 1);
   CHECK(around.lamps[0].number == 1);
   CHECK(glm::distance(world(around.lamps[0].place), glm::dvec2(1.5, 2.5)) < 1e-6);
+}
+
+TEST_CASE("the JSON of a plan has its lines in metres from the plane's corner") {
+  const Scene scene = room();
+  const auto plan = report::plan_json(RayScene(scene), layout());
+  CHECK(plan["reach"] == 1);
+  CHECK_THAT(plan["walls"].get<std::string>(), Catch::Contains("-0.500 ") && Catch::Contains("L"));
+  CHECK(plan["lamps"][0]["number"] == 1);
+  CHECK(plan["lamps"][0]["position"][0].get<double>() == Approx(1));
+  CHECK(plan["lamps"][0]["position"][1].get<double>() == Approx(3));
+  REQUIRE(plan["room"].size() == 2);
+  CHECK(plan["room"][0][0].get<double>() == Approx(-0.5).margin(0.05));
+  CHECK(plan["room"][1][1].get<double>() == Approx(5.5).margin(0.05));
 }
 
 TEST_CASE("what does not lie flat has no surroundings") {

@@ -66,6 +66,12 @@ inside "printf 'P6 1 1 255\\n\\377\\377\\377' > white.ppm
   ! photile compare white.ppm white.ppm 2> error
   grep -q 'install the package photile-openimageio' error && [ \$(wc -l < error) = 1 ]" ||
   fail "a PPM without photile-openimageio is no error of a line that names it"
+report="photile measure cornell-box/cornell-box.obj --plane floor+0.2 --photons 5000 --rays 16 -q -o box.html"
+inside "! $report > /dev/null 2> error
+  grep -q 'apt-get install python3-jinja2' error && [ \$(wc -l < error) = 1 ]" ||
+  fail "a report without Debian's packages is no error of a line that names them"
+inside "apt-get install --yes --no-install-recommends python3-jinja2 python3-contourpy; $report" \
+  >> "$scratch/install.log" 2>&1 || { tail -n 20 "$scratch/install.log"; fail "no report is drawn"; }
 inside "apt-get install --yes --no-install-recommends ./photile-openimageio_*.deb" \
   >> "$scratch/install.log" 2>&1 ||
   { tail -n 20 "$scratch/install.log"; fail "photile-openimageio does not install"; }

@@ -24,11 +24,11 @@ class Skips:
     pytest_collectreport = pytest_runtest_logreport
 
 
-folder = Path(__file__).parent
+file = (Path(__file__).parent / sys.argv[1]).resolve()
 skips = Skips()
-options = ["-q", "-p", "no:cacheprovider", "-rs", f"--rootdir={folder}", *sys.argv[2:]]
+options = ["-q", "-p", "no:cacheprovider", "-rs", f"--rootdir={file.parent}", *sys.argv[2:]]
 sys.dont_write_bytecode = True
-failed = pytest.main([*options, str(folder / sys.argv[1])], plugins=[skips])
+failed = pytest.main([*options, str(file)], plugins=[skips])
 if failed == pytest.ExitCode.NO_TESTS_COLLECTED and skips.found:
     failed = 0
 sys.exit(failed or (77 if skips.found else 0))

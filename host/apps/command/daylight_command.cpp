@@ -30,9 +30,7 @@
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
 #include "report/honeybee_files.hpp"
-#include "report/included_results.hpp"
-#include "report/plan_drawing.hpp"
-#include "report/report.hpp"
+#include "report/plan_surroundings.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::app {
@@ -95,48 +93,42 @@ YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
   return lamps;
 }
 
-/// A report of the year alone, as that of photile measure includes it.
-report::ReportText pages_of(const DaylightOptions& options, const Scene& scene,
-                            const nlohmann::ordered_json& record, std::size_t rounds) {
-  report::IncludedResults shown;
-  report::include_result(nlohmann::json::parse(record.dump()), std::nullopt, shown);
-  add_surroundings(scene, shown.maps);
-  report::ReportText text;
-  text.title = scene.source.filename().string();
-  text.subject = "A year of daylight";
-  text.tables = std::move(shown.tables);
-  text.maps = std::move(shown.maps);
-  text.facts = {
+/// What a report of the year alone says beside its figures.
+nlohmann::ordered_json report_of(const DaylightOptions& options, const Scene& scene,
+                                 const nlohmann::ordered_json& grids, std::size_t rounds) {
+  nlohmann::ordered_json record{
+      {"photile", version_number()},
+      {"scene", scene.source.filename().string()},
+      {"date", today()},
       {"weather", options.render.load.situation.weather.filename().string()},
-      {"sky", fmt::format("{} patches", options.patches)},
-      {"ground", fmt::format("reflectance {:g} below the horizon", options.asked.ground)},
-      {"measured", fmt::format("{} times with {} rays a point",
-                               rounds * static_cast<std::size_t>(options.parameters.repeats),
-                               options.parameters.gathering.rays)},
-      {"maintenance factor", fmt::format("{:.3g}", options.parameters.maintenance)},
-      {"seed", std::to_string(options.render.parameters.seed)},
-      {"program", "photile " + version_number()},
-      {"date", today()}};
-  return text;
+      {"patches", options.patches},
+      {"ground_reflectance", options.asked.ground},
+      {"repeats", rounds * static_cast<std::size_t>(options.parameters.repeats)},
+      {"rays", options.parameters.gathering.rays},
+      {"maintenance_factor", options.parameters.maintenance},
+      {"seed", options.render.parameters.seed}};
+  record["report"]["subject"] = "A year of daylight";
+  record["report"]["colours"] = colours_json({});
+  record["report"]["included"].push_back({{"file", ""}, {"content", grids}});
+  return record;
 }
 
 void write(const DaylightOptions& options, const Scene& scene,
            const report::DaylightResults& results, const std::vector<SkyHour>& hours) {
-  const auto record = report::daylight_json(results, options.asked);
-  const report::ReportText pages = pages_of(options, scene, record, results.rounds);
-  const auto plans = [&] {
-    std::vector<std::string> drawn;
-    for (const report::ReportMap& map : pages.maps) {
-      drawn.push_back(report::plan_svg(map.values, map.values.total(), map.colours,
-                                       report::PlanSize::whole, map.surroundings));
-    }
-    return drawn;
-  };
+  auto record = report::daylight_json(results, options.asked);
+  std::size_t planes = 0;
+  const RayScene rays(scene);
+  for (std::size_t i = 0; i < results.grids.size() && !options.outputs.empty(); ++i) {
+    const auto& layout = results.grids[i].grid.layout;
+    if (layout) record[i]["plan"] = report::plan_json(rays, *layout);
+    planes += layout ? 1 : 0;
+  }
   write_results(options.outputs,
                 {.csv = [&] { return report::daylight_csv(results, options.asked); },
                  .json = [&] { return json_text(record); },
-                 .plans = plans,
-                 .page = [&] { return report::report_html({}, pages, {}, {}); }});
+                 .record = [&] { return report_of(options, scene, record, results.rounds); },
+                 .plans = 2 * planes,  // DA and UDI
+                 .report = options.report});
   if (options.honeybee.empty()) return;
   const std::filesystem::path folder = options.honeybee;
   for (const auto& [name, content] : report::annual_files(results, hours)) {
@@ -285,6 +277,7 @@ void run_daylight(DaylightOptions& options) {
   if (!options.schedule.empty()) note_input(options.schedule);
   if (!options.honeybee.empty()) make_folder(options.honeybee);
   check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
+  check_report(options.report, options.outputs);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
@@ -377,6 +370,7 @@ void add_daylight_command(CLI::App& photile) {
                 file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}));
   output.add("--honeybee", options->honeybee, "FOLDER",
              "folder for the lux of every hour, as annual recipes leave it");
+  add_template_option(output, options->report);
   add_place_options(*command, options->places);
   add_year(*command, *options);
   add_maintenance_option(measuring, options->parameters);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "command/render_options.hpp"
+#include "command/report_program.hpp"
 #include "command/sensor_options.hpp"
 #include "daylight/sky_states.hpp"
 #include "measuring/sensor_grid.hpp"
@@ -22,6 +23,7 @@ struct DaylightOptions {
   PlaceOptions places;
   std::vector<std::string> outputs;  ///< .csv, .json, .svg, .html, .pdf
   std::string honeybee;              ///< folder, "" = none
+  ReportOptions report;
   int patches = defaults::sky_patches;
   std::string suns = "rays";
   report::DaylightAsked asked{defaults::daylight_lux, {}, {}};

@@ -27,6 +27,7 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
+#include "report/plan_surroundings.hpp"
 #include "report/tables.hpp"
 
 namespace photile::app {
@@ -134,7 +135,10 @@ Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& m
                         {"highest_ugr", judgement->measured.value},
                         {"met", judgement->met()}};
   }
-  if (plane) record["plane"] = report::plane_json(*plane);
+  if (plane) {
+    record["plane"] = report::plane_json(*plane);
+    record["plan"] = report::plan_json(RayScene(scene), *plane);
+  }
   record["observers"] = report::glare_json(all);
   return record;
 }

@@ -155,7 +155,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 
   const std::filesystem::path moods = moods_of_report(render.mood.file, render.scene);
   outputs.check_moods(moods);
-  const report::IncludedResults included = outputs.included(requirement);
+  std::optional<measuring::Judgement> glare;
+  if (requirement) glare = highest_glare(options.outputs.report.included, *requirement);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
@@ -194,8 +195,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   outputs.check_picture(scene, progress);
   outputs.write(measurement,
-                {scene, mix, parameters, render.mood.mood, requirement, moods, included,
-                 outputs.any_report()
+                {scene, mix, parameters, render.mood.mood, requirement, moods, glare,
+                 outputs.any_record()
                      ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
                      : std::nullopt,
                  loading::ground_reflectance(render.load), loading::sky_facts(render.load),
@@ -205,8 +206,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   for (const auto& line : sky_lines(render.load)) std::cout << line << '\n';
   if (requirement) {
-    for (const auto& line :
-         measuring::requirement_lines(measurement, *requirement, included.glare)) {
+    for (const auto& line : measuring::requirement_lines(measurement, *requirement, glare)) {
       std::cout << line << '\n';
     }
   }

@@ -15,7 +15,6 @@
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
-#include "report/included_results.hpp"
 
 namespace CLI {
 class App;
@@ -26,13 +25,12 @@ namespace photile::app {
 struct MeasureOutputOptions {
   std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .html or .pdf
   FalseColourOptions false_colour;
-  std::string honeybee;              ///< folder, "" = none
-  std::string picture;               ///< EXR for the report, "" = none
-  std::string logo;                  ///< PNG or JPEG for the report, "" = none
-  std::string maintenance;           ///< parts of the factor, "" = not said
-  std::vector<std::string> results;  ///< JSON files for the report
-  report::ReportProject project;
-  std::string language = "en";   ///< of the report
+  std::string honeybee;                   ///< folder, "" = none
+  std::string picture;                    ///< EXR for the report, "" = none
+  std::string logo;                       ///< PNG or JPEG for the report, "" = none
+  std::string maintenance;                ///< parts of the factor, "" = not said
+  std::string project, client, designer;  ///< for the report's title page, "" = not said
+  ReportOptions report;
   bool daylight_factor = false;  ///< values are per cent of the sky's lux
 };
 
@@ -46,8 +44,8 @@ struct MeasureRun {
   const MeasuringParameters& parameters;
   std::string mood = {};  ///< "" = none
   std::optional<measuring::Requirement> requirement = std::nullopt;
-  std::filesystem::path moods = {};       ///< file of those that a report shows; "" = none
-  report::IncludedResults included = {};  ///< of `included`
+  std::filesystem::path moods = {};  ///< file of those that a report shows; "" = none
+  std::optional<measuring::Judgement> glare = std::nullopt;  ///< the highest UGR that is included
   std::optional<measuring::RoomSize> room = std::nullopt;
   std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
   /// What the sky is: name and value.
@@ -57,9 +55,9 @@ struct MeasureRun {
 
 class MeasureOutputs {
  public:
-  /// Errors: UsageError for options that do not go together; those of check_outputs; OutputError
-  /// where the folder cannot be made.
-  explicit MeasureOutputs(const MeasureOutputOptions& options);
+  /// Errors: UsageError for options that do not go together; those of check_outputs and
+  /// check_report; OutputError where the folder cannot be made.
+  explicit MeasureOutputs(MeasureOutputOptions& options);
 
   /// Notes the files whose names follow from what is measured: a plan of each plane goes to the
   /// .svg, numbered where there are several, and a file of each grid to the folder.
@@ -74,10 +72,10 @@ class MeasureOutputs {
   /// Errors: those of report_pictures.
   void check_moods(const std::filesystem::path& moods) const;
 
-  /// What the report shows of other commands. Errors: those of included_results.
-  report::IncludedResults included(const std::optional<measuring::Requirement>& requirement) const;
-
-  bool any_report() const { return has_any(options_.outputs, {".html", ".pdf"}); }
+  /// Whether it writes all that is known of the run and of the scene.
+  bool any_record() const {
+    return has_any(options_.outputs, {".json"}) || !drawn_files(options_.outputs).empty();
+  }
 
   /// "lux", or "DF %" of daylight factors.
   const std::string& unit() const { return unit_; }
@@ -86,8 +84,8 @@ class MeasureOutputs {
   void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
 
  private:
-  std::string page_of(const measuring::Measurement& measurement, const MeasureRun& run,
-                      const std::vector<report::PlanSurroundings>& surroundings) const;
+  nlohmann::ordered_json record_of(const measuring::Measurement& measurement,
+                                   const MeasureRun& run) const;
 
   const MeasureOutputOptions& options_;
   std::string unit_;

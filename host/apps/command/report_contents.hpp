@@ -5,38 +5,36 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "command/report_program.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
-#include "report/luminaires.hpp"
-#include "report/report.hpp"
 
 namespace photile::app {
-
-/// Lamps with their numbers on the plans, kinds, photometric files, positions in the scene file's
-/// world and powers. Lights of the sky have no position.
-report::ReportTable lamp_schedule(const Scene& scene, const LightMix& mix);
 
 /// Such as 2026-11-23.
 std::string today();
 
-/// The outputs of a command by the endings of their names: a table, plans, a report.
+/// The outputs of a command by the endings of their names: tables, and what photile.report draws.
 struct Results {
   std::function<std::string()> csv, json;
-  std::function<std::vector<std::string>()> plans = {};  ///< SVG
-  std::function<std::string()> page = {};                ///< HTML
+  std::function<nlohmann::ordered_json()> record = {};  ///< for reports and plans
+  std::size_t plans = 0;                                ///< that the record has
+  ReportOptions report = {};
 };
 
 /// Whether any of the files ends in one of these, in small letters or capitals.
 bool has_any(const std::vector<std::string>& files, std::initializer_list<const char*> endings);
 
 /// Writes each file: a .csv, .json, .html or .pdf, and plans to each .svg, numbered where they are
-/// more than one. Makes of `results` what the files ask for. Errors: OutputError.
+/// more than one. Makes of `results` what the files ask for. Errors: OutputError; those of
+/// draw_report.
 void write_results(const std::vector<std::string>& files, const Results& results);
 
 std::size_t planes_of(const std::vector<measuring::SensorGrid>& grids);
@@ -45,9 +43,6 @@ std::size_t planes_of(const std::vector<measuring::SensorGrid>& grids);
 /// UsageError where there is nothing to draw; those of note_output.
 void note_plans(const std::vector<std::string>& files, std::size_t plans);
 
-/// What is around the planes of maps.
-void add_surroundings(const Scene& scene, std::vector<report::ReportMap>& maps);
-
 /// W that each layer of the mix takes from the mains: in proportion to its lumens what its
 /// luminaires' files state, and where one of them states nothing by an efficacy (lm/W).
 std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy);
@@ -55,32 +50,21 @@ std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double eff
 /// lm of each of the scene's lights.
 std::vector<double> lumens_of(const Scene& scene, const LightMix& mix);
 
-/// The least Ra of all luminaires; 0 where a file states none.
-double least_rendering(const std::vector<report::Part>& parts);
+/// Adds what a report says of the scene beside what was measured: luminaires with their numbers on
+/// plans, photometric files, reflectances of opaque materials that triangles have.
+void add_scene(const Scene& scene, const LightMix& mix, nlohmann::ordered_json& record);
 
-/// Luminaires by their photometric files, with totals.
-report::ReportTable list_of_parts(const std::vector<report::Part>& parts);
-std::vector<report::DataSheet> data_sheets(const std::vector<report::Part>& parts);
-
-/// Name and value: power, watts by square metre, also by 100 lux, and LENI of EN 15193, where they
-/// are known.
-///   area             m2; 0 = not known
-///   mean             lux of the task
-///   kilowatt_hours   a year; 0 = not known
-std::vector<std::pair<std::string, std::string>> energy_of(const std::vector<report::Part>& parts,
-                                                           double area, double mean,
-                                                           double kilowatt_hours);
-
-/// A row for each opaque material that a triangle has, with its luminous reflectance in percent.
-report::ReportTable reflectances(const Scene& scene);
+/// The options of false colour, with the colours of the palette from low to high.
+nlohmann::ordered_json colours_json(const report::FalseColour& colours);
 
 /// The file of moods for a report: the one that is given, else the scene's, "" where there is none.
 std::filesystem::path moods_of_report(const std::string& given, const std::filesystem::path& scene);
 
 /// The picture as it was rendered and with each mood of the file, in its colours and, where it has
-/// illuminance, in lux. Errors: those of relit_picture and of Moods.
-std::vector<report::ReportPicture> report_pictures(const std::filesystem::path& picture,
-                                                   const std::filesystem::path& moods,
-                                                   const report::FalseColour& colours);
+/// illuminance, in lux: caption, PNG in base64 and what the colours stand for. Errors: those of
+/// relit_picture and of Moods.
+nlohmann::ordered_json report_pictures(const std::filesystem::path& picture,
+                                       const std::filesystem::path& moods,
+                                       const report::FalseColour& colours);
 
 }  // namespace photile::app

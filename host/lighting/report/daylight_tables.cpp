@@ -223,7 +223,7 @@ std::string daylight_csv(const DaylightResults& results, const DaylightAsked& as
   if (results.states.empty()) return text + heading + "\n" + csv_rows(results.grids, ground);
   text += ",blinds" + heading + "\n" + csv_rows(results.grids, ",by schedule" + ground);
   for (const DaylightState& state : results.states)
-    text += csv_rows(state.grids, "," + csv_field(state.name) + ground);
+    text += csv_rows(state.grids, fmt::format(",{}{}", csv_field(state.name), ground));
   return text;
 }
 

@@ -125,9 +125,9 @@ std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) 
                     with_error(each.background, "{:.4g} +-{:.2g}", 16), rating_text(each.ugr, 13));
     if (ggr) line += fmt::format(" {:>6}", each.ggr ? measuring::glare_text(*each.ggr) : "-");
     if (pictures) {
-      line += " " + with_error(each.dgp, "{:.3f} +-{:.1g}", 15);
-      line += " " + plain(value_of(each.dgp_low_light), "{:.3f}", 10);
-      line += " " + plain(each.dgi, "{:.1f}", 6);
+      line += fmt::format(" {} {} {}", with_error(each.dgp, "{:.3f} +-{:.1g}", 15),
+                          plain(value_of(each.dgp_low_light), "{:.3f}", 10),
+                          plain(each.dgi, "{:.1f}", 6));
     }
     lines.push_back(std::move(line));
   }

@@ -46,51 +46,15 @@ std::vector<std::pair<std::string, std::string>> data_rows(const IntensityDistri
   return rows;
 }
 
-std::string polar_curve_svg(const IntensityDistribution& lamp) {
-  constexpr double radius = 78, size = 200;  // pixels
-  constexpr int steps = 180;
-  double most = 0;
-  for (const double plane : {0.0, 90 * degrees}) {
-    for (int i = -steps; i <= steps; ++i) {
-      most = std::max(most, intensity_at(lamp, plane, i * 180 * degrees / steps));
+std::array<std::vector<double>, 2> intensities_of(const IntensityDistribution& lamp) {
+  std::array<std::vector<double>, 2> planes;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (int angle = -180; angle <= 180; ++angle) {
+      planes[i].push_back(
+          intensity_at(lamp, static_cast<double>(i) * 90 * degrees, angle * degrees));
     }
   }
-  if (!(most > 0)) return {};
-  const double ring = rounded_up(most / 4, {1.0, 2.0, 2.5, 5.0}), scale = radius / (4 * ring),
-               middle = size / 2;
-  std::string text = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {0}\" width=\"{0}\" "
-      "height=\"{0}\" font-family=\"sans-serif\" font-size=\"8\">\n",
-      size);
-  for (int i = 1; i <= 4; ++i) {
-    text += fmt::format(
-        "<circle cx=\"{0}\" cy=\"{0}\" r=\"{1:.2f}\" fill=\"none\" stroke=\"#bbbbbb\" "
-        "stroke-width=\"0.6\"/>\n<text x=\"{2}\" y=\"{3:.2f}\">{4:g}</text>\n",
-        middle, i * radius / 4, middle + 2, middle + i * radius / 4 - 2, i * ring);
-  }
-  for (int angle = 0; angle < 360; angle += 30) {
-    const double x = std::sin(angle * degrees), y = std::cos(angle * degrees);
-    const int shown = angle <= 180 ? angle : 360 - angle;
-    text += fmt::format(
-        "<path stroke=\"#dddddd\" stroke-width=\"0.6\" d=\"M{0} {0}L{1:.2f} {2:.2f}\"/>\n"
-        "<text x=\"{3:.2f}\" y=\"{4:.2f}\" text-anchor=\"middle\" "
-        "fill=\"#777777\">{5}\u00b0</text>\n",
-        middle, middle + radius * x, middle + radius * y, middle + (radius + 11) * x,
-        middle + (radius + 11) * y + 3, shown);
-  }
-  for (const auto& [plane, style] :
-       {std::pair(0.0, "stroke=\"#b00020\""),
-        std::pair(90.0, "stroke=\"#0050b0\" stroke-dasharray=\"4 2\"")}) {
-    text += fmt::format("<path fill=\"none\" stroke-width=\"1.4\" {} d=\"", style);
-    for (int i = -steps; i <= steps; ++i) {
-      const double angle = i * 180 * degrees / steps;
-      const double reach = scale * intensity_at(lamp, plane * degrees, angle);
-      text += fmt::format("{}{:.2f} {:.2f}", i == -steps ? "M" : "L",
-                          middle + reach * std::sin(angle), middle + reach * std::cos(angle));
-    }
-    text += "\"/>\n";
-  }
-  return text + fmt::format("<text x=\"2\" y=\"{}\">cd/klm</text>\n</svg>\n", size - 2);
+  return planes;
 }
 
 std::vector<Part> parts_of(const Scene& scene, const std::vector<double>& lumens) {

@@ -1,6 +1,7 @@
 // Data sheets of luminaires and the list of parts of a report.
 #pragma once
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,9 +16,9 @@ namespace photile::report {
 /// out.
 std::vector<std::pair<std::string, std::string>> data_rows(const IntensityDistribution& lamp);
 
-/// SVG of its intensities in the planes C0-C180 (solid) and C90-C270 (dashed), cd per 1000 lm, with
-/// circles at round values; down is where it is aimed.
-std::string polar_curve_svg(const IntensityDistribution& lamp);
+/// cd per 1000 lm in the planes C0-C180 and C90-C270, by the degree from -180 to 180 from its aim;
+/// angles are negative on the plane's other side.
+std::array<std::vector<double>, 2> intensities_of(const IntensityDistribution& lamp);
 
 /// Luminaires of one photometric file.
 struct Part {

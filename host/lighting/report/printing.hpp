@@ -1,4 +1,4 @@
-// HTML pages as PDF, and files within pages.
+// Files within pages, and folders for what is on its way.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,6 @@
 #include <string_view>
 
 namespace photile::report {
-
-/// The page as PDF, on the paper that its style names, by WeasyPrint in a process of its own
-/// (Debian's package weasyprint). Errors: OutputError where it is missing or fails.
-std::string pdf_of(const std::string& html);
 
 /// RFC 4648, for files within a page.
 std::string base64(std::string_view bytes);

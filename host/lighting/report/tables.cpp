@@ -154,7 +154,7 @@ std::string measurement_csv(const measuring::Measurement& measurement, const std
                             light.sensors[sensor].standard_error);
       }
       if (any_blank) text += ",";
-      if (any_mark) text += "," + csv_field(mark_of(values.grid, sensor));
+      if (any_mark) text += fmt::format(",{}", csv_field(mark_of(values.grid, sensor)));
       text += end;
     }
   }

@@ -1,4 +1,6 @@
-#include "report/plan_lines.hpp"
+#include "report/plan_surroundings.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -64,28 +66,6 @@ void for_each_square(std::span<const double> values, int columns, int rows, cons
   }
 }
 
-/// A corner of a polygon over which values are linear.
-struct ValuedCorner {
-  glm::dvec2 place;
-  double value;
-};
-
-/// The part of a convex polygon where sign x (value - level) >= 0 (Sutherland and Hodgman, 1974).
-std::vector<ValuedCorner> clipped(const std::vector<ValuedCorner>& corners, double level,
-                                  double sign) {
-  std::vector<ValuedCorner> kept;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const ValuedCorner &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    const bool a_in = sign * (a.value - level) >= 0, b_in = sign * (b.value - level) >= 0;
-    if (a_in) kept.push_back(a);
-    if (a_in != b_in) {
-      const double share = (level - a.value) / (b.value - a.value);
-      kept.push_back({a.place + share * (b.place - a.place), level});
-    }
-  }
-  return kept;
-}
-
 }  // namespace
 
 std::vector<Segment> isoline(std::span<const double> values, int columns, int rows, double level) {
@@ -93,71 +73,6 @@ std::vector<Segment> isoline(std::span<const double> values, int columns, int ro
   for_each_square(values, columns, rows,
                   [&](const Square& square) { add_segments(square, level, segments); });
   return segments;
-}
-
-namespace {
-
-/// Between b and c, at a fraction of the way.
-double catmull_rom(double a, double b, double c, double d, double t) {
-  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
-}
-
-}  // namespace
-
-FineValues refined(std::span<const double> values, int columns, int rows) {
-  constexpr int most_per_cell = 8, most_columns = 2000;
-  FineValues fine;
-  fine.per_cell = std::clamp(most_columns / std::max(columns, rows), 1, most_per_cell);
-  fine.columns = (columns - 1) * fine.per_cell + 1;
-  fine.rows = (rows - 1) * fine.per_cell + 1;
-  // Beyond the border, and beside cells without a value, values go on linearly.
-  const auto at = [&](int x, int y) {
-    const bool there = x >= 0 && y >= 0 && x < columns && y < rows;
-    return there ? values[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
-                          static_cast<std::size_t>(x)]
-                 : std::numeric_limits<double>::quiet_NaN();
-  };
-  const auto between = [](double a, double b, double c, double d, double t) {
-    if (t == 0) return b;
-    return catmull_rom(std::isnan(a) ? 2 * b - c : a, b, c, std::isnan(d) ? 2 * c - b : d, t);
-  };
-  const auto along_row = [&](int cell, double t, int y) {
-    return between(at(cell - 1, y), at(cell, y), at(cell + 1, y), at(cell + 2, y), t);
-  };
-  for (int row = 0; row < fine.rows; ++row) {
-    for (int column = 0; column < fine.columns; ++column) {
-      const int x = column / fine.per_cell, y = row / fine.per_cell;
-      const double u = static_cast<double>(column % fine.per_cell) / fine.per_cell;
-      const double v = static_cast<double>(row % fine.per_cell) / fine.per_cell;
-      fine.values.push_back(between(along_row(x, u, y - 1), along_row(x, u, y),
-                                    along_row(x, u, y + 1), along_row(x, u, y + 2), v));
-    }
-  }
-  return fine;
-}
-
-std::vector<Polygon> isoband(std::span<const double> values, int columns, int rows, double low,
-                             double high) {
-  std::vector<Polygon> polygons;
-  for_each_square(values, columns, rows, [&](const Square& square) {
-    ValuedCorner middle{glm::dvec2(0.0), 0};
-    for (std::size_t i = 0; i < 4; ++i) {
-      middle.place += 0.25 * square.place[i];
-      middle.value += 0.25 * square.value[i];
-    }
-    if (std::isnan(middle.value)) return;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t j = (i + 1) % 4;
-      const auto part = clipped(
-          clipped({{square.place[i], square.value[i]}, {square.place[j], square.value[j]}, middle},
-                  low, 1),
-          high, -1);
-      if (part.size() < 3) continue;
-      Polygon& polygon = polygons.emplace_back();
-      for (const ValuedCorner& corner : part) polygon.push_back(corner.place);
-    }
-  });
-  return polygons;
 }
 
 namespace {
@@ -335,6 +250,38 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
     around.room = Segment{cells(room->low()), cells(room->high())};
   }
   return around;
+}
+
+namespace {
+
+/// To a millimetre.
+std::string path_of(const std::vector<Segment>& segments, const glm::dvec2& cell) {
+  std::string path;
+  for (const Segment& segment : segments) {
+    const glm::dvec2 a = segment[0] * cell, b = segment[1] * cell;
+    fmt::format_to(std::back_inserter(path), "M{:.3f} {:.3f}L{:.3f} {:.3f}", a.x, a.y, b.x, b.y);
+  }
+  return path;
+}
+
+}  // namespace
+
+nlohmann::ordered_json plan_json(const RayScene& rays, const measuring::PlaneLayout& layout) {
+  const PlanSurroundings around = surroundings_of(rays, layout);
+  const glm::dvec2 cell(glm::length(layout.u) / layout.columns,
+                        glm::length(layout.v) / layout.rows);
+  const auto metres = [&](const glm::dvec2& place) -> nlohmann::ordered_json {
+    return {place.x * cell.x, place.y * cell.y};
+  };
+  nlohmann::ordered_json json{{"reach", around.reach},
+                              {"walls", path_of(around.walls, cell)},
+                              {"furniture", path_of(around.furniture, cell)},
+                              {"lamps", nlohmann::ordered_json::array()}};
+  for (const LampMark& lamp : around.lamps) {
+    json["lamps"].push_back({{"number", lamp.number}, {"position", metres(lamp.place)}});
+  }
+  if (const auto& room = around.room) json["room"] = {metres((*room)[0]), metres((*room)[1])};
+  return json;
 }
 
 }  // namespace photile::report

@@ -1,0 +1,51 @@
+// Reports and plans are drawn by photile.report, a Python program beside the command
+// (python/photile/report), from the JSON of results.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measuring/requirements.hpp"
+
+namespace photile::app {
+
+class OptionGroup;
+
+/// How reports look.
+struct ReportOptions {
+  std::string templates;                 ///< folder, "" = photile's own
+  std::string language = "en";           ///< that has words
+  std::vector<std::string> results;      ///< JSON files of other commands
+  nlohmann::ordered_json included = {};  ///< what they hold: file and content
+};
+
+/// Adds --template.
+void add_template_option(const OptionGroup& group, ReportOptions& options);
+
+/// Those of the files that photile.report draws: .html, .pdf and .svg.
+std::vector<std::string> drawn_files(const std::vector<std::string>& files);
+
+/// Reads the results, and makes sure, before anything is measured, that all of `files` can be drawn
+/// with these options. Nothing where none of them is drawn.
+/// Errors: OutputError naming packages of Debian that are missing; InputError naming what of the
+/// results or the templates is wrong; UsageError for a language without words.
+void check_report(ReportOptions& options, const std::vector<std::string>& files);
+
+/// Draws those of `files` that are drawn, and writes them whole.
+///   plans   that the record has: several are numbered
+/// Errors: as above, and those of write_file; Interrupted.
+void draw_report(const nlohmann::ordered_json& record, const ReportOptions& options,
+                 const std::vector<std::string>& files, std::size_t plans);
+
+/// The file of each of several plans: numbered where they are more than one.
+std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file, std::size_t plans);
+
+/// The highest UGR of all observers that the included results have, where one is required.
+/// The results have been checked.
+std::optional<measuring::Judgement> highest_glare(const nlohmann::ordered_json& included,
+                                                  const measuring::Requirement& requirement);
+
+}  // namespace photile::app

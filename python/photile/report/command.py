@@ -1,0 +1,141 @@
+"""The command line: reads a record, draws what the names of the outputs end in, writes files whole."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import os
+import pathlib
+import re
+import sys
+import tempfile
+from collections.abc import Sequence
+from typing import Any
+
+# Exit codes are those of the command photile.
+USAGE, INPUT, OUTPUT = 2, 3, 1
+_packages = {"jinja2": "python3-jinja2", "numpy": "python3-numpy", "contourpy": "python3-contourpy",
+             "weasyprint": "weasyprint"}
+_not_in_xml = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+class Failure(Exception):
+    """A line for the user, and the exit code."""
+
+    def __init__(self, code: int, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+
+
+def _require(*modules: str) -> None:
+    missing = []
+    for module in modules:
+        try:
+            importlib.import_module(module)
+        except ImportError:
+            missing.append(_packages[module])
+    if missing:
+        raise Failure(OUTPUT, f"reports need {' and '.join(missing)}, which this Python does not have: "
+                              f"apt-get install {' '.join(missing)}; or write .csv or .json")
+
+
+def _clean(value: Any) -> Any:
+    """Without characters that XML cannot hold."""
+    if isinstance(value, str):
+        return _not_in_xml.sub("?", value)
+    if isinstance(value, list):
+        return [_clean(one) for one in value]
+    if isinstance(value, dict):
+        return {_clean(key): _clean(one) for key, one in value.items()}
+    return value
+
+
+def _read(file: str) -> Any:
+    try:
+        with open(file, encoding="utf-8") as stream:
+            return _clean(json.load(stream))
+    except (OSError, ValueError, RecursionError) as error:
+        raise Failure(INPUT, f"{file}: {getattr(error, 'strerror', None) or error}") from None
+
+
+def write(file: pathlib.Path, content: bytes) -> None:
+    """Under its name when it is complete."""
+    try:
+        descriptor, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+        try:
+            with os.fdopen(descriptor, "wb") as stream:
+                stream.write(content)
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(temporary, 0o666 & ~mask)
+            os.replace(temporary, file)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+    except OSError as error:
+        raise Failure(OUTPUT, f"{file}: cannot be written: {error.strerror}") from None
+
+
+def _draw(record: dict[str, Any], outputs: Sequence[str], template: str | None) -> None:
+    from . import pages
+    report = pages.Report(record, template)
+    page = ""
+    for output in outputs:
+        file, ending = pathlib.Path(output), pathlib.Path(output).suffix.lower()
+        if ending in (".html", ".pdf"):
+            page = page or report.page()
+        if ending == ".html":
+            write(file, page.encode())
+        elif ending == ".pdf":
+            write(file, pages.printed(page))
+        elif ending == ".svg":
+            plans = report.plans()
+            for number, plan in enumerate(plans, 1):
+                name = file.name if len(plans) == 1 else f"{file.stem}-{number}.svg"
+                write(file.with_name(name), plan.encode())
+
+
+def _run(arguments: Sequence[str] | None) -> None:
+    parser = argparse.ArgumentParser(prog="photile.report", allow_abbrev=False, description=__doc__)
+    parser.add_argument("record", metavar="RESULTS.json", help="of photile measure")
+    parser.add_argument("-o", "--output", action="append", default=[], metavar="FILE",
+                        help="report (.html, .pdf) or plan (.svg) to write; repeatable")
+    parser.add_argument("--template", metavar="FOLDER", help="with templates in place of photile's")
+    parser.add_argument("--language", help="of the report: en, de, or that of FOLDER/words/NAME.json")
+    parser.add_argument("--check", action="store_true",
+                        help="only whether everything that the outputs need is there")
+    options = parser.parse_args(arguments)
+    endings = {pathlib.Path(output).suffix.lower() for output in options.output}
+    if not endings or not endings <= {".html", ".pdf", ".svg"}:
+        raise Failure(USAGE, "-o names a .html, a .pdf or a .svg")
+    _require("jinja2", "numpy", "contourpy", *(["weasyprint"] if ".pdf" in endings else []))
+    from . import pages
+    record = _read(options.record)
+    if not isinstance(record, dict):
+        record = {"report": {"included": [{"file": options.record, "content": record}]}}
+    if options.language:
+        record.setdefault("report", {})["language"] = options.language
+    try:
+        if options.check:
+            pages.Report(record, options.template).check()
+        else:
+            _draw(record, options.output, options.template)
+    except pages.UnknownLanguage as error:
+        raise Failure(USAGE, str(error)) from None
+    except pages.BadInput as error:
+        raise Failure(INPUT, str(error)) from None
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+        raise Failure(INPUT, f"{options.record}: no results as photile measure writes them: "
+                             f"{type(error).__name__} {error}") from error
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    try:
+        _run(arguments)
+    except Failure as failure:
+        print(f"photile.report: error: {failure}".replace("\n", " "), file=sys.stderr)
+        return failure.code
+    except KeyboardInterrupt:
+        return 130
+    return 0

@@ -1,0 +1,291 @@
+"""What the templates are given: a record's figures as texts, tables and drawings."""
+
+from __future__ import annotations
+
+import base64
+import importlib
+import os
+import pathlib
+from typing import Any
+
+import jinja2
+import jinja2.sandbox
+import markupsafe
+import numpy as np
+
+from . import texts
+from .included import Included, Map
+from .plans import Curve, Plan
+
+most_light_plans = 6  # more do not fit on a page
+Pairs = list[tuple[str, str]]
+_own = pathlib.Path(__file__).resolve().parent / "templates"
+
+
+class BadInput(Exception):
+    """A line that names the file, what is wrong with it, and the remedy."""
+
+
+class UnknownLanguage(Exception):
+    """A line that names those that there are."""
+
+
+def _css(text: str) -> str:
+    """Within a string of a style sheet within a page."""
+    return "".join(c if c >= " " and c not in "\"\\<>&" else f"\\{ord(c):x} " for c in text)
+
+
+class Report:
+    """A record of ``photile measure`` or ``photile daylight``, and the templates that draw it.
+
+    A folder's templates take the place of those of the same name, and extend them under the names
+    ``photile/report.html`` and so on. They cannot do more than draw: they run in jinja2's sandbox.
+    """
+
+    def __init__(self, record: dict[str, Any], template: str | None = None) -> None:
+        self._record = record
+        self._about: dict[str, Any] = {"subject": "Illuminance", "language": "en", "pictures": [],
+                                       "included": [], **record.get("report", {})}
+        folders = [pathlib.Path(template)] if template else []
+        for folder in folders:
+            if not folder.is_dir():
+                raise BadInput(f"{folder}: no folder of templates; name one")
+        self._folders = [*folders, _own]
+        try:
+            self._words = texts.Words(self._about["language"], folders)
+        except KeyError as known:
+            language = self._about["language"]
+            raise UnknownLanguage(f"--language {language}: there are {known.args[0]}; or write "
+                                  f"words/{language}.json into the folder of --template") from None
+        self._environment = jinja2.sandbox.ImmutableSandboxedEnvironment(
+            autoescape=True, trim_blocks=True, lstrip_blocks=True,
+            loader=jinja2.ChoiceLoader([*(jinja2.FileSystemLoader(one) for one in self._folders),
+                                        jinja2.PrefixLoader({"photile": jinja2.FileSystemLoader(_own)})]))
+        self._environment.filters |= {"css": _css, "number": texts.number, "grouped": texts.grouped,
+                                      "place": texts.place}
+        self._environment.globals |= {"_": self._words, "embedded": self._embedded}
+        self._included = Included()
+        for each in self._about["included"]:
+            try:
+                self._included.add(each["content"])
+            except (KeyError, IndexError, TypeError, ValueError, AttributeError):
+                raise BadInput(f"{each['file']}: is no result of a year or of observers; give what "
+                               "photile glare or daylight has written by -o FILE.json") from None
+
+    def check(self) -> None:
+        """Whether the templates can be read."""
+        for name in ("report.html", "style.css", "plan.svg", "curve.svg"):
+            self._template(name)
+
+    def _template(self, name: str) -> jinja2.Template:
+        try:
+            return self._environment.get_template(name)
+        except jinja2.TemplateError as error:
+            raise BadInput(f"template {name}: {error}") from None
+
+    def _rendered(self, name: str, **values: Any) -> str:
+        template = self._template(name)
+        try:
+            return template.render(values)
+        except jinja2.TemplateError as error:
+            raise BadInput(f"template {name}: {error}") from None
+
+    def _embedded(self, name: str) -> str:
+        """A picture of the templates' folder as a page holds it."""
+        for folder in self._folders:
+            file = (folder / name).resolve()
+            if file.is_relative_to(folder.resolve()) and file.is_file():
+                kind = {".svg": "svg+xml", ".jpg": "jpeg"}.get(file.suffix.lower(), file.suffix[1:])
+                return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
+        raise BadInput(f"{name}: no file of the templates' folder")
+
+    def _plan(self, grid: dict[str, Any], values: list[float | None], title: str,
+              colours: dict[str, Any], small: bool) -> Any:
+        drawn = self._rendered("plan.svg", plan=Plan(grid, values, title, colours, small))
+        return markupsafe.Markup(drawn)
+
+    def _plan_of_grid(self, grid: dict[str, Any], light: str = "") -> Any:
+        colours = self._about["colours"]
+        if not light:
+            return self._plan(grid, [sensor["lux"] for sensor in grid["sensors"]],
+                              self._words(grid["name"]), colours, False)
+        # A scale of its own: a weak lamp would show nothing on the scale of all.
+        return self._plan(grid, [sensor["lights"][light]["lux"] for sensor in grid["sensors"]], light,
+                          {**colours, "scale": 0}, True)
+
+    def _plan_of_map(self, one: Map, small: bool) -> Any:
+        palette = self._about["colours"]["palette"]
+        figure = self._words(one.figure)
+        title = figure if small else f"{self._words(one.grid)}: {figure}"
+        return self._plan(one.values, one.numbers, title, {**one.colours, "palette": palette}, small)
+
+    def plans(self) -> list[str]:
+        """SVG of each plane; of a year those of its figures."""
+        grids = self._record.get("grids", [])
+        if grids:
+            return [str(self._plan_of_grid(grid)) for grid in grids if "plane" in grid]
+        return [str(self._plan_of_map(one, False)) for one in self._included.maps]
+
+    def page(self) -> str:
+        """An HTML page that needs no other file and prints on numbered pages of A4. Well-formed XML."""
+        record, about = self._record, self._about
+        return self._rendered(
+            "report.html", record=record, about=about, language=about["language"],
+            judgements=self._judgements(), energy=self._energy(), facts=self._facts(),
+            grids=[self._grid(grid) for grid in record.get("grids", [])], maps=self._maps(),
+            tables=[*self._included.tables, *self._tables()], sheets=self._sheets())
+
+    def _grid(self, grid: dict[str, Any]) -> dict[str, Any]:
+        minimum, lights = grid["statistics"]["Emin"], grid.get("lights", {})
+        plane = grid.get("plane")
+        drawn = list(lights) if plane and 0 < len(lights) <= most_light_plans else []
+        heading = self._words("{}: {} points", self._words(grid["name"]), grid["points"])
+        if plane:
+            wide, high = (float(np.linalg.norm(plane[side])) for side in ("u", "v"))
+            heading += self._words(", {:.2f} x {:.2f} m, {:.2f} m apart", wide, high,
+                                   wide / plane["columns"])
+        remarks = []
+        for text, reasons in (
+                ("\u00d7 {} points are not measured: {}.",
+                 [point["reason"] for point in grid.get("blank", [])]),
+                ("\u00d7 {} points are measured, but marked: {}.",
+                 [sensor["mark"] for sensor in grid["sensors"] if "mark" in sensor])):
+            remarks += [self._words(text, reasons.count(reason), self._words(reason))
+                        for reason in dict.fromkeys(reasons)]
+        least = minimum["value"], minimum["at_most"]
+        noisy = None not in least and least[1] - least[0] > (minimum["standard_error"] or 0)
+        return {"heading": heading, "remarks": remarks, "noisy": noisy,
+                "rows": [("", grid["statistics"]), *lights.items()],
+                "statistics": grid["statistics"], "name": grid["name"],
+                "plan": self._plan_of_grid(grid) if plane else "",
+                "plans": [self._plan_of_grid(grid, light) for light in drawn]}
+
+    def _maps(self) -> list[tuple[str, list[Any]]]:
+        """Drawings side by side, under the name of their grid."""
+        grids: dict[str, list[Any]] = {}
+        for one in self._included.maps:
+            grids.setdefault(one.grid, []).append(self._plan_of_map(one, True))
+        return list(grids.items())
+
+    def _judgements(self) -> list[dict[str, Any]]:
+        """What is required, and beside it what was found."""
+        target = self._record.get("target")
+        if not target:
+            return []
+        rows = [dict(each) for each in target["judgements"]]
+        if target["ugr_limit"] > 0 and not any(each["figure"] == "UGR" for each in rows):
+            rows.append({"grid": "", "figure": "UGR", "at_most": True, "required": target["ugr_limit"],
+                         "text": self._words("see photile glare"), "met": None})
+        if target["ra"] > 0:
+            least = min((part["ra"] for part in self._record["photometry"]), default=0)
+            said = "by" if least > 0 else "see"
+            text = self._words(f"{said} the luminaires' data sheets")
+            rows.append({"grid": "", "figure": "Ra", "at_most": False, "required": target["ra"],
+                         "text": f"{least:g}, {text}" if least > 0 else text,
+                         "met": least >= target["ra"] if least > 0 else None})
+        for each in rows:
+            if each["figure"] == "UGR" and "value" in each:
+                each["text"] = texts.glare(each["value"])
+        return rows
+
+    def _energy(self) -> Pairs:
+        """Of luminaires whose files all state their power; LENI of a year that is included."""
+        record, rows = self._record, []
+        watts = [part["watts"] for part in record.get("photometry", [])]
+        area = (record.get("room") or {}).get("area", 0)
+        if watts and min(watts) > 0:
+            power = sum(watts)
+            rows.append(("installed power", f"{texts.grouped(power, 4)} W"))
+            if area > 0:
+                mean = record["grids"][0]["statistics"]["Em"]["value"] or 0
+                more = f", {100 * power / area / mean:.2f} W/m2 / 100 lx" if mean > 0 else ""
+                rows.append(("power density", f"{power / area:.2f} W/m2{more}"))
+        energy = self._included.kilowatt_hours
+        if energy > 0 and area > 0:
+            rows.append(("LENI (EN 15193)",
+                         f"{energy / area:.1f} kWh/(m2 a), {energy:.0f} kWh / a"))
+        return rows
+
+    def _facts(self) -> Pairs:
+        record = self._record
+        year = "weather" in record
+        if year:
+            facts = [("weather", record["weather"]), ("sky", self._words("{} patches", record["patches"])),
+                     ("ground", self._words("reflectance {:g} below the horizon",
+                                            record["ground_reflectance"]))]
+        else:
+            facts = [("illuminance", record["response"])]
+        maintenance = record.get("maintenance", "")
+        facts += [("maintenance factor", f"{record['maintenance_factor']:.3g}"
+                   + (f" = {maintenance}" if maintenance else "")),
+                  ("measured", self._words("{} times with {} rays a point", record["repeats"],
+                                          record["rays"]))]
+        if not year:
+            by_paths = record["integrator"] == "path"
+            facts += [("light by", "path tracing" if by_paths else self._words(
+                "photon maps, {} photons, k = {}", texts.count(record["photons"]),
+                record["neighbours"])),
+                      ("errors", "standard errors of the mean of the repeats")]
+        facts.append(("seed", str(record["seed"])))
+        if "mood" in record:
+            facts.append(("mood", record["mood"]))
+        facts += record.get("sky", {}).items()
+        return [*facts, ("program", f"photile {record['photile']}"), ("date", record["date"])]
+
+    def _tables(self) -> list[dict[str, Any]]:
+        """Luminaires, parts with totals, reflectances."""
+        record = self._record
+        parts, rows = record.get("photometry", []), []
+        for part in parts:
+            data = dict(part["data"])
+            rows.append([str(part["pieces"]), data.get("maker", ""), data.get("article", ""),
+                         data.get("luminaire") or part["name"], part["lumens"], part["watts"]])
+        if len(parts) > 1:
+            all_known = all(part["watts"] > 0 for part in parts)
+            rows.append([str(sum(part["pieces"] for part in parts)), self._words("together"), "", "",
+                         sum(part["lumens"] for part in parts),
+                         sum(part["watts"] for part in parts) if all_known else 0])
+        for row in rows:
+            lumens, watts = row[-2:]
+            row[-2:] = [f"{texts.grouped(lumens, 4)} lm",
+                        f"{texts.grouped(watts, 4)} W" if watts > 0 else "",
+                        f"{lumens / watts:.0f} lm/W" if watts > 0 else ""]
+        lamps = [[str(lamp["number"]), lamp["name"], lamp["kind"], lamp["file"],
+                  texts.place(lamp["position"]), f"{texts.grouped(lamp['lumens'], 4)} lm"]
+                for lamp in record.get("luminaires", [])]
+        surfaces = [[each["material"], f"{100 * each['reflectance']:.0f}%"]
+                    for each in record.get("reflectances", [])]
+        return [
+            {"heading": "Luminaires", "of": None, "words": 2, "rows": lamps,
+             "columns": ["number", "name", "kind", "photometric file", "position (x, y, z), m",
+                         "luminous flux"]},
+            {"heading": "List of parts", "of": None, "words": None, "rows": rows,
+             "columns": ["pieces", "maker", "article", "luminaire", "luminous flux", "power",
+                         "luminous efficacy"]},
+            {"heading": "Reflectances", "of": None, "words": None, "rows": surfaces,
+             "columns": ["material", "reflectance"]}]
+
+    def _sheets(self) -> list[dict[str, Any]]:
+        sheets = []
+        for part in self._record.get("photometry", []):
+            bright = any(value and value > 0 for plane in part["intensities"].values() for value in plane)
+            drawing = self._rendered("curve.svg", curve=Curve(part["intensities"])) if bright else ""
+            sheets.append({"heading": part["name"], "drawing": markupsafe.Markup(drawing),
+                           "rows": [("luminous flux", f"{texts.grouped(part['flux'], 4)} lm"),
+                                    *part["data"]]})
+        return sheets
+
+
+def printed(page: str) -> bytes:
+    """The page as PDF. What it shows it holds itself: nothing is fetched."""
+    # Letters that it packs bear a time otherwise, and the same page would be another file.
+    os.environ.setdefault("SOURCE_DATE_EPOCH", "0")
+    weasyprint: Any = importlib.import_module("weasyprint")
+
+    def fetch(url: str, *arguments: Any, **options: Any) -> Any:
+        if not url.startswith("data:"):
+            raise ValueError(f"{url[:80]}: pages hold their pictures; use embedded(NAME)")
+        return weasyprint.default_url_fetcher(url, *arguments, **options)
+
+    document: bytes = weasyprint.HTML(string=page, url_fetcher=fetch).write_pdf()
+    return document

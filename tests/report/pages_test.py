@@ -1,0 +1,210 @@
+"""Pages of records that are known, of templates of one's own, and of what others wrote."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tarfile
+import time
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from conftest import FOLDER, grid_of, measured
+
+pytest.importorskip("jinja2")
+pytest.importorskip("contourpy")
+from photile_report import pages, texts
+from photile_report.included import Included
+from photile_report.pages import Report
+
+HOSTILE = "</style><script>alert(1)</script> {{ 7 * 7 }} \" ' \\ &amp;"
+OBSERVER = {"name": "desk", "position": [0.5, 1.2, -0.5], "ugr": measured(17.2),
+            "illuminance": measured(300, 2)}
+PLANE = {"origin": [0, 1.2, 0], "u": [3, 0, 0], "v": [0, 0, -2], "columns": 3, "rows": 2}
+
+
+def run(*arguments):
+    """As the command does: the folder as it lies there, without what the environment says."""
+    return subprocess.run([sys.executable, "-I", "-B", FOLDER, *map(str, arguments)], text=True,
+                          capture_output=True, check=False)
+
+
+def page_of(record, template=None):
+    page = Report(record, template).page()
+    ElementTree.fromstring(page)
+    return page
+
+
+def test_a_page_has_what_the_record_has(record):
+    page = page_of(record)
+    for part in ("<title>room &lt;1&gt;.gltf</title>", "<h1>Illuminance: room &lt;1&gt;.gltf</h1>",
+                 "<dd>6.0 m2</dd>", "<dd>100 W</dd>", "16.67 W/m2, 8.33 W/m2 / 100 lx",
+                 "working plane: 6 points, 3.00 x 2.00 m, 1.00 m apart", "12,000 lm", "Good &amp; Ltd",
+                 "<td>61%</td>", "120 lm/W", "cd/klm", "photon maps, 20.0k photons, k = 50",
+                 "<td>1.50, 2.20, -1.00</td>", "<dt>seed</dt><dd>1</dd>", "<dd>2026-11-28</dd>"):
+        assert part in page, part
+    assert "200 <span" in page and "0.500 <span" in page
+    assert page == page_of(record)  # to the byte
+
+
+def test_what_is_required_is_judged(record):
+    record["target"] = {"name": "Em=150", "reference": "", "what": "", "ugr_limit": 19, "ra": 80,
+                        "judgements": [{"grid": "working plane", "figure": "Em", "required": 150,
+                                        "at_most": False, "value": 200.0, "standard_error": 1,
+                                        "met": True, "doubtful": False}]}
+    page = page_of(record)
+    assert "at least 150" in page and ">met<" in page and "see photile glare" in page
+    assert "90, by the luminaires&#39; data sheets" in page and "<b>" not in page
+    record["photometry"][0]["ra"] = 0
+    record["target"]["judgements"].append({
+        "grid": "desk", "figure": "UGR", "required": 19, "at_most": True, "value": 21.44,
+        "standard_error": 0.1, "met": False, "doubtful": False})
+    page = page_of(record)
+    assert "see the luminaires&#39; data sheets" in page and "<td>21.4</td>" in page
+    assert "<b>not met</b>" in page and "see photile glare" not in page
+
+
+def test_names_of_others_stay_text(record):
+    record["scene"] = record["grids"][0]["name"] = record["luminaires"][0]["name"] = HOSTILE
+    record["report"].update(project=HOSTILE, client=HOSTILE)
+    record["warnings"] = [HOSTILE]
+    page = page_of(record)
+    assert "<script" not in page and "49" not in re.sub(r"[\d.]+ [\d.]+", "", page)
+    style = re.search("<style>(.*?)</style>", page, re.S)[1]
+    assert "\\3c /style\\3e " in style and "script>" not in style
+
+
+def test_a_page_in_german_has_no_english_words(record):
+    record["report"].update(language="de", project="Büro")
+    page = page_of(record)
+    for word in ("Nutzebene: 6 Punkte", "Kennwerte", "Stückliste", "Auftraggeber", "Nutzebene, 1:25"):
+        assert word in page, word
+    assert "Key figures" not in page
+
+
+def test_every_word_of_the_templates_is_translated():
+    words = json.loads((FOLDER / "words/de.json").read_text(encoding="utf-8"))
+    said = re.findall(r'_\("((?:[^"\\]|\\.)*)"', (FOLDER / "templates/report.html").read_text())
+    assert len(said) > 20 and [one for one in said if one not in words and one not in ("met", "lux")] == []
+    for english, german in words.items():
+        assert english.count("{") == german.count("{"), english
+
+
+def test_templates_of_ones_own_replace_and_extend_those_of_photile(record, tmp_path):
+    (tmp_path / "words").mkdir()
+    (tmp_path / "words/fr.json").write_text('{"Key figures": "Valeurs clés"}')
+    (tmp_path / "logo.svg").write_text("<svg/>")
+    (tmp_path / "report.html").write_text(
+        '{% extends "photile/report.html" %}{% block head %}<h1>Firm</h1>'
+        '<img alt="" src="{{ embedded("logo.svg") }}"/>{% endblock %}')
+    record["report"]["language"] = "fr"
+    page = page_of(record, str(tmp_path))
+    assert "<h1>Firm</h1>" in page and "data:image/svg+xml;base64,PHN2Zy8+" in page
+    assert "Valeurs clés" in page and "working plane: 6 points" in page
+    for bad, said in (("{% broken", "report.html"), ('{{ embedded("../secret") }}', "secret"),
+                      ("{{ ''.__class__.__mro__[1].__subclasses__() }}", "unsafe")):
+        (tmp_path / "report.html").write_text(bad)
+        with pytest.raises(pages.BadInput, match=said):
+            Report(record, str(tmp_path)).page()
+    with pytest.raises(pages.BadInput, match="no folder"):
+        Report(record, str(tmp_path / "none"))
+    record["report"]["language"] = "xx"
+    with pytest.raises(pages.UnknownLanguage, match="en, de, fr"):
+        Report(record, str(tmp_path))
+
+
+def test_results_of_other_commands_are_included(record):
+    observers = [{**OBSERVER, "name": f"desk {i}", "ugr": measured(15 + i / 10)} for i in range(20)]
+    observers.append({**OBSERVER, "ugr": None, "position": [1.5, 1.2, -0.5]})
+    year = [{"name": "desks", "mean_lux": 812.3, "DA": 0.61, "sDA": 0.8, "target_lux": 300,
+             "standard_errors": {"DA": 0.004}, "EN 17037": {"target_lux": 310, "minimum_target_lux": 120},
+             "lamps": [{"kilowatt_hours": 44}], "plane": PLANE, "sensors": [
+                 {"position": [0.5, 1.2, -0.5], "DA": 0.2, "UDI": {"100 to 300": 0.1, "300 to 3000": 0.5}}]}]
+    record["report"]["included"] = [
+        {"file": "glare.json", "content": {"observers": observers, "plane": PLANE}},
+        {"file": "year.json", "content": year}]
+    page = page_of(record)
+    for part in ("Glare (the worst 12 of 21 observers)", "16.9 \u00b1 0.1", "the highest UGR",
+                 "DA 300 lux", "UDI 100 to 3000 lux", "61.0 \u00b1 0.4%", "7.3 kWh/(m2 a), 44 kWh / a"):
+        assert part in page, part
+    assert "desk 7<" not in page
+    record["grids"] = []
+    assert len(Report(record).plans()) == 3
+
+
+@pytest.mark.parametrize("content", [
+    {}, 1, [1], {"observers": [], "plane": 1}, {"observers": [{"name": "x"}]},
+    {"observers": [], "plane": {**PLANE, "u": [0, 0, 0]}},
+    {"observers": [], "plane": {**PLANE, "u": [1, 0], "v": [0, 1], "origin": [0, 0]}},
+    {"observers": [], "plane": {**PLANE, "columns": 99999, "rows": 99999}}])
+def test_what_is_no_result_is_refused_by_name(record, content):
+    record["report"]["included"] = [{"file": "b.json", "content": content}]
+    with pytest.raises(pages.BadInput, match="b.json: is no result.*photile glare"):
+        Report(record)
+
+
+def test_results_that_fuzzing_gathered_are_read_or_refused(record):
+    """When C++ read them."""
+    folder = pathlib.Path(__file__).parent
+    texts_of_all = [file.read_bytes() for file in sorted((folder / "results").iterdir())]
+    with tarfile.open(folder / "results.tar.xz") as archive:
+        texts_of_all += [archive.extractfile(member).read() for member in archive if member.isfile()]
+    read = 0
+    for text in texts_of_all:
+        try:
+            content = json.loads(text)
+        except (ValueError, RecursionError):
+            continue
+        record["report"]["included"] = [{"file": "fuzzed.json", "content": content}]
+        try:
+            table, = Report(record)._included.tables
+        except pages.BadInput:
+            continue
+        assert all(len(row) == len(table["columns"]) for row in table["rows"])
+        read += 1
+    assert read > 0
+
+
+def test_numbers_are_those_that_people_read():
+    assert [texts.number(value, 4) for value in (12500.4, 0.58571, 9999.6, None)] == [
+        "12500", "0.5857", "10000", "nan"]
+    assert [texts.grouped(value, 4) for value in (6000, 11990, 0.5857)] == ["6000", "11,990", "0.5857"]
+    assert [texts.count(value) for value in (512, 50000, 1.2e6)] == ["512", "50.0k", "1.2M"]
+    assert texts.glare(9.9) == "<10" and texts.glare(19.26) == "19.3"
+    assert Included().kilowatt_hours == 0
+
+
+def test_the_program_writes_whole_files_and_says_what_is_wrong_in_a_line(record, tmp_path):
+    results, page, plan = (tmp_path / name for name in ("r.json", "a.html", "p.svg"))
+    record["grids"].append(grid_of("second", [1, 2, 3, 4, 5, 6]))
+    record["scene"] = "\ud800 \x01"
+    results.write_text(json.dumps(record))
+    done = run(results, "-o", page, "-o", plan)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "<title>? ?</title>" in page.read_text(encoding="utf-8")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.html", "p-1.svg", "p-2.svg", "r.json"]
+    del record["grids"][0]["statistics"]
+    results.write_text(json.dumps(record))
+    page.write_text("before")
+    for arguments, code, said in (((results, "-o", page), 3, "r.json"), ((page, "-o", plan), 3, "a.html"),
+                                  ((results, "-o", tmp_path / "no/a.svg"), 1, "a-1.svg"),
+                                  ((results, "-o", tmp_path / "a.txt"), 2, ".html")):
+        done = run(*arguments)
+        assert (done.returncode, done.stderr.count("\n")) == (code, 1), done.stderr
+        assert done.stderr.startswith("photile.report: error: ") and said in done.stderr
+    assert page.read_text() == "before"
+    # Without Debian's packages: modules of the standard library alone.
+    done = subprocess.run([sys.executable, "-I", "-S", "-B", FOLDER, results, "-o", page], text=True,
+                          capture_output=True, check=False)
+    assert done.returncode == 1 and "apt-get install python3-jinja2" in done.stderr
+
+
+def test_a_pdf_is_printed_without_fetching(record):
+    pytest.importorskip("weasyprint")
+    pdf = pages.printed(Report(record).page())
+    assert pdf.startswith(b"%PDF")
+    time.sleep(1.1)
+    assert pages.printed(Report(record).page()) == pdf
+    with_file = Report(record).page().replace("<h1>", '<img src="file:///etc/passwd"/><h1>')
+    assert len(pages.printed(with_file)) < len(pdf) + 200
