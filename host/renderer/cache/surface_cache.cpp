@@ -1,7 +1,6 @@
 #include "cache/surface_cache.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -94,85 +93,79 @@ const Material& material_of(const Scene& scene, std::uint32_t oriented_face) {
   return scene.materials[scene.triangle_material[triangle_of(oriented_face)]];
 }
 
-/// Calls write(point, sums) for each of so many points, which adds the lights of its row. Work is
-/// shared by TBB.
-template <class Write>
-LightTable rows_of(std::size_t points, const SceneNeeds& needs, const Write& write) {
-  std::vector<LightTable> parts((points + points_per_task - 1) / points_per_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    LightTable& rows = parts[part] = LightTable(needs);
-    light::RowSum<light::Reflection> sums(needs.light_count);
-    const std::size_t last = std::min(points, (part + 1) * points_per_task);
-    for (std::size_t point = part * points_per_task; point < last; ++point) {
-      write(point, sums);
-      light::end_row(sums, rows, needs.tells_radiance());
-    }
-  });
-  LightTable all(needs);
-  for (LightTable& part : parts) all.append(std::move(part));
-  return all;
-}
-
 /// What the nodes around a point say of a light.
 struct ByNormal {
   glm::vec3 irradiance{0.0f};
   glm::vec4 by_normal{0.0f};
 };
 
-/// The light of points between nodes, or its errors. Irradiance is that of the surface. Where nodes
-/// tell light by the normal, what is reflected goes by the shading normal, or by that of a normal
-/// map, in the colour of the irradiance.
-///   nodes   of each point
-///   of      the nodes
-LightTable interpolated(const Scene& scene, const SceneNeeds& needs, const PrimaryHits& points,
-                        std::span<const BilinearWeights> nodes, const LightTable& of) {
-  const auto for_each = [&](std::size_t point, const auto& visit) {
-    for (std::size_t i = 0; i < nodes[point].node.size(); ++i) {
-      const float weight = nodes[point].weight[i];
-      if (weight == 0.0f) continue;
-      of.for_each(nodes[point].node[i],
-                  [&](std::size_t layer, std::size_t entry) { visit(layer, entry, weight); });
-    }
-  };
-  if (of.by_normal.empty()) {
-    return rows_of(points.size(), needs, [&](std::size_t point, auto& sums) {
-      const glm::vec3 reflects = points.diffuse_albedo[point] * glm::one_over_pi<float>();
-      for_each(point, [&](std::size_t layer, std::size_t entry, float weight) {
-        const glm::vec3 light = weight * of.irradiance[entry];
-        sums.of(layer).add(light, reflects * light);
-      });
+/// Adds up the rows of points, one after another.
+class PointSums {
+ public:
+  PointSums(const Scene& scene, const SceneNeeds& needs, LightTable& rows)
+      : scene_(scene),
+        rows_(rows),
+        has_radiance_(needs.tells_radiance()),
+        sums_(needs.light_count),
+        layers_(needs.light_count) {
+    rows_ = LightTable(needs);
+  }
+
+  /// Light, or errors, that were found at the point itself.
+  void add_found(const PrimaryHits& points, std::size_t point, const LightTable& found,
+                 std::size_t row) {
+    found.for_each(row, [&](std::size_t layer, std::size_t entry) {
+      sums_.of(layer).add(found.irradiance[entry],
+                          light::reflected_radiance(points, point, found, entry));
     });
   }
-  tbb::enumerable_thread_specific<light::RowSum<ByNormal>> layers_of_threads(needs.light_count);
-  return rows_of(points.size(), needs, [&](std::size_t point, auto& sums) {
-    light::RowSum<ByNormal>& layers = layers_of_threads.local();
-    for_each(point, [&](std::size_t layer, std::size_t entry, float weight) {
-      ByNormal& light = layers.of(layer);
+
+  /// Light, or errors, of the nodes around the point. Irradiance is that of the surface. Where
+  /// nodes tell light by the normal, what is reflected goes by the shading normal, or by that of a
+  /// normal map, in the colour of the irradiance.
+  void add_between(const PrimaryHits& points, std::size_t point, const BilinearWeights& nodes,
+                   const LightTable& of) {
+    const glm::vec3 reflects = points.diffuse_albedo[point] * glm::one_over_pi<float>();
+    const auto for_each = [&](const auto& visit) {
+      for (std::size_t i = 0; i < nodes.node.size(); ++i) {
+        const float weight = nodes.weight[i];
+        if (weight == 0.0f) continue;
+        of.for_each(nodes.node[i],
+                    [&](std::size_t layer, std::size_t entry) { visit(layer, entry, weight); });
+      }
+    };
+    if (of.by_normal.empty()) {
+      for_each([&](std::size_t layer, std::size_t entry, float weight) {
+        const glm::vec3 light = weight * of.irradiance[entry];
+        sums_.of(layer).add(light, reflects * light);
+      });
+      return;
+    }
+    for_each([&](std::size_t layer, std::size_t entry, float weight) {
+      ByNormal& light = layers_.of(layer);
       light.irradiance += weight * of.irradiance[entry];
       light.by_normal += weight * of.by_normal[entry];
     });
     const glm::vec3 normal =
-        material_of(scene, points.oriented_face[point]).normal_texture != none
+        material_of(scene_, points.oriented_face[point]).normal_texture != none
             ? points.lobe[point].normal
-            : trace::shading_normal(scene, points.oriented_face[point], points.position[point]);
-    const glm::vec3 reflects = points.diffuse_albedo[point] * glm::one_over_pi<float>();
-    layers.take_lit([&](std::size_t layer, const ByNormal& light) {
+            : trace::shading_normal(scene_, points.oriented_face[point], points.position[point]);
+    layers_.take_lit([&](std::size_t layer, const ByNormal& light) {
       if (light.irradiance == glm::vec3(0.0f)) return;
-      sums.of(layer).add(light.irradiance,
-                         reflects * turned(light.irradiance, light.by_normal, normal));
+      sums_.of(layer).add(light.irradiance,
+                          reflects * turned(light.irradiance, light.by_normal, normal));
     });
-  });
-}
+  }
 
-/// Light that was found at the points themselves, in the form of that which lies between nodes.
-LightTable completed(const SceneNeeds& needs, const PrimaryHits& points, const LightTable& found) {
-  return rows_of(points.size(), needs, [&](std::size_t point, auto& sums) {
-    found.for_each(point, [&](std::size_t layer, std::size_t entry) {
-      sums.of(layer).add(found.irradiance[entry],
-                         light::reflected_radiance(points, point, found, entry));
-    });
-  });
-}
+  void end_point() { light::end_row(sums_, rows_, has_radiance_); }
+
+ private:
+  const Scene& scene_;
+  LightTable& rows_;
+  bool has_radiance_;
+  light::RowSum<light::Reflection> sums_;
+  light::RowSum<ByNormal> layers_;
+};
 
 }  // namespace
 
@@ -218,29 +211,23 @@ SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& param
       maps_(scene_, parameters),
       visibility_(rays, maps_) {}
 
-/// What answers for points, by their positions among all, and the points.
+/// What answers for each of the points.
 struct SurfaceCache::Reading {
-  struct Part {
-    std::vector<std::uint32_t> row;
-    PrimaryHits points;
-    std::vector<BilinearWeights> nodes;  ///< of each point; of none where the point is alone
+  const PrimaryHits& points;
+  std::vector<std::uint32_t> alone;  ///< points that have estimates of their own
+  std::vector<std::uint32_t> fine;   ///< that lie between nodes
+  std::vector<std::uint32_t>
+      coarse;  ///< that the light where rays end, or the coarsest nodes, answer
+  std::vector<BilinearWeights> fine_nodes, coarse_nodes;  ///< around each of them
 
-    explicit Part(std::vector<std::uint32_t> rows, const PrimaryHits& all)
-        : row(std::move(rows)), points(estimate::reordered(all, 0, row)), nodes(row.size()) {}
-  };
-  Part alone;   ///< have estimates of their own
-  Part fine;    ///< lie between nodes
-  Part coarse;  ///< are answered by the light where rays end, or by the coarsest nodes
-
-  /// Rows of the parts, one part after another, in the order of all points.
-  LightTable in_order(LightTable rows, const LightTable& of_fine,
-                      const LightTable& of_coarse) const {
-    rows.append(of_fine);
-    rows.append(of_coarse);
-    std::vector<std::uint32_t> order = alone.row;
-    order.insert(order.end(), fine.row.begin(), fine.row.end());
-    order.insert(order.end(), coarse.row.begin(), coarse.row.end());
-    return estimate::restored(rows, order);
+  /// Per point: its place among those that are alone, the fine and the coarse ones, in this order.
+  std::vector<std::uint32_t> places() const {
+    std::vector<std::uint32_t> place(points.size());
+    std::uint32_t next = 0;
+    for (const auto* part : {&alone, &fine, &coarse}) {
+      for (const std::uint32_t point : *part) place[point] = next++;
+    }
+    return place;
   }
 };
 
@@ -253,89 +240,129 @@ LightAndErrors SurfaceCache::with_errors(const PrimaryHits& points, const Gather
   const Reading reading = read(points, progress);
   LightTable light = light_of(reading, progress);
   const auto relative = static_cast<float>(photon_noise().noise);
-  const auto by_photons = [&](const Reading::Part& part) {
-    LightTable errors = light.gathered(part.row);
+  const auto by_photons = [&](std::span<const std::uint32_t> part) {
+    LightTable errors = light.gathered(part);
     for (glm::vec3& value : errors.irradiance) value *= relative;
     for (glm::vec3& value : errors.radiance) value *= relative;
-    return completed(needs_, part.points, errors);
+    return errors;
   };
-  const Reading::Part& fine = reading.fine;
-  LightTable errors =
-      reading.in_order(by_photons(reading.alone),
-                       interpolated(scene_, needs_, fine.points, fine.nodes, nodes.errors()),
-                       by_photons(reading.coarse));
+  LightTable errors = rows(reading, by_photons(reading.alone), nodes.errors(),
+                           by_photons(reading.coarse), Coarse::found);
   return {std::move(light), std::move(errors)};
 }
 
 LightTable SurfaceCache::light_of(const Reading& reading, const Progress& progress) {
-  const auto& [alone, fine, coarse] = reading;
-  hits_alone_ += alone.row.size();
+  hits_alone_ += reading.alone.size();
   const LightTable found =
-      alone.row.empty() && !shared_ ? LightTable{} : elsewhere_.at(alone.points, progress);
+      reading.alone.empty() && !shared_
+          ? LightTable{}
+          : elsewhere_.at(estimate::reordered(reading.points, 0, reading.alone), progress);
   const LightTable& of_coarse =
-      secondary_ && !coarse.row.empty() ? secondary_->values() : maps_.values();
-  return reading.in_order(completed(needs_, alone.points, found),
-                          interpolated(scene_, needs_, fine.points, fine.nodes, maps_.values()),
-                          interpolated(scene_, needs_, coarse.points, coarse.nodes, of_coarse));
+      secondary_ && !reading.coarse.empty() ? secondary_->values() : maps_.values();
+  return rows(reading, found, maps_.values(), of_coarse, Coarse::between_nodes);
+}
+
+/// Rows of all points, in their order. Work is shared by TBB.
+///   of_alone    rows of the points that are alone
+///   of_nodes    rows of the nodes
+///   of_coarse   of the nodes of the coarse points, or of these points themselves
+LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone,
+                              const LightTable& of_nodes, const LightTable& of_coarse,
+                              Coarse coarse_rows) const {
+  const auto& [points, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
+  const std::vector<std::uint32_t> places = reading.places();
+  std::vector<LightTable> parts((places.size() + points_per_task - 1) / points_per_task);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    PointSums sums(scene_, needs_, parts[part]);
+    const std::size_t last = std::min(places.size(), (part + 1) * points_per_task);
+    for (std::size_t point = part * points_per_task; point < last; ++point) {
+      std::size_t i = places[point];
+      if (i < alone.size()) {
+        sums.add_found(points, point, of_alone, i);
+      } else if ((i -= alone.size()) < fine.size()) {
+        sums.add_between(points, point, fine_nodes[i], of_nodes);
+      } else if (i -= fine.size(); coarse_rows == Coarse::found) {
+        sums.add_found(points, point, of_coarse, i);
+      } else {
+        sums.add_between(points, point, coarse_nodes[i], of_coarse);
+      }
+      sums.end_point();
+    }
+  });
+  LightTable all(needs_);
+  for (LightTable& part : parts) all.append(std::exchange(part, {}));
+  return all;
 }
 
 /// Values what the points read, and finds it.
 SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progress& progress) {
-  std::vector<std::uint32_t> alone, fine, coarse;
+  Reading reading{.points = points};
+  auto& [_, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
   for (std::uint32_t point = 0; point < points.size(); ++point) {
     const bool is_coarse = !points.coarse.empty() && points.coarse[point] != 0;
     (!serves(points, point) ? alone : is_coarse ? coarse : fine).push_back(point);
   }
-  Reading::Part between(std::move(fine), points), coarser(std::move(coarse), points);
-  const Stopwatch stopwatch;
-  if (shared_ || !between.row.empty()) maps_.fill(between.points, source_, progress);
-  if (secondary_) {
-    if (shared_ || !coarser.row.empty()) {
-      coarser.nodes = secondary_->nodes_around(coarser.points, progress);
+  const auto fill = [&](std::span<const std::uint32_t> part, int levels) {
+    if (part.size() == points.size()) {
+      maps_.fill(points, source_, progress, LightMaps::all_rounds, levels);
+    } else if (shared_ || !part.empty()) {
+      maps_.fill(estimate::reordered(points, 0, part), source_, progress, LightMaps::all_rounds,
+                 levels);
     }
-  } else if (shared_ || !coarser.row.empty()) {
-    maps_.fill(coarser.points, source_, progress, LightMaps::all_rounds, coarsest_level);
+  };
+  const Stopwatch stopwatch;
+  fill(fine, LightMaps::all_rounds);
+  if (!secondary_) {
+    fill(coarse, coarsest_level);
+  } else if (shared_ || !coarse.empty()) {
+    coarse_nodes = secondary_->nodes_around(estimate::reordered(points, 0, coarse), progress);
   }
   fill_time_ += stopwatch.taken();
-  if (!secondary_) find_nodes(coarser.points, coarsest_level, coarser.nodes);
-  const std::vector<std::uint8_t> seen =
-      find_nodes(between.points, LightMaps::all_rounds, between.nodes);
+  std::vector<std::uint8_t> seen;
+  if (!secondary_) {
+    coarse_nodes = find_nodes(points, coarse, coarsest_level, seen);
+    count_errors(coarse_nodes);
+  }
+  fine_nodes = find_nodes(points, fine, LightMaps::all_rounds, seen);
   // Where photons value nodes they would say no more at a point which no node sees, and may have
   // to be traced first.
-  if (secondary_ && std::find(seen.begin(), seen.end(), 0) != seen.end()) {
-    std::vector<BilinearWeights> nodes;
-    std::vector<std::uint32_t> rows;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+  if (secondary_) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < fine.size(); ++i) {
       if (seen[i] == 0) {
-        alone.push_back(between.row[i]);
-      } else {
-        rows.push_back(between.row[i]);
-        nodes.push_back(between.nodes[i]);
+        alone.push_back(fine[i]);
+        continue;
       }
+      fine[kept] = fine[i];
+      fine_nodes[kept++] = fine_nodes[i];
     }
+    fine.resize(kept);
+    fine_nodes.resize(kept);
     std::sort(alone.begin(), alone.end());
-    between = Reading::Part(std::move(rows), points);
-    between.nodes = std::move(nodes);
   }
-  count_errors(between.nodes);
-  if (!secondary_) count_errors(coarser.nodes);
-  return {Reading::Part(std::move(alone), points), std::move(between), std::move(coarser)};
+  count_errors(fine_nodes);
+  return reading;
 }
 
-/// The nodes around points. Returns 1 for each of them that one of its nodes sees, else 0.
-std::vector<std::uint8_t> SurfaceCache::find_nodes(const PrimaryHits& points, int levels,
-                                                   std::span<BilinearWeights> nodes) const {
-  std::vector<std::uint8_t> seen(points.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), points_per_task),
+/// The nodes around chosen points.
+///   seen   becomes 1 for each of them that one of its nodes sees, else 0
+std::vector<BilinearWeights> SurfaceCache::find_nodes(const PrimaryHits& points,
+                                                      std::span<const std::uint32_t> chosen,
+                                                      int levels,
+                                                      std::vector<std::uint8_t>& seen) const {
+  std::vector<BilinearWeights> nodes(chosen.size());
+  seen.resize(chosen.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), points_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
                       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        const std::uint32_t face = points.oriented_face[i];
-                        maps_.find(face, points.position[i], nodes[i], levels);
-                        seen[i] = visibility_.keep_visible(face, points.position[i], nodes[i]);
+                        const std::uint32_t face = points.oriented_face[chosen[i]];
+                        const glm::vec3& position = points.position[chosen[i]];
+                        maps_.find(face, position, nodes[i], levels);
+                        seen[i] = visibility_.keep_visible(face, position, nodes[i]);
                       }
                     });
-  return seen;
+  return nodes;
 }
 
 void SurfaceCache::count_errors(std::span<const BilinearWeights> nodes) {

@@ -106,9 +106,13 @@ class SurfaceCache : public light::LightAtPoints {
 
   struct Reading;
   Reading read(const PrimaryHits& points, const Progress& progress);
-  std::vector<std::uint8_t> find_nodes(const PrimaryHits& points, int levels,
-                                       std::span<BilinearWeights> nodes) const;
+  std::vector<BilinearWeights> find_nodes(const PrimaryHits& points,
+                                          std::span<const std::uint32_t> chosen, int levels,
+                                          std::vector<std::uint8_t>& seen) const;
   LightTable light_of(const Reading& reading, const Progress& progress);
+  enum class Coarse { between_nodes, found };
+  LightTable rows(const Reading& reading, const LightTable& of_alone, const LightTable& of_nodes,
+                  const LightTable& of_coarse, Coarse coarse_rows) const;
   void count_errors(std::span<const BilinearWeights> nodes);
 
   const Scene& scene_;

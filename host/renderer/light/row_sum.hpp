@@ -51,8 +51,12 @@ class RowSum {
   template <class Write>
   void end_row(LightTable& table, const Write& write) {
     if (!table.sparse()) {
-      for (std::size_t light = 0; light < sums_.size(); ++light) write(light, sums_[light]);
-      take_lit([](std::size_t, const Sums&) {});
+      for (std::size_t light = 0; light < sums_.size(); ++light) {
+        write(light, sums_[light]);
+        sums_[light] = Sums{};
+        is_lit_[light] = 0;
+      }
+      lit_.clear();
       return;
     }
     take_lit([&](std::uint16_t light, const Sums& sums) {
