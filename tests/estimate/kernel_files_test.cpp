@@ -147,7 +147,7 @@ TEST_CASE("every kernel file compiles as it lies there") {
   CHECK(files > 10);
 }
 
-TEST_CASE("every specialisation that the host makes of a kernel compiles") {
+TEST_CASE("every specialisation that the host makes of a kernel compiles", "[slow]") {
   for (const auto& [file, options] : host_programs()) {
     const bool shuffles = options.find("SHUFFLES") != std::string::npos;
     for (const char* target : shuffling_targets) {

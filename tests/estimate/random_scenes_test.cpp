@@ -11,7 +11,7 @@
 namespace photile::test {
 namespace {
 
-constexpr std::uint64_t quick_scenes = 3;
+constexpr std::uint64_t quick_scenes = 1;
 /// Beyond the first, one of so many scenes is tried in every mode, with every structure.
 constexpr std::uint64_t whole_trials = 200;
 constexpr std::array neighbour_counts{1, 8, 50};

@@ -95,9 +95,8 @@ Scene plate_under_lamp(const Material& material) {
 
 Camera at_image() { return Camera::look_at({0, -1.5, 1}, {0, -0.75, 0}, {0, 0, 1}, 0.5); }
 
-TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF's integral says") {
-  const auto [albedo, f0, alpha] = GENERATE(table<double, double, double>(
-      {{1.0, 0.04, 0.1}, {0.5, 0.04, 0.4}, {0.0, 0.9, 0.05}, {0.0, 0.9, 0.25}, {0.3, 0.2, 0.2}}));
+/// Whether a plate reflects uniform light from all sides as its BSDF's integral says.
+void check_in_furnace(double albedo, double f0, double alpha) {
   CAPTURE(albedo, f0, alpha);
   const Scene scene =
       plate_in_furnace(glossy(glm::vec3(static_cast<float>(albedo)),
@@ -115,6 +114,17 @@ TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF'
     radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
   }
   CHECK_VERDICT(mean_is(radiance, 1.0, 0.06));
+}
+
+TEST_CASE("gloss by rays: uniform light from all sides is reflected as the BSDF's integral says") {
+  check_in_furnace(0.5, 0.04, 0.4);
+  check_in_furnace(0.0, 0.9, 0.25);
+}
+
+TEST_CASE("gloss by rays: narrow lobes and others reflect uniform light likewise", "[slow]") {
+  check_in_furnace(1.0, 0.04, 0.1);
+  check_in_furnace(0.0, 0.9, 0.05);
+  check_in_furnace(0.3, 0.2, 0.2);
 }
 
 /// Whether a plate in a box of white walls reflects the light that is everywhere in it.
@@ -157,9 +167,8 @@ TEST_CASE("gloss by rays: lobes of polish and of coats read what walls reflect l
   check_light_of_walls(0.0, 0.9, 0.04);
 }
 
-TEST_CASE(
-    "gloss by rays: a lamp's image in a plate is the path tracer's, at any width of the lobe") {
-  const auto alpha = GENERATE(0.03f, 0.1f, 0.28f);
+/// Whether a lamp's image in a plate is the path tracer's.
+void check_image_of_lamp(float alpha) {
   CAPTURE(alpha);
   const Scene scene = plate_under_lamp(glossy(glm::vec3(0.0f), glm::vec3(0.6f), alpha));
   std::vector<double> ratio;
@@ -175,6 +184,14 @@ TEST_CASE(
                     LayerMeans(trace_paths(scene, at_image(), film).layers.layers[0]).radiance);
   }
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.05));
+}
+
+TEST_CASE("gloss by rays: a lamp's image in a plate is the path tracer's") {
+  check_image_of_lamp(0.1f);
+}
+TEST_CASE("gloss by rays: a lamp's image is the path tracer's in narrow and wide lobes", "[slow]") {
+  check_image_of_lamp(0.03f);
+  check_image_of_lamp(0.28f);
 }
 
 TEST_CASE("gloss by rays: one sample of rough metal shows what it reflects without confetti") {
@@ -235,7 +252,7 @@ TEST_CASE("gloss by rays: a coated wall beside a lamp has no dark pixels") {
   }
 }
 
-TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does") {
+TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does", "[slow]") {
   const auto radiance_of = [](const Material& material, std::uint64_t seed) {
     RenderParameters parameters = with_rays(seed);
     parameters.film.samples_per_pixel = 256;

@@ -91,7 +91,7 @@ TEST_CASE("growing light maps: one part is the picture of its settings") {
                   render(scene, room_camera(), device(), all).layers));
 }
 
-TEST_CASE("growing light maps: the error falls to that of the same work in one round") {
+TEST_CASE("growing light maps: the error falls to that of the same work in one round", "[slow]") {
   // Nothing that rounds leave undone shows: photons of the first one, lattices too coarse.
   const Scene scene = furnished_room(0);
   RenderParameters part = little_work();

@@ -31,7 +31,7 @@ std::vector<Device> halves() { return open_devices({.selector = "/2"}); }
 }  // namespace
 
 TEST_CASE("two sub-devices render the bits of one device") {
-  const Scene scene = room(GENERATE(false, true));
+  const Scene scene = room(true);
   const auto expected = render(scene, test::room_camera(), test::device(), parameters());
   std::vector<Device> devices = halves();
   const auto result = render(scene, test::room_camera(), devices, parameters());
@@ -42,7 +42,7 @@ TEST_CASE("two sub-devices render the bits of one device") {
   CHECK(result.device_fractions[0] + result.device_fractions[1] == Approx(1));
 }
 
-TEST_CASE("two sub-devices gather the bits of one device") {
+TEST_CASE("two sub-devices gather the bits of one device", "[slow]") {
   Scene scene = room(true);
   scene.materials[1] = test::mirror(glm::vec3(0.9f));  // caustics have maps of their own
   RenderParameters gathering = parameters();

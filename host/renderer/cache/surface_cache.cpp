@@ -214,20 +214,19 @@ SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& param
 /// What answers for each of the points.
 struct SurfaceCache::Reading {
   const PrimaryHits& points;
-  std::vector<std::uint32_t> alone;  ///< points that have estimates of their own
-  std::vector<std::uint32_t> fine;   ///< that lie between nodes
-  std::vector<std::uint32_t>
-      coarse;  ///< that the light where rays end, or the coarsest nodes, answer
+  std::vector<std::uint32_t> alone;   ///< points that have estimates of their own
+  std::vector<std::uint32_t> fine;    ///< that lie between nodes
+  std::vector<std::uint32_t> coarse;  ///< that nodes where rays end answer, or the coarsest ones
   std::vector<BilinearWeights> fine_nodes, coarse_nodes;  ///< around each of them
 
-  /// Per point: its place among those that are alone, the fine and the coarse ones, in this order.
-  std::vector<std::uint32_t> places() const {
-    std::vector<std::uint32_t> place(points.size());
+  /// Per point: its slot among those that are alone, the fine and the coarse ones, in this order.
+  std::vector<std::uint32_t> slots() const {
+    std::vector<std::uint32_t> slot(points.size());
     std::uint32_t next = 0;
     for (const auto* part : {&alone, &fine, &coarse}) {
-      for (const std::uint32_t point : *part) place[point] = next++;
+      for (const std::uint32_t point : *part) slot[point] = next++;
     }
-    return place;
+    return slot;
   }
 };
 
@@ -270,13 +269,13 @@ LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone
                               const LightTable& of_nodes, const LightTable& of_coarse,
                               Coarse coarse_rows) const {
   const auto& [points, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
-  const std::vector<std::uint32_t> places = reading.places();
-  std::vector<LightTable> parts((places.size() + points_per_task - 1) / points_per_task);
+  const std::vector<std::uint32_t> slots = reading.slots();
+  std::vector<LightTable> parts((slots.size() + points_per_task - 1) / points_per_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     PointSums sums(scene_, needs_, parts[part]);
-    const std::size_t last = std::min(places.size(), (part + 1) * points_per_task);
+    const std::size_t last = std::min(slots.size(), (part + 1) * points_per_task);
     for (std::size_t point = part * points_per_task; point < last; ++point) {
-      std::size_t i = places[point];
+      std::size_t i = slots[point];
       if (i < alone.size()) {
         sums.add_found(points, point, of_alone, i);
       } else if ((i -= alone.size()) < fine.size()) {

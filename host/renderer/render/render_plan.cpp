@@ -50,11 +50,20 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
 
 std::string_view name_of(GlossMode mode) { return name_in({"photons", "rays", "auto"}, mode); }
 
+namespace {
+
+/// Whether the light of matt surfaces is read from nodes.
+///   passes   of photons; 0 = not known yet
+bool reads_nodes(const RenderParameters& asked, int passes) {
+  return asked.light_maps == LightMapMode::on ||
+         (asked.light_maps == LightMapMode::automatic && asked.maps != MapMode::naive &&
+          passes <= 1);
+}
+
+}  // namespace
+
 bool nodes_gather(const RenderParameters& asked) {
-  const bool read =
-      asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
-                                               asked.maps != MapMode::naive && asked.passes <= 1);
-  return asked.light_map_rays > 0 && asked.direct_rays == 0 && read;
+  return asked.light_map_rays > 0 && asked.direct_rays == 0 && reads_nodes(asked, asked.passes);
 }
 
 PrimaryHitParameters eye_rays(const RenderParameters& parameters) {
@@ -101,9 +110,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
                     "(light_map_rays), and there are {}; take fewer photons, or one pass",
                     passes()));
   }
-  const bool read =
-      asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
-                                               asked.maps != MapMode::naive && passes() == 1);
+  const bool read = reads_nodes(asked, passes());
   if (!read) used_.light_map_rays = 0;
   if (asked.gloss == GlossMode::automatic) {
     used_.gloss = read ? GlossMode::rays : GlossMode::photons;
