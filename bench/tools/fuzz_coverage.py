@@ -19,7 +19,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FUZZER = ROOT / "build/coverage/tests/fuzz/photile_fuzz"
 PROFILES = ROOT / "build/coverage/profiles"
-READERS = ("host/formats/", "host/renderer/image/", "host/renderer/common/", "host/lighting/measuring/",
+READERS = ("host/formats/", "host/pictures/image/", "host/renderer/common/", "host/lighting/measuring/",
            "host/lighting/daylight/daylight_metrics", "host/lighting/daylight/sky_states", "host/apps/",
            "host/renderer/cache/light_map_contents")
 

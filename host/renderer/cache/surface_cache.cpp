@@ -27,7 +27,7 @@ namespace photile::cache {
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work.
-constexpr std::size_t points_per_task = 1024;
+constexpr std::size_t rows_per_task = 1024;
 
 constexpr int coarsest_level = 1;
 
@@ -270,11 +270,11 @@ LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone
                               Coarse coarse_rows) const {
   const auto& [points, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
   const std::vector<std::uint32_t> slots = reading.slots();
-  std::vector<LightTable> parts((slots.size() + points_per_task - 1) / points_per_task);
+  std::vector<LightTable> parts((slots.size() + rows_per_task - 1) / rows_per_task);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     PointSums sums(scene_, needs_, parts[part]);
-    const std::size_t last = std::min(slots.size(), (part + 1) * points_per_task);
-    for (std::size_t point = part * points_per_task; point < last; ++point) {
+    const std::size_t last = std::min(slots.size(), (part + 1) * rows_per_task);
+    for (std::size_t point = part * rows_per_task; point < last; ++point) {
       std::size_t i = slots[point];
       if (i < alone.size()) {
         sums.add_found(points, point, of_alone, i);
@@ -351,7 +351,7 @@ std::vector<BilinearWeights> SurfaceCache::find_nodes(const PrimaryHits& points,
                                                       std::vector<std::uint8_t>& seen) const {
   std::vector<BilinearWeights> nodes(chosen.size());
   seen.resize(chosen.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), points_per_task),
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), rows_per_task),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       const trace::FlushDenormals flush_denormals;
                       for (std::size_t i = range.begin(); i < range.end(); ++i) {

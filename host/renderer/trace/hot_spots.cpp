@@ -30,7 +30,7 @@ constexpr std::uint32_t directions_around = 256;
 /// Cells of a light's directions: rows of the polar angle, columns of the azimuth.
 constexpr std::size_t rows = 96, columns = 48;
 /// Panes and cutouts that light may pass on its way.
-constexpr int most_passed = 4096;
+constexpr int most_surfaces = 4096;
 
 bool may_have(const Light& light) {
   return light.kind == LightKind::point || light.kind == LightKind::spot;
@@ -123,7 +123,7 @@ std::optional<SurfacePoint> HotSpots::first_surface(std::uint32_t light, const g
   const Scene& scene = *rays_->scene;
   const glm::vec3& start = scene_light(light).position;
   RayOrigin origin(start);
-  for (int passed = 0; passed <= most_passed; ++passed) {
+  for (int passed = 0; passed <= most_surfaces; ++passed) {
     const auto hit = rays_->intersect(origin, direction);
     if (!hit) return std::nullopt;
     const SurfacePoint point = surface_hit(scene, *hit, direction);

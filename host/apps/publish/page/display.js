@@ -3,7 +3,7 @@
 /// A number as GLSL has it.
 const real = (number) => (Number.isInteger(number) ? `${number}.0` : `${number}`);
 
-/// From light to the screen, pixel by pixel: `tone_map` of host/renderer/image/display.cpp with the
+/// From light to the screen, pixel by pixel: `tone_map` of host/pictures/image/display.cpp with the
 /// numbers that it has (room.display).
 const shaderDisplay = {
   vertex: shaderMix.vertex,

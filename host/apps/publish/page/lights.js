@@ -41,7 +41,7 @@ class Lights {
       state.tint = room.lights[i].tint.slice();
       return;
     }
-    // A tinted light emits the same power (host/renderer/image/light_change.cpp).
+    // A tinted light emits the same power (host/pictures/image/light_change.cpp).
     const wanted = room.temperatures[Math.round((kelvin - kelvins.low) / kelvins.step)];
     state.tint = wanted.map((part, c) => part / Math.max(room.lights[i].color[c], 1e-30));
   }

@@ -1,7 +1,7 @@
 // Puts the parts of the page together.
 
 /// Factor that brings the log-average luminance to the display's key, without lamps and black: the
-/// rule of automatic_exposure in host/renderer/image/display.cpp.
+/// rule of automatic_exposure in host/pictures/image/display.cpp.
 function automaticExposure(radiance) {
   const luminances = [];
   for (let i = 0; i < radiance.length; i += 3) {
