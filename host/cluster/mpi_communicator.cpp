@@ -1,12 +1,12 @@
-// Every collective call begins with an agreement that nobody has failed. A process that fails makes
-// that agreement in place of the call that the others make, and all end: no process waits for one
-// that is gone, and none has to be aborted. It also tells the others, who look out for that while
-// they work, so that none of them finishes a long stage first. Waiting processes sleep between
-// looks, since ranks may be more than cores.
+// Every collective call begins with a reduction that tells whether a process has failed. A process
+// that fails makes that reduction in place of the call that the others make, and all end: no
+// process waits for one that is gone, and none has to be aborted. It also sends its failure to the
+// others, which check for that while they work, so that none of them finishes a long stage first.
+// Waiting processes sleep between looks, since ranks may be more than cores.
 //
-// A process that is stopped, or whose machine is, can make no agreement. So a thread of each sends
-// a beat to the next rank now and then, whatever the process works on, and where the one before
-// falls silent for long the thread says so and aborts all.
+// A process that is stopped, or whose machine is, cannot take part. So a thread of each process
+// regularly sends a heartbeat to the next rank, whatever the process works on; if the rank before
+// is silent for too long, the thread reports it and aborts all.
 #include "mpi_communicator.hpp"
 
 #include <mpi.h>
@@ -35,12 +35,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Looks without a sleep between them: most answers are there soon.
+/// Checks without a sleep between them: most answers arrive soon.
 constexpr int quick_polls = 200;
 constexpr auto first_sleep = std::chrono::microseconds(20);
 constexpr auto longest_sleep = std::chrono::microseconds(500);
 
-/// How often the thread that beats looks at news; every tenth time it sends a beat.
+/// How often the heartbeat thread checks for messages; every tenth time it sends a heartbeat.
 constexpr auto watch_period = std::chrono::milliseconds(100);
 constexpr int polls_between_beats = 10;
 constexpr int aborting = -1;  ///< in place of the code that a process tells
@@ -131,7 +131,7 @@ class MpiCommunicator final : public Communicator {
         std::max<std::uint64_t>(1, defaults::exchange_round_bytes / size_);
     std::uint64_t most = std::max(*std::max_element(out.begin(), out.end()),
                                   *std::max_element(in.begin(), in.end()));
-    // The rounds of whoever has most.
+    // The number of rounds of the process that has most.
     make([&](MPI_Request* request) {
       MPI_Iallreduce(MPI_IN_PLACE, &most, 1, MPI_UINT64_T, MPI_MAX, all_, request);
     });
@@ -200,7 +200,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   Conclusion conclude(int code, const std::function<void()>& tell_error) override {
-    if (heard_ && heard_code_ == aborting) {  // whoever watches ends all, and tells why
+    if (heard_ && heard_code_ == aborting) {  // the thread that watches ends all, and reports why
       std::this_thread::sleep_for(std::chrono::minutes(1));
       std::_Exit(code);
     }
@@ -211,7 +211,7 @@ class MpiCommunicator final : public Communicator {
       return {rank_, code};
     }
     if (code != 0 && !heard_ && !failed_) tell(code);
-    // Who stopped because of another has not failed.
+    // A process that stopped because of another has not failed.
     const Conclusion end = agree(heard_ ? 0 : code);
     if (end.code != 0 && end.rank == rank_) tell_error();
     make([&](MPI_Request* request) { MPI_Ibarrier(all_, request); });
@@ -260,7 +260,7 @@ class MpiCommunicator final : public Communicator {
       call([&] {
         MPI_Request request;
         MPI_Isend(&told_code_, 1, MPI_INT, static_cast<int>(r), 0, news_, &request);
-        MPI_Request_free(&request);  // the agreement that follows says that it has arrived
+        MPI_Request_free(&request);  // the reduction that follows shows that it has arrived
       });
     }
   }
@@ -271,8 +271,8 @@ class MpiCommunicator final : public Communicator {
     if (there != 0) heard_ = true;
   }
 
-  /// What the watching thread does. It counts its own beats and no time: where all processes of a
-  /// job are stopped and go on later, none of them was silent.
+  /// The loop of the watching thread. It counts its own heartbeats and no time: where all processes
+  /// of a job are stopped and go on later, none of them was silent.
   void beat(const std::stop_token& stop) {
     constexpr int tag = 1;
     sigset_t signals;  // are for others
@@ -293,7 +293,8 @@ class MpiCommunicator final : public Communicator {
           silent = 0;
         }
         if (poll % polls_between_beats != 0) return;
-        // One on its way is enough: whoever does not take it is not to be sent more.
+        // One heartbeat on its way is enough: a process that does not receive it is not to be sent
+        // more.
         if (beat_sent_ != MPI_REQUEST_NULL) MPI_Test(&beat_sent_, &sent, MPI_STATUS_IGNORE);
         if (sent != 0) MPI_Isend(nullptr, 0, MPI_BYTE, after, tag, news_, &beat_sent_);
       });
@@ -364,7 +365,7 @@ class MpiCommunicator final : public Communicator {
     for (std::uint32_t r = 0; r < size_; ++r) copy(in[r], begin, from, got_at[r], got[r]);
   }
 
-  /// Runs of values that MPI counts in an int.
+  /// Calls work(first, count) for runs of values whose number MPI counts in an int.
   template <class Work>
   static void for_each_run(std::size_t count, const Work& work) {
     constexpr std::size_t most = defaults::exchange_round_bytes / sizeof(std::uint64_t);

@@ -1,4 +1,4 @@
-// The communicator of MPI_COMM_WORLD, in a module of its own.
+// The communicator of MPI_COMM_WORLD, in a separate module.
 #pragma once
 
 #include "photile/communicator.hpp"

@@ -41,7 +41,7 @@ class FilmDirections {
                           (1.0 - 2.0 * y / height_) * half_up_);
   }
 
-  /// From the camera's position to where the ray starts: 0 but for parallel rays, metres.
+  /// From the camera's position to where the ray starts, metres: 0 except for parallel rays.
   glm::dvec3 offset(double x, double y) const {
     if (projection_ != Projection::orthographic) return glm::dvec3(0.0);
     return (2.0 * x / width_ - 1.0) * half_right_ + (1.0 - 2.0 * y / height_) * half_up_;
@@ -77,7 +77,7 @@ struct Camera {
   /// it is the angle across the circle that touches the upper and lower border.
   FilmDirections directions(int width, int height) const;
 
-  /// One of them.
+  /// The direction at one film position.
   glm::dvec3 direction(double x, double y, int width, int height) const {
     return directions(width, height)(x, y);
   }

@@ -13,12 +13,12 @@
 
 namespace photile {
 
-/// Another process of a Communicator has failed, and tells its error itself.
+/// Another process of a Communicator has failed, and reports its error itself.
 struct OtherProcessFailed : Error {
   OtherProcessFailed() : Error("another process failed") {}
 };
 
-/// Processes that make the same calls in the same order, each with data of its own: ranks, from 0.
+/// Processes that make the same calls in the same order, each with its own data: ranks, from 0.
 /// photile has one over MPI (host/cluster); a program may bring its own. All functions but the
 /// first two are collective, and throw OtherProcessFailed once a process has called `conclude` with
 /// a failure in place of them.
@@ -76,7 +76,7 @@ class Communicator {
   virtual std::uint32_t on_this_machine() const = 0;
 };
 
-/// Part `index` (from 0) of `count` parts of a sequence, which are of one length but for one
+/// Part `index` (from 0) of `count` parts of a sequence, whose lengths differ by at most one
 /// element.
 struct Shard {
   std::uint32_t index = 0, count = 1;

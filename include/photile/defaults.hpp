@@ -51,22 +51,23 @@ inline constexpr double pilot_photons_of_coarse_cell = 512, pilot_photons_of_cel
 /// rooms of bench/pictures/hard_rooms.py that few paths find, and 1.5 to 3% in the bundled rooms, a
 /// classroom and a kitchen, which have cupboards and undersides.
 inline constexpr double dim_part = 1.0 / 32, hidden_part = 0.1;
-/// Light is not split for ever: what is behind a few doors may have no photon.
+/// The bound on splitting: surface behind several doors may receive no photon.
 inline constexpr double least_window = 0x1p-14;
 
 // Bright surface that rays are aimed at
-/// The brightest part of the lit surface, where more than so much of all reflected light comes from
-/// it. In a room with a cove half comes from 4%, in an office by day from 7%, in others from 9% and
-/// more: there aimed rays bring nothing.
+/// Rays are aimed at the brightest `bright_part` of the lit surface where more than `bright_light`
+/// of all reflected light comes from it. In a room with a cove half of the light comes from 4% of
+/// the surface, in an office by day from 7%, in other rooms from 9% and more: there aimed rays gain
+/// nothing.
 inline constexpr double bright_part = 0.05, bright_light = 0.5;
 inline constexpr double rays_to_bright = 0.5;  ///< of all
 
 // Caustics
 /// Paths that are aimed at mirrors and glass, for each path of all light.
 inline constexpr std::uint64_t aimed_paths = 3;
-/// Of the noise that photons by chance would have, so much counts as a difference of neighbouring
-/// points: aimed paths fill their lines evenly, and neighbours share photons. More would blur, less
-/// leave noise.
+/// The fraction of the noise of random photons that a difference of neighbouring points may have:
+/// aimed paths fill their lines evenly, and neighbours share photons. A larger value blurs, a
+/// smaller one leaves noise.
 inline constexpr double aimed_noise = 1.0 / 3;
 
 // Density estimation
@@ -78,57 +79,62 @@ inline constexpr double radius_over_median_kth_distance = 2.0;
 // Light maps
 inline constexpr double light_map_spacing = 0.04;  ///< metres, of the coarsest nodes
 inline constexpr int light_map_levels = 4;         ///< the finest is an eighth
-/// Metres between the finest nodes: the coarsest lie closer, so that there are none but those.
+/// The distance between the finest nodes, metres: the coarsest nodes lie closer, so that no other
+/// level exists.
 inline constexpr double no_detail = 10;
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
 inline constexpr double published_texel = 0.02;     ///< metres, of the light maps of a page
 inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
 
 // Nodes that gather
-/// Radii of photon estimates, so near to a node that gathers: what they blur, and what hides within
-/// their radius, would show there.
+/// Surface closer than this to a node that gathers, in radii of the photon estimates, is not read:
+/// the blur of the estimates, and what hides within their radius, would show at the node.
 inline constexpr double near_radii = 2;
-/// Estimates where their rays end have so many times fewer neighbours, but no fewer than these.
+/// Estimates where their rays end use neighbours / `neighbours_over_ends` neighbours, and at least
+/// `least_neighbours_at_ends`.
 inline constexpr int neighbours_over_ends = 4, least_neighbours_at_ends = 12;
-/// Nodes that gather lie as far apart as an estimate by so many times the neighbours would reach.
+/// The distance between nodes that gather is the reach of an estimate by this many times the
+/// neighbours.
 inline constexpr int photons_between_nodes = 3;
 inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on from
 /// From near surface that reflects less than the inverse of this, rays go on by chance.
 inline constexpr float survival_of_reflectance = 1.5f;
-/// Ends whose lobe reflects more of the light towards the ray ask where light comes from.
+/// At ray ends whose lobe reflects more than this towards the ray, the direction of light counts.
 inline constexpr float strong_lobe = 0.2f;
-/// Rays of finer nodes are a quarter of the coarse ones', but no fewer: walls beside lights would
-/// be mottled, and the feet of things smudged.
+/// Finer nodes have a quarter of the rays of coarse ones, and at least this many: with fewer, walls
+/// beside lights would be mottled, and the feet of furniture smudged.
 inline constexpr int least_rays = 24;
 /// Light samples for each ray of a node.
 inline constexpr int light_samples_per_ray = 2;
-/// Lamps without size and suns that a node samples each for itself, not by chance: no more than the
-/// light samples that these take the place of.
+/// The most point lights and suns that a node samples one by one instead of at random: no more than
+/// the light samples that they replace.
 inline constexpr std::size_t most_sampled_apart = 32;
-/// Radians: a sun, whose disc is so small that the same directions serve all points. The real one
-/// has 0.0093.
+/// Radians: the largest light that counts as a sun, whose disc is so small that all points use the
+/// same directions. The real sun has 0.0093.
 inline constexpr float largest_sun = 0.02f;
-/// Directions on the rim of a sun, and on its disc, that tell whether a part of it is hidden: an
-/// edge is noticed that leaves out 0.2%. Where a part is, so many on its disc.
+/// Directions on the rim of a sun and on its disc that show whether part of it is hidden: an edge
+/// that covers 0.2% of it is detected. Where part of it is hidden, `hidden_sun_samples` directions
+/// on the disc are used.
 inline constexpr int sun_rim_samples = 16, sun_samples = 16, hidden_sun_samples = 256;
-/// Times as many rays where a sun or a sky shines: what they bring, sunlit floor or a window,
-/// varies more.
+/// The factor on the rays where a sun or a sky shines: the light that they find, of a sunlit floor
+/// or a window, varies more.
 inline constexpr int times_in_the_open = 4;
-/// Where the surface of a scene has room for fewer nodes of the coarsest level than this, each has
-/// as many times the rays, up to `most_times_where_few`: a node then covers much of the picture,
-/// and so does its noise.
+/// Where the surface of a scene has room for fewer nodes of the coarsest level than this, each node
+/// gets proportionally more rays, up to `most_times_where_few` times as many: a node then covers
+/// much of the picture, and so does its noise.
 inline constexpr double few_nodes = 80'000, most_times_where_few = 4;
-/// Where light samples leave an error of more than this fraction of all light, as in penumbrae, a
-/// point takes so many times as many, but at most `most_light_samples_again` times: 2% shows as
-/// ragged borders.
+/// Where the error of the light samples exceeds this fraction of all light, as in penumbrae, a
+/// point takes `light_samples_again` times as many, and `most_light_samples_again` times at most:
+/// an error of 2% shows as ragged borders.
 inline constexpr double tolerated_light_sample_error = 0.02;
 inline constexpr int light_samples_again = 4, most_light_samples_again = 256;
 /// What a ray of a node counts for normals at a right angle to the node's is its light over the
-/// cosine, whose variance has no bound: up to so many times. Surface less than 2 degrees above the
-/// horizon then counts less for them, by 2% of what light of all heights alike does.
+/// cosine, whose variance is unbounded: the inverse of the cosine is clamped to this. Surface less
+/// than 2 degrees above the horizon then counts less for them, by 2% of what light of all heights
+/// alike does.
 inline constexpr float most_inverse_cosine = 32;
-/// Points on each side that a point is averaged with, and so many times: fewer at finer levels,
-/// where light changes from one point to the next.
+/// The number of points on each side that a point is averaged with, and the number of rounds. At
+/// finer levels the window is smaller, because light changes from one point to the next there.
 inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_window = 1;
 /// Standard errors by which points may differ, and how many times as large the standard errors of
 /// direct light may be.
@@ -136,17 +142,19 @@ inline constexpr double tolerated_errors = 2.5, tolerated_error_ratio = 2;
 /// Points whose light differs by less than this part of the brighter one's are averaged without a
 /// look at what stands between them.
 inline constexpr double parting_contrast = 0.5;
-/// A light is judged apart from the others where the square of its own difference exceeds so many
-/// tolerated ones: 4.3 standard errors, which scatter in eight batches seldom brings about.
+/// A light is judged apart from the others where its squared difference exceeds this many squares
+/// of the tolerated one: 4.3 standard errors, which the scatter of eight batches seldom reaches.
 inline constexpr double parting_difference = 3;
-/// Errors above this fraction of the light that they are of are not known: few rays found any.
+/// Errors above this fraction of their own light count as unknown: few rays found any of that
+/// light.
 inline constexpr double known_error = 0.5;
 /// Shadow rays between points of one surface run above it by this part of their length:
-/// roundings and what lies flat on it hide nothing. They end so much short of a node, by less than
-/// the node lies off the foot of a wall.
+/// roundings and what lies flat on it hide nothing. They end short of a node by
+/// `visibility_left_out` of their length, which is less than the distance of a node from the foot
+/// of a wall.
 inline constexpr float visibility_ray_offset = 0x1p-9f, visibility_left_out = 0x1p-9f;
-/// Nodes lie so far off the borders of triangles, by the finest spacing: each is on one side of
-/// what stands there.
+/// The distance of nodes from the borders of triangles, over the finest spacing, so that each node
+/// is clearly on one side of what stands there.
 inline constexpr double node_inset = 0x1p-5;
 /// Lines of sight from a hit to the photons of its estimate run above the surface by this part of
 /// the radius.
@@ -196,8 +204,8 @@ inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room wit
 inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that no file states
 
 // Several processes
-/// Bytes that a process sends in one round of an exchange, at most: buffers for more would lie
-/// beside the photons.
+/// The most bytes that a process sends in one round of an exchange, which bounds the buffers that
+/// it needs beside the photons.
 inline constexpr std::uint64_t exchange_round_bytes = std::uint64_t{1} << 24;
 inline constexpr int rank_patience =
     120;  ///< seconds without a sign of a rank, after which all end
@@ -214,9 +222,10 @@ inline constexpr int validation_paths = 50'000;  ///< of each seed, over the sen
 inline constexpr double sun_diameter_degrees = 0.533;  ///< as seen from the Earth, the mean
 
 // Portals
-/// Photons of a sun or a sky that start through portals; the others carry what comes another way.
+/// The fraction of the photons of a sun or a sky that start through portals; the others carry the
+/// light that comes another way.
 inline constexpr double portal_photons = 0.85;
-/// Light samples that go through portals, of those of suns and skies.
+/// The fraction of the light samples of suns and skies that go through portals.
 inline constexpr double portal_sample_fraction = 0.6;
 
 // Daylight
@@ -233,7 +242,7 @@ inline constexpr int measuring_repeats = 8;
 inline constexpr double wall_band = 0.5;           ///< metres that EN 12464-1 lets grids leave out
 inline constexpr double maintenance_factor = 1.0;  ///< none: the light of a new installation
 
-/// What is told as a doubt: no paint reflects so much, and a candle emits 12 lm.
+/// Limits beyond which a warning is printed: no paint reflects as much, and a candle emits 12 lm.
 inline constexpr double doubtful_reflectance = 0.95, doubtful_lumens = 5;
 
 // False colour, as Radiance's falsecolor has them

@@ -38,7 +38,7 @@ struct DeviceInfo {
   /// size that is asked for, as Intel's runtimes have them.
   bool shuffles = false;
   /// Single-precision numbers below 1.2e-38 are kept, and quotients and roots are correctly
-  /// rounded. Without, results are right but for their last bits.
+  /// rounded. Without these, only the last bits of results are wrong.
   bool denormals = false, exact_division = false;
   bool is_pocl = false;
   /// The result of the last test of this device, with this driver and these kernels: "passed", what

@@ -36,8 +36,8 @@ struct DeviceError : Error {
   int status;  ///< the OpenCL status code, 0 where none applies
 };
 
-/// The device's memory, or the part of it that may be used, does not suffice. Whoever works in
-/// batches tries again with smaller ones.
+/// The device's memory, or the part of it that may be used, does not suffice. Work in batches is
+/// tried again with smaller ones.
 struct DeviceMemoryError : DeviceError {
   using DeviceError::DeviceError;
 };

@@ -30,8 +30,8 @@ inline constexpr std::array all_estimate_strategies = {EstimateStrategy::select,
 /// "select", "lanes".
 std::string_view name_of(EstimateStrategy strategy);
 
-/// Which kernel an estimate runs, and how wide. Speed alone depends on it, but float sums depend on
-/// their order, and so the last bits of a picture.
+/// Which kernel an estimate runs, and how wide. Only the speed depends on it, and, through the
+/// order of float sums, the last bits of a picture.
 struct EstimateTuning {
   EstimateStrategy strategy = EstimateStrategy::select;
   int vector_width = 1;  ///< floats per vector: 1, 4, 8 or 16; of `lanes` 16, 32 or 64 work-items
@@ -106,10 +106,10 @@ struct EstimateParameters {
   std::shared_ptr<const SurfaceIndex> surface = nullptr;
 };
 
-/// Whose order is requested of a list of neighbours.
+/// The order in which a list of neighbours is requested.
 enum class ListOrder {
   ascending,  ///< by photon index: the same on every device
-  any         ///< sorted by nobody, which takes half of the time
+  any         ///< not sorted, which takes half of the time
 };
 
 /// Neighbours of a batch of hits: photon indices, `none` beyond the last.

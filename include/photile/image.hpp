@@ -59,10 +59,10 @@ void write_exr(const std::filesystem::path& file, const Image& image);
 void write_png(const std::filesystem::path& file, const Image& display_referred);
 
 /// Writes a Radiance picture (RGBE) of the channels R, G, B, through a temporary name and a rename.
-/// Values times the attribute `whiteLuminance` are cd/m2; in the file 179 times the bright of
-/// Radiance's primaries are as many, exactly but for its 8 bits: colours are theirs scaled. Its
-/// VIEW is the attribute `photile.view`. Errors: OutputError naming the file; an existing file is
-/// kept then. InputError without R, G, B or `whiteLuminance`.
+/// Values times the attribute `whiteLuminance` are cd/m2; in the file, 179 times the `bright` of
+/// Radiance's primaries gives the same cd/m2, up to the rounding to 8 bits: colours are scaled to
+/// its primaries. Its VIEW is the attribute `photile.view`. Errors: OutputError naming the file; an
+/// existing file is kept then. InputError without R, G, B or `whiteLuminance`.
 void write_hdr(const std::filesystem::path& file, const Image& scene_referred);
 
 /// How scene-referred colours, white at 1, become those of a display.

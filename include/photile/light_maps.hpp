@@ -76,7 +76,7 @@ class NodeSource {
 
   virtual NodeValues value(const NodeBatch& batch, const Progress& progress) = 0;
 
-  /// What it keeps of nodes; `forget` lets go of that.
+  /// Bytes that the source keeps for nodes; `forget` releases them.
   virtual std::uint64_t bytes() const { return 0; }
   virtual void forget() {}
 };
@@ -84,9 +84,9 @@ class NodeSource {
 struct LightMapParameters {
   double spacing = defaults::light_map_spacing;  ///< metres, > 0: of the coarsest nodes, at most
   int levels = defaults::light_map_levels;       ///< the finest is spacing / 2^(levels - 1)
-  /// So many of the coarsest levels are split everywhere and have no nodes: the next one then
-  /// counts as the coarsest, and points have the numbers that they have with fewer of these, and as
-  /// many levels fewer.
+  /// The number of coarsest levels that are split everywhere and have no nodes. The next level then
+  /// counts as the coarsest, and points have the same numbers as with fewer skipped levels and as
+  /// many fewer levels.
   int skipped_levels = 0;
   double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours in a smooth component
   /// Cells are split where their corners differ by this part of the brightest, and by its noise.
@@ -94,12 +94,12 @@ struct LightMapParameters {
   /// Where the source knows how far away the surroundings are: cells larger than this part of it
   /// are split at a quarter of the contrast.
   double near = defaults::light_map_near;
-  double neighbours = defaults::neighbours;  ///< noise is 1 / sqrt of so many photons ...
-  /// ... and of fewer below this irradiance at the lights' powers, where not so many are found.
+  double neighbours = defaults::neighbours;  ///< noise is 1 / sqrt of this many photons ...
+  /// ... and of fewer below this irradiance at the lights' powers, where fewer are found.
   double sparse_irradiance = 0;
   std::vector<double> powers;  ///< per layer of the scene, at which cells are compared
-  /// Processes that fill the same light maps, each for hits of its own: all of them have all nodes.
-  /// Null: this one alone.
+  /// Processes that fill the same light maps, each for its own hits: all of them have all nodes.
+  /// Null: this process alone.
   Communicator* processes = nullptr;
 };
 
@@ -107,9 +107,9 @@ struct LightMapStatistics {
   std::uint64_t nodes = 0;
   std::uint64_t tiles = 0;        ///< of 8 x 8 cells
   std::uint64_t cells = 0;        ///< compared
-  std::uint64_t charts = 0;       ///< planes with lattices of their own
+  std::uint64_t charts = 0;       ///< planes, each with its lattice
   std::uint64_t value_bytes = 0;  ///< of the nodes' light
-  std::uint64_t index_bytes = 0;  ///< of all that finds it
+  std::uint64_t index_bytes = 0;  ///< of all that is used to find it
   double chart_seconds = 0;       ///< of finding charts, once
 };
 
@@ -119,7 +119,7 @@ struct BilinearWeights {
   std::array<float, 4> weight;
 };
 
-/// All that light maps hold beside what follows from the scene and the parameters.
+/// The contents of light maps, without what follows from the scene and the parameters.
 struct LightMapContents {
   struct Coordinates {
     std::uint32_t chart, x, y;  ///< in cells of the finest level
@@ -136,9 +136,9 @@ struct LightMapContents {
 };
 
 /// Irradiance of every light at the nodes of lattices in the planes of the surface, finer where it
-/// varies. Nodes are valued when hits first need them. Where nodes are, what they hold and which
-/// cells are split depends on the scene, the parameters and the source alone, and not on what was
-/// looked at before: see docs/light-maps.md.
+/// varies. Nodes are valued when hits first need them. The positions and values of nodes, and which
+/// cells are split, depend on the scene, the parameters and the source alone, and not on earlier
+/// queries: see docs/light-maps.md.
 class LightMaps {
  public:
   /// Finds the charts. `scene` must outlive it.
@@ -148,8 +148,8 @@ class LightMaps {
   LightMaps(LightMaps&&) noexcept;
 
   /// Values all nodes that these hits on opaque surfaces need, or those of the next `rounds` levels
-  /// that each of them lacks. With fewer `levels` they are read from so many, the coarsest. Errors:
-  /// those of the source, after which all is as it was; Interrupted.
+  /// that each of them lacks. With fewer `levels` only that many of the coarsest are used. Errors:
+  /// those of the source, after which the light maps are unchanged; Interrupted.
   void fill(const PrimaryHits& hits, NodeSource& source, const Progress& progress,
             int rounds = all_rounds, int levels = all_rounds);
   static constexpr int all_rounds = 1 << 30;

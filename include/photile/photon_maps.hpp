@@ -58,8 +58,8 @@ class PhotonMaps {
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none(), std::span<const std::uint8_t> requested = {});
-  /// Builds the maps of photons that nobody else needs: their arrays are given back as soon as the
-  /// maps hold copies, so that they do not lie in memory beside all of those.
+  /// Builds the maps of photons that are not needed afterwards: their arrays are released as soon
+  /// as the maps hold copies, so that both are never in memory as a whole.
   PhotonMaps(Device& device, const Scene& scene, Photons&& photons, const NeighbourGroups& groups,
              const PhotonMapParameters& parameters, Progress& progress = Progress::none(),
              std::span<const std::uint8_t> requested = {});

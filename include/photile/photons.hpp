@@ -86,7 +86,7 @@ struct PhotonTracerParameters {
   /// Whether photons that come directly from a light, or through panes of thin glass, are stored.
   bool store_direct = true;
   /// Whether photons that come by mirrors, or by glass that bends or reflects them, and nothing
-  /// else are stored on their own, too, from further paths that are aimed at such.
+  /// else are stored on their own, too, from further paths that are aimed at them.
   bool keep_caustics = false;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
@@ -113,9 +113,10 @@ std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t t
                                              PhotonQuota quota);
 
 /// Traces photon paths with Embree and TBB and stores a photon at every hit on an opaque surface.
-/// Each layer's lights together emit flux 1 (Scene::unit), shared as LightGroups::share says. The
-/// result depends on the scene, the parameters and the seed only, bit for bit, whatever the number
-/// of threads. Errors: UsageError for counts out of limits.hpp; Interrupted.
+/// Each layer's lights together emit flux 1 (Scene::unit), divided among them by
+/// LightGroups::fraction. The result depends on the scene, the parameters and the seed only, bit
+/// for bit, whatever the number of threads. Errors: UsageError for counts out of limits.hpp;
+/// Interrupted.
 PhotonTracerResult trace_photons(const RayScene& scene, const PhotonTracerParameters& parameters,
                                  Progress& progress = Progress::none());
 

@@ -55,8 +55,8 @@ struct PrimaryHits {
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy
   std::vector<float> fraction;  ///< of its sample, for its illuminance; empty where all are whole
-  /// Whether a coarse answer suffices, for its noise will not show (reflection_noise.hpp); empty
-  /// where it does nowhere.
+  /// Whether a coarse estimate suffices, because its noise will not show
+  /// (host/renderer/cache/reflection_noise.cpp); empty where it suffices for no hit.
   std::vector<std::uint8_t> coarse;
 
   std::size_t size() const { return position.size(); }
@@ -80,9 +80,8 @@ struct PrimaryHitParameters {
   /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
   int pass = 0;
   int passes = 1;
-  /// > 0: each hit gets the light that comes directly from lights by so many light samples, and so
-  /// many directions of its own, and photons have to carry the rest alone
-  /// (PhotonTracerParameters::store_direct).
+  /// > 0: this many light samples and as many directions of the surface find the direct light at
+  /// each hit, and photons have to carry only the rest (PhotonTracerParameters::store_direct).
   int direct_rays = 0;
   /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
   /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
@@ -90,9 +89,9 @@ struct PrimaryHitParameters {
   /// Samples follow both the reflection and the refraction of glass, as long as both count
   /// (defaults::least_glass_fraction), and have a hit for each; else one by chance.
   bool split_at_glass = false;
-  /// > 1: samples of a pixel belong to so many runs, and the pixel of what they see is that of a
-  /// film so many times as wide, y * width * runs + x * runs + run. Runs follow each other in the
-  /// sequence of the pixel.
+  /// > 1: the samples of a pixel are divided into this many runs, and a hit's pixel is that of a
+  /// film which is wider by this factor: y * width * runs + x * runs + run. Runs follow each other
+  /// in the sequence of the pixel.
   int runs = 1;
 };
 

@@ -68,25 +68,24 @@ struct RenderParameters {
   PhotonPaths photons = {};
   /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
   /// their mean. 0 = as many as the host's memory asks for. With light maps `on` whose nodes
-  /// gather: so many parts of all rays, photons and samples are done in rounds
-  /// (docs/light-maps.md).
+  /// gather: the number of parts into which all rays, photons and samples are divided, which are
+  /// done in rounds (docs/light-maps.md).
   int passes = 0;
   MapMode maps = MapMode::automatic;
   double radius = 0;  ///< metres; 0 = automatic_radius
   double angle_degrees = defaults::group_angle_degrees;
   int neighbours = defaults::neighbours;
-  /// > 0: each hit has a number of neighbours of its own, from about this to `neighbours`: as many
-  /// as its estimate can have before bias shows above the noise. 0 = all have `neighbours`.
+  /// > 0: each hit has its own number of neighbours, from about this to `neighbours`: as many as
+  /// its estimate can have before bias shows above the noise. 0 = all have `neighbours`.
   int least_neighbours = 0;
   float photons_per_cell = defaults::photons_per_cell;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
-  /// > 0: light directly from lights is found by so many light samples at each hit. 0 = photons
-  /// carry it.
+  /// > 0: direct light is found by this many light samples at each hit. 0 = photons carry it.
   int direct_rays = 0;
   GlossMode gloss = GlossMode::automatic;
   LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/light-maps.md
-  /// > 0: nodes of light maps gather light by so many rays each, and as many light samples, fewer
+  /// > 0: each node of light maps gathers light by this many rays and as many light samples, fewer
   /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
   int light_map_rays = 0;
   /// Quicker, for first pictures: see docs/irradiance-gathering.md, photons behind walls.
@@ -145,7 +144,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
 /// Whether lights of the scene have such caustics, which path tracing leaves out.
 bool has_hidden_caustics(const Scene& scene);
 
-/// What all settings of a rendering follow, where nothing else is said.
+/// What all settings of a rendering follow, unless they are given.
 enum class Quality {
   draft,  ///< light maps whose nodes have photon estimates: quick, soft
   good,   ///< light maps whose nodes gather: clean to the eye
@@ -201,7 +200,8 @@ struct DrawnFrame {
 
 /// How long a quick frame may value nodes that it lacks.
 struct FrameFilling {
-  /// So many seconds; infinite: until none is lacking. Implicit: a frame knows no other number.
+  /// The seconds that it may take; infinite: until no node is lacking. Implicit, because a frame
+  /// has no other number.
   ///   ends     asked from time to time: true ends it at once, in the middle of a picture. Empty:
   ///            never
   ///   better   takes each picture that is better than the one before, and returns the seconds
@@ -255,8 +255,9 @@ class SceneRenderer {
                   const FrameFilling& filling, std::span<glm::vec3> picture,
                   Progress& progress = Progress::none(), SceneRenderer* coarser = nullptr);
 
-  /// From now on light maps take about so many bytes: `draw` forgets what was seen least recently,
-  /// but nothing of the latest picture. It comes back to the same bits when it is seen again.
+  /// From now on light maps take about this many bytes: `draw` forgets what was seen least
+  /// recently, but nothing of the latest picture. What was forgotten is valued again, to the same
+  /// bits, when it is seen.
   void bound_light_maps(std::uint64_t bytes);
 
   /// Whether `draw` has light maps to draw from.
@@ -265,7 +266,7 @@ class SceneRenderer {
   /// What the light maps hold by now; none where they are not read, or cannot be kept.
   std::optional<LightMapContents> light_maps() const;
 
-  /// The part of that picture which comes by a mirror, by glass that bends or reflects it, or by a
+  /// The part of that picture that comes by a mirror, by glass that bends or reflects it, or by a
   /// glossy lobe.
   RenderResult render_reflections(const Camera& camera, const Film& film,
                                   Progress& progress = Progress::none(),
@@ -276,8 +277,8 @@ class SceneRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What leads a denoiser over edges: means of each pixel, row by row from the top. Mirrors and
-/// glass show what is seen by them, in their tint.
+/// What lets a denoiser preserve edges: means of each pixel, row by row from the top. Mirrors and
+/// glass show what is seen through them, in their tint.
 struct DenoisingGuides {
   std::vector<glm::vec3> albedo;  ///< in [0, 1]; 1 where a light or the surroundings are seen
   std::vector<glm::vec3> normal;  ///< in world space, of the mean of the samples, not longer than 1

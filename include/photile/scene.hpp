@@ -118,7 +118,8 @@ class IntensityDistribution {
   void set_opening(const LuminousOpening& opening) { opening_ = opening; }
   const LuminaireData& data() const { return data_; }
   void set_data(LuminaireData data) { data_ = std::move(data); }
-  /// That the luminaire takes for so many lumens, in proportion; 0 where its file does not say.
+  /// The watts that the luminaire takes for this many lumens, in proportion; 0 where its file does
+  /// not state them.
   double electrical_watts(double lumens) const { return data_.watts * lumens / flux_; }
 
   // Cells of the grid: column of azimuths x row of polar angles.
@@ -256,7 +257,7 @@ enum class LightKind : std::uint8_t { area, point, spot, directional, environmen
 /// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
 struct Light {
   std::string name;   ///< unique; no dots; at most limits::max_light_name_bytes bytes
-  std::string group;  ///< as LightGroups; "" = a layer of its own
+  std::string group;  ///< as LightGroups; "" = its own layer
   LightKind kind = LightKind::area;
   glm::vec3 color{1.0f};  ///< linear RGB scaled to luminance 1; of a picture: that of its mean
   /// Emitted flux in `Scene::unit`s (luminance-weighted). For directional lights and environments:
@@ -311,7 +312,7 @@ struct Portal {
   glm::vec3 v{0.0f};
 };
 
-/// A mesh that the scene repeats at several positions, in a space of its own around its centre.
+/// A mesh that the scene repeats at several positions, in its own space around its centre.
 struct SharedMesh {
   std::vector<glm::vec3> vertices;
   std::vector<glm::uvec3> triangles;  ///< vertex indices
@@ -342,10 +343,10 @@ struct ImportReport {
   std::vector<ImportedMesh> meshes;  ///< in the order of the file
 };
 
-/// Geometry is one indexed triangle soup. Corners of a triangle are stored in canonical order (the
-/// lexicographically smallest position first, then the smaller of the other two), so that the same
-/// mesh with another winding gives the same bits everywhere. `Scene::front_side` keeps what the
-/// winding said. Side 0 of a triangle is the one that its canonical geometric normal points to.
+/// The geometry is one indexed triangle soup. Corners of a triangle are stored in canonical order
+/// (the lexicographically smallest position first, then the smaller of the other two), so that the
+/// same mesh with another winding gives the same bits everywhere. `Scene::front_side` keeps what
+/// the winding said. Side 0 of a triangle is the one that its canonical geometric normal points to.
 struct Scene {
   std::filesystem::path source;
   PowerUnit unit = PowerUnit::lumen;
@@ -457,8 +458,8 @@ struct SceneNeeds {
   bool many_lights() const { return light_count > max_dense_lights; }
 };
 
-/// Looks at every triangle: RayScene::needs() and MapStore::needs keep the answer. Materials that
-/// no triangle has ask for nothing.
+/// Visits every triangle: RayScene::needs() and MapStore::needs keep the result. Materials that no
+/// triangle has add no needs.
 SceneNeeds needs_of(const Scene& scene);
 
 }  // namespace photile

@@ -35,21 +35,21 @@ struct PartBounds {
 /// angle of the neighbour groups; coplanar pieces that touch connect, too. Light reaches a
 /// component as a whole or not at all: the inside of a thin plate is a component on which no photon
 /// lands. So where photons are to be expected and next to none landed (behind a cabinet, above a
-/// ceiling), triangles are *dark*, and components and regions of their own.
+/// ceiling), triangles are *dark*, and form separate components and regions.
 ///
 /// A *region* is a set of connected triangles in one plane. A hit on a region wider than twice the
 /// radius looks at the edges that bound it, and not at its triangles. Smaller regions, and those of
 /// curved surfaces, are looked at triangle by triangle.
 ///
-/// Triangles that store no photons (mirrors, glass) have components and regions of their own, which
+/// Triangles that store no photons (mirrors, glass) form separate components and regions, which
 /// stay dark. Coincident triangles count once.
 ///
 /// A lit component may lie under others for the most part: the wall behind tiles is lit in the
-/// joints. Its triangles count with the fraction of their area that lies open, but for hits on that
-/// component.
+/// joints. Its triangles count with the fraction of their area that lies open, except for hits on
+/// that component.
 ///
-/// *Unlit regions* of lit triangles count as holes in them, but for hits that lie in an unlit
-/// region: those are seen, and dark.
+/// *Unlit regions* of lit triangles count as holes in them, except for hits that lie in an unlit
+/// region: those hits are dark.
 struct SurfaceIndex {
   double radius = 0;         ///< metres: no disc is larger
   double angle_degrees = 0;  ///< largest angle between the normals of neighbours
@@ -64,8 +64,8 @@ struct SurfaceIndex {
   std::uint32_t components = 0;
   std::vector<DarkPart> unlit_regions;            ///< in the order of their oriented faces
   std::vector<std::uint32_t> first_unlit_region;  ///< per oriented face, and their number; or empty
-  /// Of so many unlit regions in turn, which lie beside each other as a rule: a hit on a wall with
-  /// hundreds looks at few of them.
+  /// Each of `unlit_bounds` holds this many consecutive unlit regions, which usually lie beside
+  /// each other: a hit on a wall with hundreds of them tests only a few.
   static constexpr std::uint32_t bounded_together = 4;
   std::vector<PartBounds> unlit_bounds;
 

@@ -1,6 +1,6 @@
-// Build, step 7: copy what the estimate streams into the order of the cells. An record repeats its
-// photon's record, so that the rows of a block of cells are read front to back; following
-// references instead would touch a cache line per photon.
+// Build, step 7: copy what the estimate streams into the order of the cells. A record is a copy of
+// its photon's values, so that the rows of a block of cells are read front to back; following
+// references instead would read a cache line per photon.
 
 #include "photile/device/build.h"
 #include "shared/symbols.clh"

@@ -15,7 +15,7 @@
 //   map_normal_filtered        per map, from count_photons; with PATCHES
 //   radius           metres
 //   photons_per_cell aimed at
-// After: grids[i] is complete but for first_cell; cell_total[i] = columns * rows, 0 without
+// After: grids[i] is complete except for first_cell; cell_total[i] = columns * rows, 0 without
 // photons.
 //
 // The cell size aims at photons_per_cell where photons are, on the surface grown by the radius (its

@@ -3,7 +3,7 @@
 
 #include "structures/search.clh"
 
-// How far a place lies outside of cell i along an axis, in cells.
+// How far a position lies outside of cell i along an axis, in cells.
 static float cells_to(float position, int i) {
   return fmax(fmax((float)i - position, position - (float)(i + 1)), 0.0f);
 }
@@ -20,7 +20,7 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
   const float3 position = position_in_cells(grid, hit);
   const int3 centre = convert_int3_rtn(position);
   const int3 last = hashed_cell_of(grid, high);
-  // What rounding may do to places, in cells: they are quotients of a few roundings.
+  // The rounding of positions, in cells: they are quotients with a few roundings.
   const float3 largest = fmax(fabs(position), convert_float3(last));
   const float slack = 1e-6f * (1.0f + fmax(fmax(largest.x, largest.y), largest.z));
   const float3 inside = position - convert_float3(centre);

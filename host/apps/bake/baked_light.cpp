@@ -19,10 +19,10 @@ namespace photile::bake {
 
 namespace {
 
-/// A lookup between the outermost texels stays within them; the border is for those that go astray.
+/// A lookup between the outermost texels stays within them; the border is for lookups outside.
 constexpr std::uint32_t border = 1;
 
-/// Where the picture is too small, texels are so much farther apart.
+/// The factor by which the distance of texels grows where the picture is too small.
 constexpr double coarser = 1.25;
 
 /// Texels whose nodes are valued at a time: bounds the memory of their hits.
@@ -43,7 +43,7 @@ void for_each_value(const LightTable& values, std::uint32_t node, std::size_t la
   });
 }
 
-/// What a node holds of any layer.
+/// The light of all layers at a node.
 std::span<const glm::vec3> light_of(const LightTable& values, std::uint32_t node) {
   const LightTable::Entries entries = values.row(node);
   return std::span(values.irradiance).subspan(entries.first, entries.last - entries.first);

@@ -1,4 +1,4 @@
-// Light maps as textures: a place on one picture for every triangle, and the light there.
+// Light maps as textures: a position on one picture for every triangle, and the light there.
 #pragma once
 
 #include <array>
@@ -40,13 +40,13 @@ struct BakeParameters {
   std::vector<std::uint8_t> open;  ///< as open_sides; empty = all sides are
 };
 
-/// Which surface anybody can see, or light can reach: the insides of closed things need no light
+/// The surface that is visible or that light can reach: the insides of closed objects need no light
 /// maps. Per oriented face 1 where paths from the cameras and the lights come to it, or to its
 /// sheet: what goes on over common edges. Else 0. Paths leave surfaces by the cosine and go on
 /// through glass and cutouts, too. Depends on the scene alone.
 std::vector<std::uint8_t> open_sides(const RayScene& rays);
 
-/// Per oriented face 1 where such paths from the cameras alone come to it: what anybody can see.
+/// Per oriented face 1 where such paths from the cameras alone come to it: the visible surface.
 std::vector<std::uint8_t> seen_sides(const RayScene& rays);
 
 /// A triangle on another: per corner the weights of the other's corners. Counter-clockwise as seen
@@ -71,7 +71,7 @@ class BakedLight {
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
   ///   visibility   of the light maps
-  ///   progress   is told of a stage
+  ///   progress reports a stage
   BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
              const cache::NodeVisibility& visibility, const BakeParameters& parameters,
              Progress& progress);
@@ -80,7 +80,7 @@ class BakedLight {
   std::uint32_t height() const { return atlas_.height; }
   double texel() const { return texel_; }
 
-  /// Oriented faces that are baked, ascending.
+  /// The oriented faces that are baked, ascending.
   std::span<const std::uint32_t> sides() const { return sides_; }
   /// Texture coordinates of a baked triangle's corners: (0, 0) is the top left corner of the
   /// picture.
@@ -102,7 +102,7 @@ class BakedLight {
   /// Per layer whether its light is on any texel of these sides.
   ///   sides   per oriented face 1, else 0
   std::vector<bool> reaches(std::span<const std::uint8_t> sides, std::size_t layers) const;
-  /// Texels of the charts, without what lies between them.
+  /// The number of texels of the charts, without those between charts.
   std::uint64_t used_texels() const;
 
  private:

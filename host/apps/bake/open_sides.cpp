@@ -15,7 +15,8 @@
 namespace photile::bake {
 namespace {
 
-/// A side that none of these paths meets and that joins none which one meets stays unseen.
+/// The number of paths: a side that none of them meets, and that is joined to no side which one
+/// meets, counts as hidden.
 constexpr std::uint64_t open_paths = 131'072;
 constexpr std::uint32_t open_bounces = 16;
 
@@ -23,7 +24,7 @@ struct PathStart {
   glm::vec3 position, direction;
 };
 
-/// A place to see from, or one that light comes from.
+/// A position to look from, or one that light comes from.
 class PathSource {
  public:
   explicit PathSource(const glm::vec3& position) : position_(position) {}

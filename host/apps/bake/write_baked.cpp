@@ -92,7 +92,7 @@ void write_layer(const std::filesystem::path& file, const BakedLight& baked, std
 
 bool is_binary(const std::filesystem::path& file) { return file.extension() == ".glb"; }
 
-/// A glTF document that grows, with its buffer: two files, or one.
+/// A glTF document under construction, with its buffer: two files, or one.
 class Document {
  public:
   explicit Document(const std::filesystem::path& file) : file_(file), output_(file) {}
@@ -116,7 +116,7 @@ class Document {
     return accessors.size() - 1;
   }
 
-  /// Adds a picture of base colours: a file of its own, or a part of the buffer.
+  /// Adds a picture of base colours: a separate file, or a part of the buffer.
   ///   own   that file
   void add_picture(const std::filesystem::path& own, const Texture& texture) {
     const std::vector<std::uint8_t> texels = texels_of(texture);
@@ -182,7 +182,7 @@ class Document {
 
 json material_of(const Scene& scene, const Material& material,
                  const std::map<std::uint32_t, std::size_t>& texture_number) {
-  // What is not textured here is matt with the same reflectance on the whole.
+  // Materials without a texture here become matt with the same total reflectance.
   glm::vec3 colour = material.diffuse + material.specular;
   if (material.metallic_roughness != none) {
     colour = glm::vec3(scene.metallic_roughness[material.metallic_roughness].base_color);
@@ -197,7 +197,8 @@ json material_of(const Scene& scene, const Material& material,
   return {{"name", material.name}, {"pbrMetallicRoughness", surface}};
 }
 
-/// Baked sides of a material, each a triangle of its own that faces where it is seen from.
+/// Baked sides of a material, each a separate triangle that faces the side from which it is
+/// visible.
 json primitive_of(const Scene& scene, const BakedLight& baked,
                   const std::vector<std::uint32_t>& sides, std::uint32_t material,
                   Document& document) {

@@ -16,7 +16,7 @@ namespace photile::bake {
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file, const Scene& scene,
                                             const LightMix& mix);
 
-/// Writes them. Corners of triangles are vertices of their own; the coordinates of light are
+/// Writes them. Each corner of a triangle is a separate vertex; the coordinates of light are
 /// TEXCOORD_1. The picture of a layer is the irradiance of its lights at their powers and tints in
 /// the mix, linear Rec.709, in the unit of the scene per square metre; the document names it in
 /// extras.photile of the scene. Errors: OutputError.

@@ -61,13 +61,13 @@ void define(CLI::App& photile) {
   }
 }
 
-/// The command whose --help knows more about a usage error.
+/// The command whose --help explains a usage error.
 std::string help_command(const CLI::App& photile) {
   const auto chosen = photile.get_subcommands();
   return chosen.empty() ? "photile --help" : "photile " + chosen.front()->get_name() + " --help";
 }
 
-/// Whether standard output is a pipe whose reader has seen enough, as `head` has.
+/// Whether standard output is a pipe whose reader has closed it, as `head` does.
 bool nobody_reads_on() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
@@ -110,7 +110,7 @@ ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const*
   try {
     photile.parse(argument_count, arguments);
   } catch (const CLI::ExtrasError&) {
-    // CLI11 tells them from the last to the first.
+    // CLI11 lists them from the last to the first.
     const std::vector<std::string> extra = photile.remaining(true);
     for (std::size_t i = 0; i < extra.size(); ++i) {
       const std::string remedy =
@@ -134,8 +134,8 @@ ExitCode parse_and_run(CLI::App& photile, int argument_count, const char* const*
   return ExitCode::success;
 }
 
-/// Ends the run of all processes, and tells the error of the first that failed. Returns what all
-/// exit with.
+/// Ends the run of all processes, and prints the error of the first that failed. Returns the exit
+/// code of all.
 int conclude(ExitCode code, const std::string& problem) {
   const auto own = static_cast<int>(code);
   if (!processes()) {
@@ -155,7 +155,7 @@ int conclude(ExitCode code, const std::string& problem) {
 
 namespace {
 
-/// Without memory, which a line made of texts would ask for.
+/// Without allocating memory, which joining strings would.
 [[noreturn]] void end_in_runtime(std::string_view line) {
   static_cast<void>(::write(STDERR_FILENO, line.data(), line.size()) == 0);
   ::_exit(static_cast<int>(ExitCode::device));
@@ -167,7 +167,7 @@ namespace {
       "space (ulimit -v)\n");
 }
 
-/// Compilers of devices abort where they do not know further (docs/runtimes.md).
+/// Compilers of devices abort in states that they do not handle (docs/runtimes.md).
 void end_where_a_compiler_aborts() {
   device::handle_aborts_by([](int) {
     end_in_runtime(
@@ -176,8 +176,8 @@ void end_where_a_compiler_aborts() {
   });
 }
 
-/// No exception passes through PoCL: in a thread of ours it would leave locks held for which all
-/// wait for good, in one of its own it ends the process by a signal.
+/// No exception may pass through PoCL: in a thread of photile it would leave locks held, so that
+/// all threads wait for ever; in a thread of PoCL it ends the process by a signal.
 void end_where_a_compiler_lacks_memory() {
   std::set_new_handler([] {
     if (device::in_compiler()) end_in_compiler();
@@ -202,7 +202,7 @@ int run_command_line(int argument_count, const char* const* arguments) {
   const TerminalText names_command_nothing(std::cout);
   end_where_a_compiler_lacks_memory();
   end_where_a_compiler_aborts();
-  std::signal(SIGPIPE, SIG_IGN);  // whoever reads no more of what is told loses no picture
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that closes the pipe early does not end the rendering
   try {
     join_processes({arguments, static_cast<std::size_t>(argument_count)});
     CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",

@@ -114,7 +114,7 @@ Compared in_mood(const CompareOptions& options, const std::string& mood) {
 }
 
 /// Errors: InputError for pictures without colours, and for pixels that are infinite or no numbers:
-/// no error could be told of them.
+/// no error of them can be computed.
 void check_pixels(const std::string& file, const Image& picture) {
   for (const char* channel : {"R", "G", "B"}) {
     if (picture.find(channel)) continue;
@@ -141,7 +141,7 @@ Compared from_file(const std::string& file) {
   return compared;
 }
 
-/// cd/m2 of the values (1, 1, 1); 0 where the picture does not say it.
+/// cd/m2 of the values (1, 1, 1); 0 where the picture does not state it.
 double white_luminance(const Image& picture) {
   const auto white = picture.numbers.find("whiteLuminance");
   return white == picture.numbers.end() || !(white->second > 0) ? 0 : double{white->second};

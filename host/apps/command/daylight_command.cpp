@@ -93,7 +93,7 @@ YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
   return lamps;
 }
 
-/// What a report of the year alone says beside its figures.
+/// What a report of the year alone states beside its figures.
 nlohmann::ordered_json report_of(const DaylightOptions& options, const Scene& scene,
                                  const nlohmann::ordered_json& grids, std::size_t rounds) {
   nlohmann::ordered_json record{
@@ -156,13 +156,13 @@ void check_lights(const DaylightOptions& options) {
   }
 }
 
-/// The sky's lights are needed to find the windows, and for no more.
+/// The sky's lights are needed only to find the windows.
 Scene scene_under_sky(const std::string& file, SceneLoadOptions load, const Progress& progress) {
   load.sky = Sky{SkyKind::patches, 0, 0, 0, weather::patch_counts[0]};
-  load.ground = defaults::ground_reflectance;  // that of the year is part of its hours
+  load.ground = defaults::ground_reflectance;  // the year's is part of its hours
   load.situation.weather.clear();
   load.situation.site.reset();
-  load.portals = {"off"};  // those of the grids are looked for
+  load.portals = {"off"};  // those of the grids are searched
   return loading::load_scene(file, load, progress);
 }
 
@@ -200,7 +200,7 @@ std::vector<SkyState> states_of(const DaylightOptions& options, const Year& year
   return sky_states(year, scene, groups, progress);
 }
 
-/// A scene and what its year is found of.
+/// A scene and what its year is computed from.
 struct PreparedYear {
   Year year;
   Scene scene;

@@ -53,7 +53,7 @@ struct YearLamps {
 
 /// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
 /// their states.
-/// Of several rounds figures have standard errors, but for those of a single state.
+/// With several rounds, figures have standard errors, except those of a single state.
 ///   rounds   of states as sky_states has them
 report::DaylightResults daylight_results(const DaylightOptions& options, const daylight::Year& year,
                                          const std::vector<measuring::SensorGrid>& grids,

@@ -99,7 +99,7 @@ double coverage_of(const GlareOptions& options, const Scene& scene,
   return area / (static_cast<double>(room->positions().size()) * room->cell_area());
 }
 
-/// The highest UGR beside what is required; none where nothing is.
+/// The highest UGR beside the required one; none where nothing is required.
 std::optional<measuring::Judgement> judged(const GlareOptions& options,
                                            std::span<const glare::ObserverGlare> all) {
   if (options.target.empty()) return std::nullopt;

@@ -52,8 +52,8 @@ struct MeasureOptions {
   }
 };
 
-/// An overcast sky of 100 lux: what it gives is a daylight factor in per cent.
-/// Errors: UsageError where another sky is asked for.
+/// An overcast sky of 100 lux, so that lux are daylight factors in per cent. Errors: UsageError
+/// where another sky is asked for.
 void take_overcast_sky(SceneLoadOptions& load) {
   if (load.sky || load.sun || load.situation.time || !load.environment.file.empty()) {
     throw UsageError(
@@ -81,7 +81,7 @@ double most_of(const measuring::Measurement& measurement) {
   return most;
 }
 
-/// Everything that the command line asks to be measured.
+/// Everything that the command line requests.
 std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
                                             Progress& progress) {
   std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
@@ -112,7 +112,7 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   return grids;
 }
 
-/// What is doubtful before anything is measured, a line each.
+/// Warnings before anything is measured, a line each.
 std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
                                      const std::vector<measuring::SensorGrid>& grids) {
   std::vector<std::string> lines = doubts_of(scene, mix);

@@ -135,7 +135,7 @@ MeasureOutputs::MeasureOutputs(MeasureOutputOptions& options)
     : options_(options),
       unit_(options.daylight_factor ? "DF %" : "lux"),
       colours_(options.false_colour.of(unit_)) {
-  if (options.daylight_factor) colours_.scale = 0;  // thousands of lux would show nothing
+  if (options.daylight_factor) colours_.scale = 0;  // a scale for lux would show nothing
   const bool reports = has_any(options.outputs, {".html", ".pdf"});
   if (options.daylight_factor && reports) {
     throw UsageError("reports are in lux; write daylight factors to .csv, .json or .svg");

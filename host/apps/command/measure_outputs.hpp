@@ -72,7 +72,7 @@ class MeasureOutputs {
   /// Errors: those of report_pictures.
   void check_moods(const std::filesystem::path& moods) const;
 
-  /// Whether it writes all that is known of the run and of the scene.
+  /// Whether it writes the full record of the run and of the scene.
   bool any_record() const {
     return has_any(options_.outputs, {".json"}) || !drawn_files(options_.outputs).empty();
   }

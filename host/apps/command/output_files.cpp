@@ -168,7 +168,7 @@ std::vector<std::filesystem::path> PictureOutputs::files() const {
 void PictureOutputs::write(LayeredPicture& picture, Progress& notes,
                            const std::filesystem::path& source) const {
   about_file(source, [&] { image::keep_white(picture.header(), options_.white.of(picture)); });
-  // First, for the picture may lack them.
+  // First, because the picture may lack them.
   std::vector<float> lux, candela;
   Image root, displayed;
   const auto all = files();

@@ -1,5 +1,5 @@
 // Files that a command writes, checked early and written late: outputs that can be written and are
-// no input, and how pictures are shown.
+// not inputs, and how pictures are shown.
 #pragma once
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ class App;
 
 namespace photile::app {
 
-/// What --white asks for.
+/// The value of --white.
 struct WhiteOption {
   std::optional<image::White> white;  ///< none = that of the lamps
 
@@ -59,12 +59,12 @@ void add_exposure_option(const OptionGroup& group, double& exposure);
 
 /// The options of false colour as typed, checked against the limits.
 struct FalseColourOptions {
-  report::FalseColour colours;  ///< but for the top of the scale; no label: the unit
+  report::FalseColour colours;  ///< without the top of the scale; no label: the unit
   std::string scale;            ///< top, or "auto"
 
   FalseColourOptions() : scale(fmt::format("{}", colours.scale)) { colours.label.clear(); }
 
-  /// What they ask for where values are in `unit`.
+  /// The false colours that they request where values are in `unit`.
   report::FalseColour of(const std::string& unit) const;
 };
 
@@ -108,9 +108,9 @@ class PictureOutputs {
 
   /// Keeps the white with `picture` and writes every file: `picture` as EXR, its tone-mapped root
   /// as PNG, its root in Radiance's format, its illuminance and its luminance in false colour.
-  /// `notes` are told what a drawing lacks.
-  /// Errors: OutputError; the file that it names is then as it was before. Those of `picture`, of
-  /// measuring::illuminance_of and luminance_of; then nothing is written.
+  /// `notes` get what a drawing lacks. Errors: OutputError; the file that it names is then as it
+  /// was before. Those of `picture`, of measuring::illuminance_of and luminance_of; then nothing is
+  /// written.
   ///   source   the file that the picture is from, named where it lacks something
   void write(LayeredPicture& picture, Progress& notes = Progress::none(),
              const std::filesystem::path& source = {}) const;

@@ -43,7 +43,7 @@ void take_signals(const sigset_t& signals) {
 }  // namespace
 
 void handle_signals() {
-  // Of threads that were there before: those of MPI.
+  // For threads that were started earlier: those of MPI.
   struct sigaction action {};
   action.sa_handler = request_stop;
   action.sa_flags = SA_RESETHAND | SA_RESTART;
@@ -72,7 +72,7 @@ struct ThreadLimit::Impl {
   explicit Impl(int count)
       : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)) {}
 
-  /// Made in its place: TBB knows it by its address, and a copy would limit nothing.
+  /// Constructed in place: TBB knows it by its address, and a copy would limit nothing.
   const tbb::global_control control;
 };
 
@@ -82,7 +82,7 @@ ThreadLimit::ThreadLimit(int count) {
   require_threads(2 * used + own);
   if (count == 0) return;
   impl_ = std::make_unique<Impl>(count);
-  // What the user set in the environment stays.
+  // Variables that the user set in the environment stay.
   for (const char* variable : pocl_thread_variables) {
     setenv(variable, std::to_string(used).c_str(), 0);
   }
@@ -101,7 +101,7 @@ int number_in(const char* variable) {
 }
 
 /// Processes that a launcher with MPI has started: mpirun of OpenMPI, of MPICH and its kin, srun
-/// with PMI. 0: none did. Some tell it to MPI alone: then 1.
+/// with PMI. 0: none did. Some launchers tell the number to MPI alone: then 1.
 int launched_with_mpi() {
   for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     if (const int count = number_in(variable); count > 0) return count;
@@ -109,7 +109,7 @@ int launched_with_mpi() {
   return std::getenv("PMIX_RANK") != nullptr ? 1 : 0;
 }
 
-/// Whether each process has a part of its own, so that several do not write the same file.
+/// Whether each process has a separate part, so that several do not write the same file.
 bool names_its_part(std::span<const char* const> arguments) {
   for (const char* argument : arguments) {
     for (const std::string_view option : {"--shard", "--frames"}) {
@@ -134,7 +134,7 @@ void join_processes(std::span<const char* const> arguments) {
     }
     return;
   }
-  // Global: MPI libraries load parts of their own, which look for the rest. It is never unloaded.
+  // Global: MPI libraries load plug-ins, which need the symbols of the rest. It is never unloaded.
   static const Module& module = *new Module("photile_mpi.so", Module::Symbols::global);
   auto* const found = module.find<decltype(photile_mpi_communicator)>("photile_mpi_communicator");
   if (!found) {

@@ -24,8 +24,8 @@ bool stop_requested();
 void throw_if_stop_requested();
 
 /// While it lives, TBB uses at most `count` threads (0: as many as there are cores), and so does a
-/// PoCL device that is opened later, but for those beyond the cores. The picture does not depend on
-/// it.
+/// PoCL device that is opened later, which has no more threads than cores. The picture does not
+/// depend on it.
 class ThreadLimit {
  public:
   /// Errors: those of require_threads.
@@ -46,13 +46,13 @@ void join_processes(std::span<const char* const> arguments);
 /// Null where this process is on its own.
 Communicator* processes();
 
-/// Whether this process tells and writes what all have made.
+/// Whether this process reports and writes the result of all.
 bool leads();
 
-/// Whether another process has failed: what this one makes is of no use then. Any thread.
+/// Whether another process has failed, so that the result of this one is not needed. Any thread.
 bool other_failed();
 
-/// What rank 0 says, on all ranks. Collective.
+/// The values of rank 0, on all ranks. Collective.
 std::vector<bool> as_first_says(const std::vector<bool>& own);
 
 /// Errors: UsageError where there are several processes.

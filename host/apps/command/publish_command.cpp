@@ -78,8 +78,8 @@ std::vector<std::filesystem::path> files_of(const std::vector<std::string>& outp
   return files;
 }
 
-/// What moves the sky on the page: patches stand for it in the scene that is to be loaded, unless
-/// the options ask for the sky of one hour or of another kind.
+/// What moves the sky on the page: the scene that is to be loaded gets a sky of patches, unless the
+/// options ask for the sky of one hour or of another kind.
 SkySituation sky_of_page(SceneLoadOptions& load) {
   const SkySituation given = load.situation;
   const bool placed = given.site || !given.weather.empty();
@@ -109,7 +109,7 @@ class LitRoom {
   const bake::BakedLight& baked() const { return *baked_; }
   /// How `photile render` shows what the first camera sees, by the light maps as they are.
   ToneMapping shown(const PictureOptions& options, const LightMix& mix, Progress& progress) {
-    constexpr int samples = 4;  // of 200,000 pixels: more would not move their mean
+    constexpr int samples = 4;  // of 200,000 pixels: more would not change their mean
     const Camera& camera = publish::opening_camera(scene_);
     Film film;
     set_film_size(film, "", camera);
@@ -134,7 +134,7 @@ class LitRoom {
   void bake(Progress& progress) {
     cache::SurfaceCache& cache = *session_.light().cache();
     bake::BakeParameters baking = baking_;
-    if (!baking.exact) {  // in a small room finer, as nodes are
+    if (!baking.exact) {  // finer in a small room, as nodes are
       baking.texel = std::min(defaults::published_texel, cache.maps().charts().spacing() / 2);
     }
     baked_.emplace(scene_, cache.maps(), session_.light().nodes(), cache.visibility(), baking,

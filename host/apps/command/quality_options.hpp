@@ -21,7 +21,8 @@ struct QualityOptions {
   RenderParameters& parameters;
 };
 
-/// An option that ends the making of pictures. It is no setting: each picture has its own settings.
+/// An option that ends a series of pictures. It is not a setting: each picture has its own
+/// settings.
 struct GoalOption {
   std::string_view name;    ///< in records, "target_error"
   std::string_view option;  ///< "target-error"
@@ -34,7 +35,7 @@ std::span<const GoalOption> goal_options();
 inline constexpr std::string_view quality_help =
     "photons, k, samples and rays of nodes together; options given beside it count";
 
-/// Sets a quality and what it is made of.
+/// Sets a quality and the settings that it consists of.
 void set_quality(const QualityOptions& options, Quality quality);
 
 /// Adds --quality, which sets several settings at once. To be added before theirs: options that are
@@ -44,8 +45,8 @@ void add_quality_preset(CLI::App& command, const QualityOptions& options);
 /// Adds --target-error and --for.
 void add_goal_options(CLI::App& command, RefinementGoal& goal);
 
-/// Errors: UsageError for a goal where nodes of light maps do not gather, whose noise is what
-/// pictures state.
+/// Errors: UsageError for a goal where nodes of light maps do not gather, since pictures state the
+/// noise of such nodes.
 void check_goal(const RefinementGoal& goal, const RenderParameters& parameters);
 
 /// `refine` by these steps, with a note about each picture and what was reached.

@@ -55,7 +55,7 @@ PictureOutputs check_outputs_of(const RenderOptions& options) {
   return outputs;
 }
 
-/// Runs `work` as a stage of its own and returns what it cost.
+/// Runs `work` as a separate stage and returns its cost.
 template <class Work>
 StageStatistics timed_stage(const char* name, Progress& progress, const Work& work) {
   progress.throw_if_cancelled();
@@ -66,7 +66,7 @@ StageStatistics timed_stage(const char* name, Progress& progress, const Work& wo
   return stage(name, {stopwatch.taken()});
 }
 
-/// Tells and notes what the kernels of a device cost.
+/// Prints and records the cost of the kernels of a device.
 void tell_kernels(Device& device, bool profile, RunRecord& record, Progress& progress) {
   KernelRecord kernels{device.info().id,
                        device.programs_built(),
@@ -89,7 +89,7 @@ struct Views {
   LightLayers* reflections;  ///< is filled; may be null
 };
 
-/// Takes what was found on the way to a picture.
+/// Records what was found during a rendering.
 void note_result(const RenderResult& result, std::span<const Device> devices, RunRecord& record) {
   record.used = result.used;
   record.devices.clear();
@@ -130,7 +130,7 @@ void render_until_good(const Scene& scene, std::span<Device> devices, const Rend
   render_refined(options.goal, part, {make, finished, elapsed}, progress);
 }
 
-/// The layers by photon maps. Fills in what `record` tells of them.
+/// The layers by photon maps. Fills in what `record` states of them.
 LightLayers render_by_photons(const Scene& scene, const Camera& camera, std::span<Device> devices,
                               const RenderOptions& options, const Views& views, RunRecord& record,
                               Progress& progress) {
@@ -162,8 +162,8 @@ LightLayers render_by_paths(const Scene& scene, const Camera& camera, const View
   return std::move(result.layers);
 }
 
-/// What --denoise asks for: loaded before the rendering, so that a library which is not there is
-/// told at once.
+/// The library of --denoise: loaded before the rendering, so that a missing one is reported at
+/// once.
 class Denoising {
  public:
   ///   film   of the picture
@@ -191,7 +191,7 @@ class Denoising {
   std::optional<DenoisingGuides> guides_;  ///< once they are needed
 };
 
-/// Writes the file that --glare names, and tells what is marked. `picture` is that of `layers`,
+/// Writes the file that --glare names, and prints what is marked. `picture` is that of `layers`,
 /// `reflections` are the part of them that came by reflection. Errors: OutputError.
 void write_glare(const RenderOptions& options, const LayeredPicture& picture,
                  const LightLayers& layers, const LightLayers& reflections, const LightMix& mix,
@@ -204,8 +204,8 @@ void write_glare(const RenderOptions& options, const LayeredPicture& picture,
   for (const std::string& line : image::glare_lines(glare, mix.unit())) progress.note(line);
 }
 
-/// Renders and writes the pictures. Returns a watch that was started when they were written: what
-/// the rendering held is released before the caller gets it.
+/// Renders and writes the pictures. Returns a watch that was started when they were written: the
+/// memory of the rendering is released before this returns.
 ///   elapsed   seconds of the process so far
 Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRecord& record,
                           const std::function<double()>& elapsed, Progress& progress) {

@@ -38,14 +38,14 @@ struct RenderOptions {
   PictureOptions pictures;
   RenderParameters parameters;
   Integrator integrator = Integrator::photon_map;
-  Quality quality = Quality::draft;  ///< the settings are its own but for those given
+  Quality quality = Quality::draft;  ///< its settings, except those that are given
   RefinementGoal goal;               ///< pictures are made until it is met
   std::string camera;
   std::vector<double> eye, look_at;      ///< points in the file's world; empty = by the camera
   std::string size;                      ///< "" = by the camera
   std::optional<Projection> projection;  ///< none = the camera's
   double field_of_view = 0;              ///< degrees, or metres of parallel rays; 0 = by the camera
-  std::vector<LightChange> lights;       ///< what --light asks for
+  std::vector<LightChange> lights;       ///< those of --light
   MoodOptions mood;                      ///< before them
   DeviceOptions device;
   SceneLoadOptions load;
@@ -62,15 +62,15 @@ struct RenderOptions {
 /// Adds the options of `photile render` to the subcommand.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
-/// Adds those that say how light is found, but not what a camera makes of it: what commands that
-/// measure take, too.
+/// Adds those of the computation of light, but not those of the camera: commands that measure take
+/// them, too.
 ///   without   names of settings that the command does without
 ///   more      that --set reaches, too
 void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without = {},
                          const NamedSettings& more = {});
 
-/// Adds these and those that say what a camera makes of it, but not what becomes of the picture.
+/// Adds these and those of the camera, but not those of outputs.
 void add_picture_settings(CLI::App& command, RenderOptions& options,
                           const NamedSettings& more = {});
 
@@ -90,7 +90,7 @@ void add_integrator_option(CLI::App& command, RenderOptions& options);
 /// "photon-map", "path".
 const char* name_of(Integrator integrator);
 
-/// Has the processes that were started together share the rendering. Errors: UsageError for what
+/// Shares the rendering among the processes that were started together. Errors: UsageError for what
 /// one process alone can do.
 void share_rendering(RenderOptions& options);
 
@@ -103,15 +103,15 @@ void refuse_photon_map_options(const CLI::App& command);
 const Camera& choose_camera(const Scene& scene, const std::string& selector);
 
 /// The camera that --camera names, moved to --eye and turned to --look-at, upright.
-/// Errors: those of choose_camera; UsageError where it would look at its own place.
+/// Errors: those of choose_camera; UsageError where it would look at its own position.
 Camera camera_of(const Scene& scene, const RenderOptions& options);
 
 /// The camera with the projection and the field of view that are asked for. Errors: UsageError for
 /// an angle that the projection cannot have.
 Camera projected(Camera camera, const RenderOptions& options);
 
-/// The scene's lights as they are, then as --mood and --light ask for.
-/// Errors: UsageError where no light has the name; those of changes_of.
+/// The scene's lights as they are, changed by --mood and --light. Errors: UsageError where no light
+/// has the name; those of changes_of.
 LightMix mix_of(const Scene& scene, const RenderOptions& options);
 
 /// Width and height into `film`: `size` if given, else the default height and the camera's aspect

@@ -61,7 +61,7 @@ std::string tuning_text(const DeviceInfo& device) {
   return fmt::format("{}, {} wide", name_of(tuning.strategy), tuning.vector_width);
 }
 
-/// What was asked for by name; the parameters are what followed.
+/// The values that were given by name; the parameters hold what followed from them.
 json asked_json(const RunRecord& record) {
   json asked{{"quality", name_of(record.quality)}};
   for (const GoalOption& goal : goal_options()) {
@@ -76,7 +76,7 @@ json parameters_json(const RunRecord& record) {
   return result;
 }
 
-/// Seconds of compiling are in no kernel's time.
+/// The time of compiling is not part of any kernel's time.
 json kernels_json(const RunRecord& record) {
   json list = json::array();
   for (const KernelRecord& kernels : record.kernels) {

@@ -32,13 +32,13 @@ struct KernelRecord {
 struct RunRecord {
   bool has_photons() const { return !devices.empty(); }
 
-  std::string scene;  ///< the file's name, without folders: a picture should not tell them
+  std::string scene;  ///< the file's name, without folders, which a picture should not reveal
   std::optional<double> ground;  ///< its reflectance; none without a sky or a sun of the options
   std::string surfaces;          ///< digest_of_surfaces
   std::string camera;
   std::string integrator;  ///< "photon-map" or "path", which has no devices, maps and photons
-  Quality quality = Quality::draft;  ///< whose settings are used but for those given
-  RefinementGoal goal;               ///< until which pictures were made
+  Quality quality = Quality::draft;  ///< whose settings are used, except those that are given
+  RefinementGoal goal;               ///< that ended the series of pictures
   RenderParameters used;             ///< RenderResult::used, or what paths were asked for
   std::vector<DeviceInfo> devices;
   std::vector<double> device_fractions;  ///< of the hits, per device
@@ -62,8 +62,8 @@ nlohmann::json run_json(const RunRecord& record);
 /// Largest memory that the process has had so far, bytes.
 std::uint64_t peak_host_bytes();
 
-/// A digest of where surface is and how it reflects: pictures of one scene with other reflectances
-/// have another.
+/// A digest of the geometry of surfaces and how they reflect: pictures of one scene with other
+/// reflectances have another.
 std::string digest_of_surfaces(const Scene& scene);
 
 /// A digest of all that light in the scene depends on.

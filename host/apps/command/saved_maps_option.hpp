@@ -11,7 +11,7 @@
 
 namespace photile::app {
 
-/// What a file of photons fits.
+/// What a file of photons has to match.
 saved_maps::Settings saved_settings(const RenderParameters& parameters);
 
 /// The photons of --load-maps; none where it was not given. Errors: those of saved_maps::load.

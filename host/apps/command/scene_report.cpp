@@ -86,7 +86,7 @@ std::vector<StatedPower> stated_powers(const Scene& scene, const LightMix& mix) 
   return stated;
 }
 
-/// Radiant watts of luminaires with photometric files would be read as those of the mains.
+/// Radiant watts of luminaires with photometric files would be mistaken for electric power.
 json power_json(const StatedPower& stated, bool photometric, double lumen_per_watt) {
   json entry{{"unit", symbol_of(stated.unit)}, {"lumens", stated.lumens}};
   if (!photometric)

@@ -41,8 +41,8 @@ std::vector<std::string> material_summary(const Scene& scene);
 /// The names that --set hide knows, with their triangles: a line for each of the largest.
 std::vector<std::string> mesh_summary(const Scene& scene);
 
-/// What is no error and seldom meant, a line each: materials that reflect nearly all light, and
-/// lamps that emit less than a candle.
+/// Warnings of what is allowed but seldom intended, a line each: materials that reflect nearly all
+/// light, and lamps that emit less than a candle.
 std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix);
 
 /// Warns of the lights that are on and reach nothing: lights_that_reach_nothing.
@@ -50,11 +50,11 @@ std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix);
 void warn_of_dark_lights(const Scene& scene, const LightMix& mix, const std::vector<bool>& reaches,
                          const std::string& what, Progress& progress);
 
-/// The import's warnings, doubts_of, and what takes a look at every triangle: solid glass on open
-/// sheets.
+/// The import's warnings, doubts_of, and those that need a pass over all triangles: solid glass on
+/// open sheets.
 std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix);
 
-/// Everything that `photile info` tells.
+/// Everything that `photile info` prints.
 nlohmann::json scene_json(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load);
 
 }  // namespace photile::app

@@ -58,7 +58,7 @@ std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const S
     for (auto& grid : measuring::read_planes(file)) {
       const measuring::PlaneLayout& layout = *grid.layout;
       if (grid.role == measuring::GridRole::task) {
-        task = layout.origin + 0.5 * (layout.u + layout.v) + 0.05 * layout.normal();  // off a top
+        task = layout.origin + 0.5 * (layout.u + layout.v) + 0.05 * layout.normal();  // off a table
       }
       if (grid.role == measuring::GridRole::background) keep_in_room(scene, task, grid);
       if (!grid.sensors.empty()) grids.push_back(std::move(grid));

@@ -49,14 +49,14 @@ void note_places(const PlaceOptions& options);
 /// The grids of the files, and the working plane's. Errors: those of the readers and of plane_of.
 std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene);
 
-/// What these options say of a level at `height`. Errors: those of parse_working_plane.
+/// The plane that these options describe, at `height`. Errors: those of parse_working_plane.
 measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height);
 
 /// The grid over the floor. Errors: those of parse_working_plane and working_plane_grid.
 measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene);
 
 /// Makes points blank that lie inside solids or beyond the walls, and those nearer to furniture
-/// than --clearance, and tells how many there are. Returns how many are left of all grids. Errors:
+/// than --clearance, and prints how many there are. Returns how many are left of all grids. Errors:
 /// UsageError where no point of a grid is left.
 std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                                std::span<measuring::SensorGrid> grids, Progress& progress);
@@ -65,7 +65,7 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters);
 
 /// Adds --maintenance: a factor, or its parts by the names of CIE 97, whose product it is.
-///   parts   is told these, "LLMF 0.9 x LMF 0.95", where they are given; null = of no interest
+///   parts becomes these, "LLMF 0.9 x LMF 0.95", where they are given; null = not needed
 void add_maintenance_option(const OptionGroup& group, MeasuringParameters& parameters,
                             std::string* parts = nullptr);
 

@@ -67,7 +67,7 @@ NamedSetting bound_number(std::string_view name, std::string_view group, ValueRa
           }};
 }
 
-/// One whose value is taken as a word or a text.
+/// A setting whose value is a word or a text.
 NamedSetting bound_word(std::string_view name, std::string_view group, ValueRange range,
                         std::string_view help, std::string initial,
                         const std::function<void(std::string_view)>& take) {
@@ -85,7 +85,7 @@ NamedSetting bound_switch(std::string_view name, std::string_view group, bool& f
                     [&field](std::string_view word) { field = word == "on"; });
 }
 
-/// Defaults of all that --set reaches in any command, and where their values go.
+/// Defaults of all that --set can set in any command, and where their values go.
 class AllSettings {
  public:
   const NamedSettings& list() const { return list_; }
@@ -113,7 +113,7 @@ const NamedSetting* named_in(const NamedSettings& settings, std::string_view nam
   return found == settings.end() ? nullptr : &*found;
 }
 
-/// What is wrong with a name that a command does not know.
+/// The error message for a name that a command does not know.
 std::string problem_with_name(std::string_view name, const NamedSettings& settings) {
   for (const Setting& setting : photile::settings()) {
     if (setting.name == name && has_option(setting)) {
@@ -401,7 +401,7 @@ std::string options_text(const RenderParameters& parameters,
   for (const Setting& setting : settings()) {
     if (has_option(setting) || is_out(setting.name)) continue;
     const SettingValue value = setting.value(parameters);
-    // What a quality sets has to be said to override another quality.
+    // Values that a quality sets have to be printed to override another quality.
     const bool said =
         setting.is_of_quality() ? contains(setting.range, value) : value != setting.value(usual);
     if (!said) continue;

@@ -1,6 +1,6 @@
-// Settings of the command: those with an option of their own, and those that --set reaches by their
-// names. Most are rows of the table of settings (render/setting.hpp); a few say how scenes are read
-// and how devices are used.
+// Settings of the command: those with their own option, and those that --set sets by name. Most are
+// rows of the table of settings (render/setting.hpp); a few say how scenes are read and how devices
+// are used.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ namespace photile::app {
 
 struct PictureOptions;
 
-/// What --set reaches, bound to where a command keeps its value.
+/// A value that --set can set, bound to where a command keeps it.
 struct NamedSetting {
   std::string_view name, group;
   ValueRange range;
@@ -36,8 +36,7 @@ struct NamedSetting {
 };
 using NamedSettings = std::vector<NamedSetting>;
 
-/// The settings of the table but for those with an option of their own and those named in
-/// `without`.
+/// The settings of the table, except those with their own option and those named in `without`.
 NamedSettings rendering_settings(RenderParameters& parameters,
                                  std::initializer_list<std::string_view> without = {});
 NamedSettings scene_settings(SceneLoadOptions& options);
@@ -47,8 +46,8 @@ NamedSetting display_view_setting(ToneMapping& parameters);
 NamedSetting white_balance_setting(PictureOptions& options);
 NamedSettings glare_settings(double& limit);
 
-/// Sets what "NAME=VALUE" names. Errors: UsageError of one line, with a remedy, for a name that is
-/// none of these and for a value out of its range.
+/// Sets what "NAME=VALUE" names. Errors: UsageError of one line, with a remedy, for an unknown name
+/// and for a value out of its range.
 void assign_named(const NamedSettings& settings, const std::string& assignment);
 
 /// Adds --set NAME=VALUE, whose errors are those of assign_named.
@@ -57,7 +56,7 @@ void add_set_option(CLI::App& command, std::initializer_list<NamedSettings> sett
 /// Names that were given to --set.
 std::vector<std::string> names_set(const CLI::App& command);
 
-/// Whether photon maps alone have a use for the setting.
+/// Whether only photon maps use the setting.
 bool is_of_photon_maps(std::string_view name);
 
 /// What to type in place of an option that is a setting: "--radius is a setting: --set radius=0.1".
@@ -87,7 +86,7 @@ nlohmann::json settings_json(const RenderParameters& parameters, bool all);
 std::string options_text(const RenderParameters& parameters,
                          std::initializer_list<std::string_view> without = {});
 
-/// What `photile settings` prints: all that --set reaches.
+/// What `photile settings` prints: all that --set can set.
 std::string settings_text();
 
 /// The list as docs/settings.md holds it, in Markdown, and what qualities set.

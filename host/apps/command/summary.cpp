@@ -95,8 +95,8 @@ TimeTaken time_of_loading() {
   const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   const double start = process_start();
   const double age = start < 0 ? processor : std::max(0.0, seconds_of(CLOCK_BOOTTIME) - start);
-  // A shell turns into the last program that it runs: the process is then older than the program,
-  // whose loading hardly waits for anything.
+  // A shell may replace itself by the last program that it runs: then the process is older than the
+  // program, whose loading takes about as much processor time as wall time.
   constexpr double longest_wait = 5;
   return {.seconds = age > processor + longest_wait ? processor : age,
           .processor_seconds = processor};

@@ -1,4 +1,4 @@
-// What a command tells before it starts, and what its run took.
+// What a command prints before it starts, and the cost of its run.
 #pragma once
 
 #include <string>
@@ -23,12 +23,12 @@ void tell_device(const DeviceInfo& device, Progress& progress);
 void tell_scene(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load,
                 Progress& progress);
 
-/// Opens the devices that photon maps need, and tells them; none for paths. Errors: those of
+/// Opens the devices that photon maps need, and prints them; none for paths. Errors: those of
 /// open_devices.
 std::vector<Device> devices_for(const RenderOptions& options, Progress& progress);
 
-/// What the loading of its libraries took: to be asked for in the beginning. Wall clock to a
-/// hundredth of a second; processor seconds where the system does not tell.
+/// The time that loading its libraries took; to be called at the start. Wall clock to a hundredth
+/// of a second; processor seconds where the system does not provide it.
 TimeTaken time_of_loading();
 
 /// A line per stage: seconds, memory on host and device, figures; then the total.

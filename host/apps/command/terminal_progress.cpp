@@ -38,7 +38,7 @@ int terminal_width() {
 }
 
 void print_line(const std::string& line) {
-  // Where both streams end in one place, what was printed before stands before.
+  // Where both streams go to the same place, this keeps the order of output.
   std::fflush(stdout);
   std::fprintf(stderr, "%s\n", line.c_str());
 }
@@ -80,7 +80,7 @@ std::string progress_bar(const StageProgress& progress, int width) {
   } else {
     tail = fmt::format(" {:3.0f}%  {} | {}  {}", 100 * fraction(progress),
                        format_seconds(progress.seconds), remaining(progress), rate(progress));
-    // The bar takes what the text leaves, brackets and last column not counted.
+    // The bar takes the columns that the text leaves, without brackets and the last column.
     bar_width = std::min(40, width - 3 - static_cast<int>(head.size() + tail.size()));
   }
   std::string bar;

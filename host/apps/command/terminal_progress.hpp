@@ -18,10 +18,10 @@ namespace photile::app {
 
 bool stderr_is_terminal();
 
-/// Columns of the terminal on standard error; 80 where it does not say.
+/// Columns of the terminal on standard error; 80 where they are not known.
 int terminal_width();
 
-/// Writes `line` and a line feed to standard error, after all that standard output was given.
+/// Writes `line` and a line feed to standard error, after flushing standard output.
 void print_line(const std::string& line);
 
 /// Writes "photile: error: ..." as one line to standard error; in colour on a terminal unless the
@@ -47,8 +47,8 @@ std::string progress_text(const StageProgress& progress);
 /// "trace photons: 7.90 s, 1.9M paths/s", once the stage is complete.
 std::string completed_text(const StageProgress& progress);
 
-/// Draws the current stage from a thread of its own, so that the clock runs on while a stage waits
-/// for the device. Cancelled by SIGINT and SIGTERM (processes.hpp). One stage at a time.
+/// Draws the current stage from its own thread, so that the clock advances while a stage waits for
+/// the device. Cancelled by SIGINT and SIGTERM (processes.hpp). One stage at a time.
 class TerminalProgress : public Progress {
  public:
   /// `quiet`: stages and notes print nothing; warnings do, on the first of several processes.

@@ -42,7 +42,7 @@ struct Reference {
   double relative_mse = -1;  ///< its own noise; below 0 where it is not known
 };
 
-/// A path-traced picture, in two halves whose difference tells its noise.
+/// A path-traced picture, in two halves from whose difference its noise is estimated.
 Reference trace_reference(const Scene& scene, const Camera& camera, const LightMix& mix,
                           const TradeOptions& options, Progress& progress) {
   if (has_hidden_caustics(scene)) {
@@ -53,7 +53,7 @@ Reference trace_reference(const Scene& scene, const Camera& camera, const LightM
   PrimaryHitParameters film = eye_rays(options.render.parameters);
   film.samples_per_pixel = options.reference_samples / 2;
   const auto half = [&](std::uint32_t repeat) {
-    film.seed = trace::seed_of_repeat(options.render.parameters.seed, repeat);  // paths of its own
+    film.seed = trace::seed_of_repeat(options.render.parameters.seed, repeat);  // independent paths
     return mixed_picture(trace_paths(scene, camera, film, progress).layers, mix)->root();
   };
   const Image first = half(0);

@@ -126,7 +126,7 @@ json validation_json(std::span<const ValidationRow> rows,
   return result;
 }
 
-/// Readings of which some method misses the tolerance, or is too noisy to tell.
+/// Readings for which some method misses the tolerance, or is too noisy to decide.
 std::size_t rows_not_within(std::span<const ValidationRow> rows) {
   return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const auto& row) {
     return !within(row.photons) || !within(row.paths);

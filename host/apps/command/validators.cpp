@@ -16,7 +16,7 @@
 namespace photile::app {
 namespace {
 
-/// A number that is whole but for rounding (1.1M is) and fits 64 bits.
+/// A number that is whole up to rounding (1.1M is) and fits 64 bits.
 std::optional<std::uint64_t> whole(double number) {
   const double value = std::round(number * 1e3) / 1e3;
   constexpr double beyond = 18446744073709551616.0;  // 2^64

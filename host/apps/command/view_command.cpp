@@ -30,7 +30,7 @@ struct ViewOptions {
   std::string outputs = ".";
 };
 
-/// Lights that options name may be gone by then.
+/// Lights that options name may not exist any longer by then.
 LightMix mix_again(const Scene& scene, const RenderOptions& options) {
   try {
     return mix_of(scene, options);
@@ -55,7 +55,7 @@ void run_view(ViewOptions& options) {
     throw UsageError(
         fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
   }
-  // It may be written, and is not there yet where it is a new one.
+  // The file may be written, and a new one does not exist yet.
   const std::filesystem::path luminaires = std::exchange(render.load.luminaires, {});
   note_inputs_of(render);
   if (!luminaires.empty()) {

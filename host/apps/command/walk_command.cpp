@@ -197,7 +197,8 @@ class Walk {
     return as_first_says(finished);
   }
 
-  /// To exposure and white of the walk's first frame, which another process may make.
+  /// Displayed with the exposure and white of the walk's first frame, which another process may
+  /// make.
   void expose_by_first() {
     const std::string file = names_.of(number(0));
     const bool there = leads() && to_exr_ && is_finished(file, settings_of(camera_at(0)));
@@ -218,7 +219,7 @@ class Walk {
     find_white();
   }
 
-  /// That of the first frame, whichever frames are made here: a few pixels of it tell enough.
+  /// The exposure of the first frame, whichever frames are made here: a few pixels of it suffice.
   void find_white() {
     constexpr int rows = 96, samples = 4;
     Film film = options_.render.parameters.film;
@@ -243,7 +244,7 @@ class Walk {
     return picture->root();
   }
 
-  /// Puts the layers that it refers to in `layers`.
+  /// Appends the layers that it refers to to `layers`.
   std::unique_ptr<LayeredPicture> picture_of(int frame, LightLayers& layers) {
     const Camera camera = camera_at(frame);
     QuietProgress quiet(progress_);
@@ -263,7 +264,7 @@ class Walk {
     return picture;
   }
 
-  /// Errors: those of what wrote it.
+  /// Errors: those of the code that wrote it.
   void wait_for_shown() {
     if (shown_.valid()) shown_.get();
   }

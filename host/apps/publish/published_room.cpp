@@ -39,7 +39,7 @@ constexpr int most_texture_side = 1024;
 /// Texels of surroundings across, at most.
 constexpr int most_surroundings = 2048;
 /// Parts of the room's size that positions are rounded to, and of 1 that normals are: 0.1 mm in a
-/// room, and 0.1 degrees. What is finer packs badly and is not seen.
+/// room, and 0.1 degrees. Finer detail packs badly and is not visible.
 constexpr int position_bits = 17, normal_steps = 511, normal_scale = 64;
 /// Kelvin that the page offers (page/lights.js).
 constexpr int lowest_kelvin = 1500, highest_kelvin = 10'000, kelvin_step = 100;
@@ -61,7 +61,7 @@ json palette() {
   return table;
 }
 
-/// The display transform: the page has no numbers of its own.
+/// The display transform: the page takes all its numbers from here.
 json display_of(const ToneMapping& display) {
   const image::DisplayTransform& numbers = image::display_transform;
   return {{"exposure", std::exp2(display.exposure)},
@@ -372,7 +372,7 @@ class PageWriter {
     return list;
   }
 
-  /// What the page shows otherwise than a picture would.
+  /// What the page shows differently from a picture.
   std::vector<std::string> simplified() const {
     std::vector<std::string> list{"light on matt surfaces is exact as the light maps have it"};
     const auto some = [&](const auto& accepts) {
@@ -406,7 +406,7 @@ class PageWriter {
   Sections sections_;
 };
 
-/// JSON that no HTML ends.
+/// JSON that contains nothing which could end a script in HTML.
 std::string inline_json(const json& document) {
   std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
   std::string result;

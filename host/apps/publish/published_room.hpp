@@ -1,4 +1,4 @@
-// A room as a page that shows it, in one file.
+// A page that shows a room, in one file.
 #pragma once
 
 #include <filesystem>
@@ -51,7 +51,7 @@ struct PublishedRoom {
   std::string version;
 };
 
-/// Writes the page. It asks for nothing from anywhere. Errors: OutputError.
+/// Writes the page. It loads nothing from elsewhere. Errors: OutputError.
 void write_page(const std::filesystem::path& file, const PublishedRoom& room);
 
 }  // namespace photile::publish

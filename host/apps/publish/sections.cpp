@@ -29,7 +29,7 @@ std::vector<std::uint8_t> byte_planes(std::span<const Number> numbers) {
   return bytes;
 }
 
-/// What the texels to the left, above and at the corner between say of a texel.
+/// The prediction of a texel from those to the left, above and at the corner between.
 int predicted(int left, int above, int corner) {
   if (corner >= std::max(left, above)) return std::min(left, above);
   if (corner <= std::min(left, above)) return std::max(left, above);
@@ -92,7 +92,7 @@ double Sections::add_light(const std::string& name, std::span<const glm::vec3> t
   for (const glm::vec3& texel : texels) {
     brightest = std::max(brightest, luminance(glm::dvec3(texel)));
   }
-  // Luminance, red, blue. What is dark is white.
+  // Luminance, red, blue. Dark texels count as white.
   constexpr int white = chroma_steps / 3;
   std::vector<std::array<int, 3>> codes;
   for (const glm::vec3& texel : texels) {

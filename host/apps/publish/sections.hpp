@@ -1,4 +1,4 @@
-// Arrays of a page: coded so that they pack well, packed, and told in a table that the page reads
+// Arrays of a page: coded so that they pack well, packed, and listed in a table that the page reads
 // (page/data.js).
 #pragma once
 

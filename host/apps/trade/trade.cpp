@@ -23,7 +23,8 @@ std::uint64_t programs_built(std::span<const Device> devices) {
   return count;
 }
 
-/// Without the compilation of kernels, which a user pays once: where there was any, again.
+/// Without the compilation of kernels, which a user waits for once: where kernels were compiled,
+/// the rendering is repeated.
 TradePoint measured(const TradeSubject& subject, const TradeSettings& settings,
                     Progress& progress) {
   QuietProgress quiet(progress);

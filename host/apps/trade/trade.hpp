@@ -1,4 +1,5 @@
-// The trade between time and error: one view rendered with many settings, each beside a reference.
+// Convergence: the time and error of one view rendered with many settings, each compared with a
+// reference.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +39,7 @@ struct TradePoint {
   std::uint64_t host_bytes = 0, device_bytes = 0;  ///< most that the stages' results took
 };
 
-/// What a trade is measured on.
+/// The scene and view that time and error are measured on.
 struct TradeSubject {
   const Scene& scene;
   const Camera& camera;

@@ -12,7 +12,7 @@ const glm::dvec3 up(0, 0, 1);
 const Rectangle floor_plan{{-2, -2, 0}, {4, 0, 0}, {0, 4, 0}};
 
 /// Points in a square about a point of the floor, or on three circles about the origin whose mean
-/// radius is `distance`: far enough from one another that most of their photons are their own.
+/// radius is `distance`: far enough from one another to share few photons.
 std::vector<Sensor> places_at(double distance) {
   constexpr int side = 7, circles = 3, on_circle = 25;
   constexpr double apart = 0.2;

@@ -81,7 +81,7 @@ int seeds_to_tell(std::span<const Measured> readings) {
   for (const Measured& reading : readings) {
     if (reading.verdict != Verdict::too_noisy) continue;
     // The noise falls as the square root of the seeds, down to what the error leaves of the
-    // tolerance, or exceeds it by. A tenth more, since the error moves, too.
+    // tolerance, or exceeds it by. A tenth more, since the error changes, too.
     const double room = std::abs(tolerance - std::abs(reading.error));
     const double times = std::clamp(1.1 * std::pow(reading.noise / room, 2), 1.1, 2.0);
     wanted = std::max(wanted, std::ceil(times * reading.seeds));

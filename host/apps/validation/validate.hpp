@@ -55,8 +55,8 @@ double student_t_99(int freedom);
 /// Compares the values of some seeds with what was expected.
 Measured measured(std::span<const double> values, double expected);
 
-/// How many seeds are likely to tell whether all of these are within the tolerance, from the noise
-/// of as many as they have; twice as many at most. 0 where they tell it.
+/// How many seeds are likely to decide whether all of these are within the tolerance, from the
+/// noise of the seeds so far; at most twice as many. 0 where it is decided.
 int seeds_to_tell(std::span<const Measured> readings);
 
 /// Measures all readings of a case. Errors: those of `measure` and `measure_by_paths`.

@@ -17,8 +17,8 @@ namespace photile::view {
 
 namespace {
 
-/// Mean square over squared mean of a kernel's weights on its disc: by so much it raises the
-/// variance of an estimate.
+/// Mean square over squared mean of a kernel's weights on its disc: the factor by which it raises
+/// the variance of an estimate.
 double spread_of(DensityKernel kernel) {
   switch (kernel) {
     case DensityKernel::constant:
@@ -142,7 +142,7 @@ DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySet
     return false_coloured(frame, mix, settings);
   }
   DisplayedFrame result = tone_mapped(frame, mix, settings);
-  // The first frames of the mode may still be without.
+  // The first frames of the mode may not have any yet.
   if (settings.mode == DisplayMode::glare && frame.reflections) {
     image::draw_marks(
         image::find_glare(frame.layers, *frame.reflections, mix, settings.glare_limit).marks,
@@ -166,7 +166,8 @@ std::vector<LightReading> readings_at(const Frame& frame, const LightMix& mix, i
   std::vector<LightReading> readings(mix.lights.size());
   if (!frame.mixed.empty() || x < 0 || y < 0 || x >= frame.layers.width || y >= frame.layers.height)
     return readings;
-  // A layer holds the light of power 1: times paths it is as the number of photons.
+  // A layer holds the light of power 1: multiplied by the number of paths it is in proportion to
+  // the number of photons.
   std::vector<double> photons(mix.lights.size());
   for_each_light(
       frame.layers, static_cast<std::size_t>(x), static_cast<std::size_t>(y),

@@ -1,5 +1,4 @@
-// A finished picture of the walkthrough, and what the screen shows of it at the settings of the
-// lights.
+// A finished picture of the walkthrough, and how the screen shows it at the settings of the lights.
 #pragma once
 
 #include <array>
@@ -62,9 +61,10 @@ enum class DisplayMode {
 struct DisplaySettings {
   DisplayMode mode = DisplayMode::picture;
   double exposure = 0;                  ///< stops on top of
-  double automatic_stops = 0;           ///< what a frame was scaled by of its own accord
+  double automatic_stops = 0;           ///< of the automatic exposure of a frame
   std::array<float, 3> white{1, 1, 1};  ///< as ToneMapping has it
-  /// The exposure follows a sky that is moved: from noon to dusk it loses a thousandfold.
+  /// The exposure follows a sky that is moved: from noon to dusk its light falls by a factor of a
+  /// thousand.
   bool adapts = true;
   DisplayView view = ToneMapping{}.view;  ///< of the picture
   report::FalseColour false_colour;
@@ -82,7 +82,7 @@ struct DisplayedFrame {
 /// exposure and view. Errors: UsageError for an unknown palette.
 DisplayedFrame display(const Frame& frame, const LightMix& mix, const DisplaySettings& settings);
 
-/// Stops by which `render -o FILE.png` scales this picture of its own accord.
+/// Stops of the automatic exposure by which `render -o FILE.png` scales this picture.
 double automatic_stops(const Frame& frame, const LightMix& mix);
 
 /// The white that `render` keeps with this picture, whose lamps the scene has as `mix`. A quick
@@ -95,7 +95,7 @@ std::vector<float> mixed_illuminance(const LightLayers& layers, const LightMix& 
 /// Power x tint of each layer: what quick frames are mixed by.
 std::vector<glm::vec3> scales_of(const LightMix& mix);
 
-/// What one light gives to a pixel.
+/// The light of one lamp at a pixel.
 struct LightReading {
   Measured luminance;    ///< cd/m2 or W/(m2 sr)
   Measured illuminance;  ///< lux

@@ -41,7 +41,7 @@ constexpr int first_samples = 4, more_samples = 4;
 
 }  // namespace
 
-/// Ends a frame that nobody waits for any longer.
+/// Ends a frame that is not needed any longer.
 class FrameWorker::Interruption : public Progress {
  public:
   explicit Interruption(std::function<bool()> outdated) : outdated_(std::move(outdated)) {}
@@ -129,7 +129,7 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
 
 /// Seconds of valuing nodes until the next frame: what a moving viewer's frame leaves of its time,
 /// and a little in any case: nodes must come at last. At rest no frame has to be in time, and
-/// drawing what hardly changed would take most of it.
+/// drawing a picture that hardly changed would take most of it.
 double FrameWorker::time_to_fill(const Task& task, double draw_seconds) const {
   if (task.request.moving) return std::max(frame_seconds_ - draw_seconds, 0.25 * frame_seconds_);
   return filled_over_drawn * draw_seconds + frame_seconds_;
@@ -143,7 +143,8 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const FrameRequest& requested = task.request;
   MapGeneration& maps = *task.maps;
   const bool is_first = std::exchange(drawn_scene_, maps.scene) != maps.scene;
-  // Whoever drags a slider asks all the time: what is shown at once is finished in any case.
+  // A dragged slider requests frames all the time: a frame that is shown at once is finished in any
+  // case.
   bool at_once = is_first || requested.moving || requested.relit;
   Stopwatch stopwatch;
   Film film{requested.width, requested.height, 1};
@@ -196,7 +197,7 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   film.height = task.request.height;
   if (task.request.moving) std::tie(film.width, film.height) = size_.fit(film.width, film.height);
   film.samples_per_pixel = task.samples;
-  // What is asked for while the viewer moves would end no frame at all.
+  // Requests while the viewer moves would otherwise let no frame end.
   Interruption progress(
       [&] { return stop.stop_requested() || (!task.request.moving && outdated(task)); });
   const Stopwatch stopwatch;
@@ -228,7 +229,7 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
             std::move(result.statistics)});
 }
 
-/// For whoever asks for the latest.
+/// The result for callers of latest().
 void FrameWorker::keep(const Task& task, std::shared_ptr<const Frame> frame, int samples) {
   const std::lock_guard lock(mutex_);
   latest_ = std::move(frame);

@@ -1,5 +1,4 @@
-// Frames of the walkthrough, rendered on a thread of their own, as large as the requested rate
-// allows.
+// Frames of the walkthrough, rendered on their own thread, as large as the requested rate allows.
 #pragma once
 
 #include <condition_variable>
@@ -22,7 +21,7 @@ class FrameSize {
  public:
   explicit FrameSize(double frames_per_second) : budget_(1 / frames_per_second) {}
 
-  /// A frame of this many pixels took so long.
+  /// A frame of this many pixels took this many seconds.
   void record(double pixels, double seconds);
 
   /// Width and height in the window's proportions, at most the window and at least an eighth of it;
@@ -34,7 +33,7 @@ class FrameSize {
   double seconds_per_pixel_ = 0;  ///< smoothed; 0 = unknown
 };
 
-/// What is to be seen.
+/// What a frame is to show.
 struct FrameRequest {
   Camera camera;  ///< in the scene's coordinates
   int width = 0, height = 0;
@@ -50,8 +49,8 @@ struct FrameRequest {
   std::shared_ptr<const LayerMixdown> mixdown = nullptr;
 };
 
-/// Renders what was asked for last from the newest maps. A frame in the making is finished while
-/// the viewer moves, and given up when it starts to.
+/// Renders what was asked for last from the newest maps. A frame in progress is finished while the
+/// viewer moves, and cancelled when it starts to move.
 class FrameWorker {
  public:
   ///   most_samples        per pixel, standing still
@@ -64,7 +63,8 @@ class FrameWorker {
   /// Takes maps of another scene, which has other powers, with what is to be seen.
   void use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request);
 
-  /// Ends the work. Returns the newest maps, which nobody uses any longer; null: there are none.
+  /// Ends the work. Returns the newest maps, which this does not use any longer; null: there are
+  /// none.
   std::shared_ptr<MapGeneration> stop();
 
   /// The newest frame; null before the first.

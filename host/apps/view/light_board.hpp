@@ -65,10 +65,10 @@ class LightBoard {
   /// Names of lights whose colour `mix` could not set, for the panel to tell.
   std::vector<std::string> refused() const;
 
-  /// All as the scene says.
+  /// Resets all controls to the scene's values.
   void reset();
 
-  /// Goes on with a scene of other lights. Settings stay with the lights' names; those of lights
+  /// Continues with a scene of other lights. Settings stay with the lights' names; those of lights
   /// that are gone are kept for their return. Lights whose power was not set take the scene's.
   void adopt(LightMix scene, std::shared_ptr<const MovingSky> sky);
   /// The settings of another board, by name.

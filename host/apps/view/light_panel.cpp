@@ -42,7 +42,7 @@ bool draw_temperature(LightControl& control) {
   return true;
 }
 
-/// A name that is wider than so many pixels is cut, between two characters, and ends in dots.
+/// The name, cut between two characters and ended by dots where it is wider than `width` pixels.
 std::string fitting(const std::string& name, float width) {
   if (ImGui::CalcTextSize(name.c_str()).x <= width) return name;
   std::string cut = name;
@@ -110,7 +110,7 @@ bool draw_lights(PanelState& state) {
   if (!ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen)) return false;
   const float rows = 2 * static_cast<float>(state.lights.controls().size());
   const float height = rows * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
-  // The rest of the panel leaves so much of a window of 600 pixels.
+  // The fraction that the rest of the panel leaves of a window of 600 pixels.
   constexpr float most = 0.35f;
   ImGui::BeginChild("lights", ImVec2(0, std::min(height, most * ImGui::GetIO().DisplaySize.y)));
   for (LightControl& control : state.lights.controls()) changed |= draw_light(control);
@@ -175,7 +175,7 @@ void draw_year(YearWorker& year) {
     ImGui::TextUnformatted("refined ...");
   }
   for (std::string line : year.lines()) {
-    // Blanks that make columns in a terminal only break the lines here.
+    // Blanks that align columns in a terminal would only break the lines here.
     line.erase(
         std::unique(line.begin(), line.end(), [](char a, char b) { return a == ' ' && b == ' '; }),
         line.end());

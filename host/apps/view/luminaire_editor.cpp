@@ -20,9 +20,9 @@ using loading::PlacedLuminaires;
 constexpr double off_surface = 0.005;  // metres: an opening is seen before what it hangs on
 /// Positions and spacings are written to the millimetre, rotations to a hundredth of a degree.
 constexpr double millimetre = 1e-3, hundredth = 1e-2;
-/// A copy lies so many widths of its opening beside the first, if they have no spacing.
+/// A copy lies this many widths of its opening beside the first, if they have no spacing.
 constexpr double widths_apart = 1.5;
-/// Surfaces whose normals are so near to straight down are ceilings.
+/// The cosine to straight down from which on surfaces are ceilings.
 constexpr double down_cosine = 0.999;
 
 double rounded(double value, double step) {

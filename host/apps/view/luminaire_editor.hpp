@@ -1,4 +1,5 @@
-// A file of luminaires while it is edited: what is where, which one is selected, what was changed.
+// A file of luminaires while it is edited: the positions of luminaires, which one is selected, and
+// what was changed.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +28,7 @@ class LuminaireEditor {
   const loading::LuminaireList& list() const { return list_; }
   const std::vector<loading::PlacedLuminaires>& placed() const { return placed_; }
 
-  /// A list of another time; where its lamps are is known when it is loaded.
+  /// An earlier or later list; the positions of its lamps are known when it is loaded.
   void restore(loading::LuminaireList list);
   /// What loading a list found.
   void loaded(const std::string& text, std::vector<loading::PlacedLuminaires> placed);
@@ -46,7 +47,7 @@ class LuminaireEditor {
   std::string next_file() const;
   void set_next_file(const std::string& name) { next_file_ = name; }
 
-  /// The entry one of whose openings a ray meets no farther than so many metres.
+  /// The entry one of whose openings a ray meets within `farthest` metres.
   ///   direction   unit
   std::optional<std::size_t> along(const glm::dvec3& eye, const glm::dvec3& direction,
                                    double farthest) const;

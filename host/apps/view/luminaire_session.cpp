@@ -74,7 +74,7 @@ void SceneLoader::work(const std::stop_token& stop) {
 namespace {
 
 constexpr double step_degrees = 15;
-constexpr double on_surface = 0.02;  ///< metres: an opening may lie so far behind what is met first
+constexpr double on_surface = 0.02;  ///< metres, of an opening behind what a ray meets first
 
 void draw_opening(const loading::PlacedLuminaires& lamps, const glm::dvec3& middle,
                   const Camera& camera, ImU32 colour, float width) {

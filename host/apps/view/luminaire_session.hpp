@@ -1,4 +1,4 @@
-// Luminaires that are edited in the window: their file, the hands on them (mouse, keys, outlines),
+// Luminaires that are edited in the window: their file, the input on them (mouse, keys, outlines),
 // and the scene that is loaded again with them.
 #pragma once
 
@@ -28,7 +28,7 @@ class SceneLoader {
   SceneLoader(std::filesystem::path scene, SceneLoadOptions options);
   ~SceneLoader();
 
-  /// Loads it with these entries (LuminaireList::text); what was asked for before is given up.
+  /// Loads it with these entries (LuminaireList::text); earlier requests are cancelled.
   void load(const std::string& luminaires);
 
   struct Loaded {
@@ -128,7 +128,7 @@ class LuminaireSession {
   bool closing() const { return closing_; }
   /// The answer. Returns whether the window is to be closed.
   bool close_as(Closing closing, std::string& message);
-  /// At the end: that changes are lost, if they are.
+  /// At the end: a message that changes are lost, if they are.
   void tell_unsaved(Progress& notes) const;
 
  private:

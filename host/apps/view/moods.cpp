@@ -40,7 +40,7 @@ double kelvin_of(double value) {
                                           limits::max_color_temperature));
 }
 
-/// With four digits that count: a slider's other ones say nothing.
+/// With four significant digits: further digits of a slider have no meaning.
 double rounded(double power) { return *parse_number<double>(fmt::format("{:.4g}", power)); }
 
 PowerUnit unit_of(const std::string& word) {
@@ -84,7 +84,7 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
         moods_[name][light] = read;
       }
     }
-  } catch (const json::exception&) {  // its text means something to programmers alone
+  } catch (const json::exception&) {  // its text is meaningful to programmers only
     refuse("holds a value of another type than moods have");
   } catch (const std::invalid_argument& error) {
     refuse(error.what());

@@ -22,7 +22,8 @@ namespace photile::view {
 /// light or its power, stays as it is: {"on": false} alone is a setting.
 class Moods {
  public:
-  /// Reads the file; none is none yet. Errors: InputError naming the file and what is wrong.
+  /// Reads the file; a missing one holds no moods yet. Errors: InputError naming the file and what
+  /// is wrong.
   explicit Moods(std::filesystem::path file);
 
   /// Beside the scene: room.gltf has room.moods.json.

@@ -35,9 +35,9 @@ struct SkyMoment {
 std::string day_text(const SkyMoment& moment);
 std::string hour_text(const SkyMoment& moment);
 
-/// Where options give a place or a weather file, or ask for patches, and for no other sky or sun:
-/// puts patches into the scene that is to be loaded, and returns the place and the time that move
-/// them. Without a place they are one group of lights.
+/// Where options give a site or a weather file, or ask for patches, and for no other sky or sun:
+/// puts patches into the scene that is to be loaded, and returns the site and the time that move
+/// them. Without a site they are one group of lights.
 SkySituation take_moving_sky(SceneLoadOptions& options);
 
 class MovingSky {

@@ -19,7 +19,7 @@ constexpr double steepest = glm::radians(89.0);
 
 void Viewpoint::walk(double forward, double right, double up) {
   glm::dvec3 heading = camera_.forward - glm::dot(camera_.forward, up_axis) * up_axis;
-  // Straight down or up, the top of the picture is ahead.
+  // When looking straight down or up, the top of the picture is ahead.
   if (glm::length(heading) < 1e-6) heading = camera_.up - glm::dot(camera_.up, up_axis) * up_axis;
   heading = glm::normalize(heading);
   camera_.position += forward * heading + right * glm::cross(heading, up_axis) + up * up_axis;
@@ -33,7 +33,7 @@ void Viewpoint::turn(double right, double upwards) {
   for (glm::dvec3* axis : {&camera_.forward, &camera_.up}) {
     *axis = glm::rotate(glm::rotate(*axis, tilt, camera_.right), -right, up_axis);
   }
-  // Thousands of turns must not bend the basis.
+  // The basis has to stay orthonormal after thousands of turns.
   camera_.forward = glm::normalize(camera_.forward);
   camera_.right = glm::normalize(glm::cross(camera_.forward, camera_.up));
   camera_.up = glm::cross(camera_.right, camera_.forward);
@@ -49,7 +49,7 @@ namespace {
 
 /// Radians that a pixel of a drag turns.
 constexpr double turn_per_pixel = 0.004;
-/// A click may tremble by so many pixels; more is a drag.
+/// The pixels that the pointer may move during a click; more is a drag.
 constexpr float click_tremble = 4;
 /// The part of a second's walk that a notch of the wheel is.
 constexpr double wheel_share = 0.25;
@@ -66,7 +66,7 @@ bool Navigation::update(Viewpoint& viewpoint, bool left_taken) {
   if (!io.WantCaptureKeyboard && !io.KeyCtrl) {
     const double forward = key(GLFW_KEY_W, GLFW_KEY_S), right = key(GLFW_KEY_D, GLFW_KEY_A),
                  up = key(GLFW_KEY_E, GLFW_KEY_Q);
-    // A frame that took long must not become a leap.
+    // A frame that took long must not become a jump.
     const double metres =
         speed_ * std::min(static_cast<double>(io.DeltaTime), 0.1) * (io.KeyShift ? 3 : 1);
     if (forward != 0 || right != 0 || up != 0) {

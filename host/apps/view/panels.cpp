@@ -51,7 +51,7 @@ std::string time_text(float milliseconds) {
              : fmt::format("{:.1f} s", milliseconds / 1000);
 }
 
-/// In place of a bar, so that what is below stays where it is.
+/// Fills the space of a bar, so that the panel below does not move.
 void leave_line() { ImGui::Dummy(ImVec2(0, ImGui::GetFrameHeight())); }
 
 void draw_frame_times(const PanelReadings& readings) {
@@ -84,7 +84,7 @@ void draw_frame_times(const PanelReadings& readings) {
   }
 }
 
-/// What reaches the clicked place, and the list of all.
+/// The light at the clicked point, and the list of all points.
 void draw_probe(PanelState& state, const Frame* frame, PanelEvents& events) {
   draw_point_markers(state, frame);
   if (!state.probe || !frame) return;

@@ -60,7 +60,7 @@ struct PanelReadings {
   bool loading = false;                         ///< the scene, with other luminaires
 };
 
-/// What was asked for by them in this frame.
+/// What was requested by them in this frame.
 struct PanelEvents {
   bool lights_changed = false;   ///< mix again
   bool display_changed = false;  ///< colour again

@@ -14,7 +14,7 @@
 
 namespace photile::view {
 
-/// What is kept of photons to look at them: 12 bytes for each.
+/// What is kept of photons to show them: 12 bytes for each.
 struct InspectablePhotons {
   std::vector<glm::vec3> position;      ///< metres, as in Photons
   std::vector<std::uint32_t> first_of;  ///< as in Photons
@@ -60,7 +60,7 @@ void draw_photon_map(DisplayedFrame& shown, const Camera& camera, const VisibleS
                      const PhotonMapView& map);
 
 /// Draws the photon map of a picked triangle over each frame. Until something is picked it holds
-/// nothing; then a ray tracing structure of its own.
+/// nothing; then it has a separate ray tracing structure.
 class PhotonInspector {
  public:
   explicit PhotonInspector(const Scene& scene) : scene_(scene) {}

@@ -9,10 +9,10 @@
 
 namespace photile::view {
 
-/// Seconds that photons may wait for the light of a first picture.
+/// Seconds that the tracing of photons may wait for the light of a first picture.
 constexpr double patience = 10;
 
-/// Keeps what the stages report for whoever asks, and tells them when to stop.
+/// Keeps the reports of the stages for other threads, and cancels the stages.
 class PhotonWorker::Listener : public Progress {
  public:
   void begin(std::string_view stage, std::uint64_t total, std::string_view) override {

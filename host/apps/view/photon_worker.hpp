@@ -19,9 +19,9 @@
 
 namespace photile::view {
 
-/// Photon maps on devices of their own, so that one set can be built while another is in use.
+/// Photon maps on separate devices, so that one set can be built while another is in use.
 struct MapGeneration {
-  std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where somebody else holds it
+  std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where its owner is elsewhere
   std::vector<Device> devices;
   std::unique_ptr<SceneRenderer> renderer;
   /// The maps of a first picture, shown where the light maps of this one have no node yet; null =
@@ -29,18 +29,18 @@ struct MapGeneration {
   std::shared_ptr<MapGeneration> coarser;
   std::uint64_t emitted_photons = 0;
   bool whole = false;            ///< of all photons that were asked for
-  std::atomic<bool> lit{false};  ///< set once a frame had light of its own on all surface
+  std::atomic<bool> lit{false};  ///< set once a frame had its own light on all surface
   EstimateNoise noise;
   std::shared_ptr<const InspectablePhotons> photons;
 };
 
-/// How far the work in the background is.
+/// The progress of the work in the background.
 struct WorkProgress {
   std::string stage;  ///< "" = nothing is under way
   double share = 0;   ///< of the stage, in [0, 1]; 0 where it is not known
 };
 
-/// Traces photons and builds maps on a thread of its own: first those of a first picture
+/// Traces photons and builds maps on its own thread: first those of a first picture
 /// (render/quality.hpp), so that there is something to see at once, then, when that has light
 /// everywhere, those that `render` builds from the same parameters.
 class PhotonWorker {
@@ -84,7 +84,8 @@ class PhotonFeed {
   PhotonFeed(PhotonWorker::OpenDevices open_devices, std::uint64_t light_map_bytes)
       : open_devices_(std::move(open_devices)), light_map_bytes_(light_map_bytes) {}
 
-  /// Ends what it is at, and traces this scene, which maps hold from then on. As PhotonWorker.
+  /// Cancels the current work, and traces this scene, which maps hold from then on. As
+  /// PhotonWorker.
   void trace(std::shared_ptr<const Scene> scene, const RenderParameters& parameters,
              std::optional<TracedPhotons> prepared, KeepPhotons keep);
   void stop() { worker_.reset(); }

@@ -14,7 +14,7 @@ namespace photile::view {
 struct PictureArea {
   ImVec2 corner, size;
 
-  /// That of this frame of Dear ImGui, which has begun.
+  /// The area in the current frame of Dear ImGui, which has begun.
   static PictureArea now();
 
   /// A point of the window, as shares of the picture's width and height.

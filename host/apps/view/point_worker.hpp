@@ -1,4 +1,4 @@
-// Illuminance at clicked places, measured by sensor rays on a thread of its own.
+// Illuminance at clicked points, measured by sensor rays on its own thread.
 #pragma once
 
 #include <condition_variable>
@@ -17,7 +17,7 @@
 
 namespace photile::view {
 
-/// A place on a surface, and what has been read there so far.
+/// A point on a surface, and what has been read there so far.
 struct ClickedPoint {
   int number = 0;            ///< from 1, as it was clicked
   glm::dvec3 position{0.0};  ///< metres in the scene file's world

@@ -1,4 +1,4 @@
-// What was set in the window before, for Ctrl+Z and Ctrl+Y: one history of lamps, hour and
+// The earlier settings of the window, for Ctrl+Z and Ctrl+Y: one history of lamps, hour and
 // luminaires.
 #pragma once
 

@@ -22,13 +22,12 @@ namespace photile::view {
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension);
 
-/// Has `write` write a file of a free name. Returns what there is to tell: the name, or what
-/// failed.
+/// Has `write` write a file of a free name. Returns a message: the name, or what failed.
 std::string keep_as(const std::filesystem::path& folder, const std::string& stem,
                     const std::string& extension,
                     const std::function<void(const std::filesystem::path&)>& write);
 
-/// The list of points as points-0001.pts and .csv. Returns what there is to tell.
+/// The list of points as points-0001.pts and .csv. Returns a message.
 std::string keep_points(const std::filesystem::path& folder,
                         const std::vector<ClickedPoint>& points, const LightBoard& lights,
                         double maintenance);
@@ -42,8 +41,8 @@ void write_screenshot(const std::filesystem::path& file, int width, int height,
 void write_frame(const std::filesystem::path& file, const Scene& scene, const Frame& frame,
                  const LightMix& mix, const image::White& white);
 
-/// A copy of the scene's file with its lamps in a mood. Returns what there is to tell: the name of
-/// the file and what could not be written, or what failed.
+/// A copy of the scene's file with its lamps in a mood. Returns a message: the name of the file and
+/// what could not be written, or what failed.
 std::string write_mood(const Scene& scene, const SceneLoadOptions& load, LightBoard board,
                        const Moods& moods, const std::string& mood);
 

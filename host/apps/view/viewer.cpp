@@ -32,7 +32,7 @@ namespace {
 
 /// Longest wait for input before the window is drawn again: news of the workers are seen then.
 constexpr double redraw_seconds = 1.0 / 60;
-/// After the last motion, frames stay small for so long: hands pause.
+/// Seconds for which frames stay small after the last motion, since hands pause.
 constexpr double settling_seconds = 0.15;
 constexpr std::size_t frames_in_graph = 120;
 
@@ -169,7 +169,7 @@ class Viewer {
     if (lights_.sky()) mixdown_ = std::make_shared<const LayerMixdown>(lights_.mixdown());
     points_.use(scene_);
     inspector_.emplace(*scene_);
-    frame_.reset();  // its layers are those of other lights; the window goes on showing it
+    frame_.reset();  // its layers are those of other lights; the window keeps showing it
     frames_.use(std::move(maps), request(was_moving_));
   }
 
@@ -231,7 +231,7 @@ class Viewer {
     const bool sky_moved = std::exchange(sky_moved_, false);
     if (moved || sky_moved || moving != was_moving_ || reflections != had_reflections_ ||
         width != asked_width_ || height != asked_height_) {
-      // A window that is made small to nothing keeps its last picture.
+      // A window that is minimised keeps its last picture.
       if (width > 0 && height > 0) frames_.show(request(moving));
       was_moving_ = moving;
       had_reflections_ = reflections;
@@ -310,7 +310,7 @@ class Viewer {
     white_is_set_ = frame_->mixed.empty();
   }
 
-  /// Before there is a picture an error ends the walkthrough; later ones are told.
+  /// Before there is a picture an error ends the walkthrough; later ones are shown.
   void take_errors() {
     for (const std::exception_ptr& error : {photons_.take_error(), frames_.take_error()}) {
       if (!error) continue;
@@ -361,7 +361,7 @@ class Viewer {
         }));
   }
 
-  /// What Ctrl+S did, after what it did about luminaires.
+  /// The message of Ctrl+S, after that of saving luminaires.
   std::string beside_luminaires(const std::string& what) const {
     return told_of_luminaires_.empty() ? what : told_of_luminaires_ + "; " + what;
   }

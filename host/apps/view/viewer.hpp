@@ -43,7 +43,7 @@ struct ViewerParameters {
   bool fills_screen = false;          ///< the window opens at most of it, whatever the film's size
   std::optional<image::White> white;  ///< none = that of the lamps in the first picture
   bool white_balance = true;          ///< whether it is shown as white
-  Progress* notes = &Progress::none();  ///< is told what has no place in the window
+  Progress* notes = &Progress::none();  ///< gets the lines that the window does not show
   KeepPhotons keep;                     ///< is given all photons once they are there; may be empty
   /// Is given the light maps of all photons at the end, where there are any; may be empty.
   std::function<void(const LightMapContents&)> keep_light_maps;

@@ -68,7 +68,7 @@ struct Window::Impl {
     glfwMakeContextCurrent(handle);
     glfwSwapInterval(1);
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // panels do not litter the working folder
+    ImGui::GetIO().IniFilename = nullptr;  // panels write no file into the working folder
     ImGui::GetIO().ConfigWindowsMoveFromTitleBarOnly = true;
     set_style();
     ImGui_ImplGlfw_InitForOpenGL(handle, true);

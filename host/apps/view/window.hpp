@@ -30,7 +30,8 @@ class Window {
   void close();
   void keep_open();  ///< although it was asked to close
 
-  /// Waits for input, at most so many seconds, and begins a frame of panels over the picture.
+  /// Waits for input, at most `longest_wait` seconds, and begins a frame of panels over the
+  /// picture.
   void begin_frame(double longest_wait);
   /// Draws the picture and what was drawn over it.
   void draw_frame();

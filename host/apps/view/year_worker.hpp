@@ -1,4 +1,4 @@
-// Figures of a year of daylight, refined on a thread of its own.
+// Figures of a year of daylight, refined on its own thread.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace photile::view {
 
-/// Measures when it is asked to, and again when it is asked again. Until then it costs nothing.
+/// Measures on request, and again on each further request. Until then it costs nothing.
 class YearWorker {
  public:
   using Lines = std::vector<std::string>;
-  /// Tells lines again and again, each time all of them anew, until it is done or stopped.
+  /// Reports lines repeatedly, each time all of them, until it is done or stopped.
   using Measure = std::function<void(const std::function<void(Lines)>& tell, Progress& progress)>;
 
   /// `measure` may be empty: there is no year to measure.

@@ -45,7 +45,7 @@ Placeholder placeholder_at(std::string_view text) {
 }  // namespace
 
 FrameNames::FrameNames(const std::string& pattern) {
-  // Only the name: a folder may be called C#.
+  // Only in the file's name: a folder may be called C#.
   const std::string name = std::filesystem::path(pattern).filename().string();
   const std::string folder = pattern.substr(0, pattern.size() - name.size());
   int placeholders = 0;

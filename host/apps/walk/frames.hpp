@@ -14,7 +14,7 @@ namespace photile::walk {
 /// wide at least, or %d, %4d, %04d as in printf. A name without one gets .#### before its ending.
 class FrameNames {
  public:
-  /// Errors: UsageError where there are several positions, or what looks like one that is meant.
+  /// Errors: UsageError where there are several positions, or a text that looks like one.
   explicit FrameNames(const std::string& pattern);
 
   std::filesystem::path of(int frame) const;

@@ -84,8 +84,8 @@ std::uint32_t light_count(std::span<const std::uint16_t> lights) {
   return count;
 }
 
-/// Each photon stands for an oriented face of its own, which is what tables of normals and maps are
-/// indexed by.
+/// Each photon stands for a separate oriented face, since tables of normals and maps are indexed by
+/// faces.
 Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
   Photons photons;
   photons.position.assign(cloud.position.begin(), cloud.position.end());

@@ -27,7 +27,7 @@ class Voxels {
 
   /// The plan of their maps, whose candidate lists are one for each photon. Call once.
   maps::MapPlan take_plan() { return std::move(plan_); }
-  /// Per photon: a map of its own cube.
+  /// Per photon: a map of the cube that it lies in.
   std::vector<std::uint32_t> take_own_maps() { return std::move(own_maps_); }
 
   /// The map that serves a point, `none` where no photon is near.

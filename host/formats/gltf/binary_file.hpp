@@ -33,7 +33,7 @@ struct BinaryFile {
     return {reinterpret_cast<const char*>(&word), sizeof word};
   }
 
-  /// A file up to the end of its JSON, before so many bytes.
+  /// A file up to the end of its JSON; `rest` further bytes follow.
   static std::string head(std::string json, std::size_t rest) {
     json.append((alignment - json.size() % alignment) % alignment, ' ');
     const std::size_t size = header + chunk_header + json.size() + rest;

@@ -86,7 +86,7 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
         binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, "")
                : loader.LoadASCIIFromString(&model, &error, &warning,
                                             reinterpret_cast<const char*>(bytes.data()), size, "");
-  } catch (const nlohmann::json::exception&) {  // its text means something to programmers alone
+  } catch (const nlohmann::json::exception&) {  // its text is meaningful to programmers only
     error = "a value of another type than the format has";
   }
   if (!loaded) {

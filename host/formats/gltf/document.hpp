@@ -28,22 +28,22 @@ void warn_of_extensions(const tinygltf::Model& model, reading::ImportContext& co
 
 // Compressed meshes: EXT_meshopt_compression and KHR_draco_mesh_compression.
 
-/// The JSON of a file with compressed meshes without what a reader stumbles over that does not know
-/// them: buffers that stand for what meshopt has packed, and have no bytes, and indices that only
-/// Draco's data has. "" where nothing has to be changed.
+/// The JSON of a file with compressed meshes, without what a reader that does not support them
+/// would refuse: buffers that stand for what meshopt has packed, and have no bytes, and indices
+/// that only Draco's data has. "" where nothing has to be changed.
 std::string without_packed_parts(std::string_view json);
 
-/// Unpacks what is compressed into buffers of its own, so that the model is read as any other.
-/// Errors: InputError that names a view or mesh which is damaged; UsageError where photile was
-/// built without the decoders.
+/// Unpacks compressed data into separate buffers, so that the model is read as any other. Errors:
+/// InputError that names a view or mesh which is damaged; UsageError where photile was built
+/// without the decoders.
 void unpack_meshes(tinygltf::Model& model, const reading::ImportContext& context);
 
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.
 double number_member(const tinygltf::Value& object, const std::string& key, double fallback);
 
 /// A member of a JSON object: a number as the nearest int towards zero, or `fallback` when it is
-/// absent or no number. No number is beyond the reach of a cast: the largest int names nothing that
-/// a file can hold.
+/// absent or no number. Numbers are clamped to the range of an int: the largest int is no valid
+/// index of a file.
 int integer_member(const tinygltf::Value& object, const std::string& key, int fallback);
 
 /// A member of a JSON object: up to three numbers; missing ones keep those of `fallback`.
@@ -57,7 +57,7 @@ std::string string_member(const tinygltf::Value& object, const std::string& key)
 const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
                                       const std::string& name);
 
-/// The element that a file numbers so; null where there is none.
+/// The element of this number in a file; null where there is none.
 template <class T>
 const T* element(const std::vector<T>& all, int number) {
   const bool there = number >= 0 && static_cast<std::size_t>(number) < all.size();
@@ -74,11 +74,11 @@ glm::dvec3 rgb_of(const std::vector<double>& values, const glm::dvec3& fallback)
 /// A URI with its percent escapes replaced by the bytes they stand for.
 std::string decoded_uri(const std::string& uri);
 
-/// Reads the text once, as a stream: whatever it says, that takes no memory but for its depth.
-/// tinygltf would build all of it, recursively, and read numbers that are out of their range as
-/// others. Returns what it names in extensionsRequired. Errors: InputError where it is no JSON, is
-/// nested deeper than limits::max_json_depth, has more nodes or materials than the limits, or where
-/// a number, count or offset of the format is no whole number of its range.
+/// Reads the text once, as a stream: whatever its content, this takes memory in proportion to its
+/// depth only. tinygltf would build all of it, recursively, and read numbers that are out of their
+/// range as others. Returns what it names in extensionsRequired. Errors: InputError where it is no
+/// JSON, is nested deeper than limits::max_json_depth, has more nodes or materials than the limits,
+/// or where a number, count or offset of the format is no whole number of its range.
 std::vector<std::string> check_json(std::string_view json, const reading::ImportContext& context);
 
 }  // namespace photile::gltf

@@ -33,8 +33,8 @@ constexpr std::uint64_t least_bytes_per_triangle = 3;
 /// Beyond any limit, and small enough to be added and multiplied by any number of visits.
 constexpr std::uint64_t too_many = 3 * limits::max_triangles;
 
-/// The triangles of a primitive, and no fewer than the work on its vertices is worth: a mesh may
-/// have vertices that no triangle uses, and primitives without triangles take time, too.
+/// The triangles of a primitive, and at least as many as the work on its vertices corresponds to: a
+/// mesh may have vertices that no triangle uses, and primitives without triangles take time, too.
 std::uint64_t cost_of(const tinygltf::Primitive& primitive, std::uint64_t buffer_bytes,
                       const std::string& use, const AccessorReader& accessors) {
   if (!is_usable(primitive, use, accessors)) return 1;

@@ -282,8 +282,8 @@ class LightImporter {
     return &model_.lights[static_cast<std::size_t>(index)];
   }
 
-  /// Kind, colour and flux. Photometric data replaces what a punctual light at the same node
-  /// emits, but for its colour.
+  /// Kind, colour and flux. Photometric data replaces what a punctual light at the same node emits,
+  /// except its colour.
   bool set_emission(const tinygltf::Light* source, const std::optional<NodeProfile>& profile,
                     Light& light) {
     files::Warnings& warnings = context_.warnings;

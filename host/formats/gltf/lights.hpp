@@ -34,7 +34,7 @@ std::string lamp_of(const tinygltf::Node& node, const std::string& extension);
 ///   sources   of the lights
 void group_instances(std::vector<Light>& lights, std::span<const reading::LightSource> sources);
 
-/// Whether a node's extras give it a light of its own.
+/// Whether a node's extras define a light.
 bool has_profile(const tinygltf::Node& node);
 
 /// Adds the lights without size of all visited nodes. Directional lights get their irradiance as

@@ -135,7 +135,8 @@ class Converter {
 MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
   MetallicRoughness model;
-  // glTF would have a metal there that reflects all light, but who sets nothing wants no such room.
+  // By the specification that would be a metal which reflects all light, but a file that sets
+  // nothing does not mean that.
   const bool unsaid = source.values.empty() &&
                       find_extension(source.extensions, "KHR_materials_transmission") == nullptr;
   if (unsaid) {

@@ -49,8 +49,8 @@ std::vector<std::array<std::uint32_t, 3>> assemble(const std::vector<std::uint32
   return triangles;
 }
 
-/// The index list of a primitive of so many corners; 0, 1, 2 ... where it has none. `use` names the
-/// mesh in errors. Errors: InputError for an index beyond the corners.
+/// The index list of a primitive of `corner_count` corners; 0, 1, 2 ... where it has none. `use`
+/// names the mesh in errors. Errors: InputError for an index beyond the corners.
 std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
                                         std::size_t corner_count, const std::string& use,
                                         const AccessorReader& accessors,

@@ -1,6 +1,6 @@
 // tinygltf as photile uses it: pictures stay encoded and external pictures unread, so that the path
 // and size checks of SceneFolder and decode_texture are the only way in. Include this header, never
-// <tiny_gltf.h>: the macros must agree everywhere.
+// <tiny_gltf.h>: the macros must be the same everywhere.
 #pragma once
 
 #define TINYGLTF_NO_STB_IMAGE

@@ -51,7 +51,7 @@ void apply(const LightGrouping& grouping, std::vector<Light>& lights) {
   }
 }
 
-/// Layers have names of their own.
+/// Every layer has a different name.
 void check_names(const std::vector<Light>& lights) {
   std::unordered_set<std::string_view> groups;
   for (const Light& light : lights) groups.insert(light.group);
@@ -151,7 +151,8 @@ std::string material_names(const Scene& scene) {
   return names + (scene.materials.size() > most ? " ..." : "");
 }
 
-/// What comes nearest to a fraction that a material cannot reflect, from `own`, which it can.
+/// The reflectance nearest to a fraction that a material cannot reflect, starting from `own`, which
+/// it can.
 double nearest_reflectance(Scene& scene, Material& material, double fraction, double own) {
   double possible = own, impossible = fraction;
   for (int step = 0; step < 20; ++step) {

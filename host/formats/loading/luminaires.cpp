@@ -121,7 +121,7 @@ std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
   };
   auto ceiling = above(middle);
   if (!ceiling) {
-    // A hole there, or a seam.
+    // There is a hole or a seam.
     std::vector<glm::dvec3> others = room->positions();
     std::sort(others.begin(), others.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
       return std::pair(glm::distance(a, middle), a.x) < std::pair(glm::distance(b, middle), b.x);

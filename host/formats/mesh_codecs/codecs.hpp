@@ -1,4 +1,5 @@
-// Decoders of compressed meshes, in a module of their own: files without any need neither library.
+// Decoders of compressed meshes, in a separate module: files without compressed meshes need neither
+// library.
 #pragma once
 
 #include <cstddef>

@@ -53,7 +53,7 @@ bool is_glass(const MtlMaterial& source) {
 }
 
 void set_glass(const MtlMaterial& source, Material& material, files::Warnings& warnings) {
-  // MTL files have an Ns of 0 or 1 where nobody thought of one.
+  // MTL files have an Ns of 0 or 1 where it was not chosen.
   const double exponent = source.Ns.value_or(0);
   if (exponent > 1 && exponent < scene::mirror_phong_exponent) {
     warnings.add("material", source.name,

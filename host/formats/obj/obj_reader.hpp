@@ -21,7 +21,7 @@ struct ObjFace {
   std::uint64_t first_corner;
   std::uint32_t corner_count;
   std::uint32_t object;    ///< index in ObjFile::objects
-  std::uint32_t material;  ///< index in ObjFile::materials, or `none` before any usemtl
+  std::uint32_t material;  ///< index in ObjFile::material_names, or `none` before any usemtl
 };
 
 struct ObjFile {

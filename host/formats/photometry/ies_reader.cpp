@@ -200,7 +200,7 @@ IntensityDistribution type_a_or_b(const std::string& name, const Web& web, Photo
 /// length makes the plan round, one of the height beside it an ellipsoid, and one of the height
 /// alone a tube. In 1986 and 1991 a minus of the width makes the plan round, and is that of an
 /// ellipsoid where width, length and height differ from 0. Until 1995 a diameter stands once, and
-/// is 0 in the other place. What an edition does not define is read as another one does.
+/// is 0 in the other place. What an edition does not define is read as in another edition.
 LuminousOpening opening_of(const std::vector<double>& size, bool feet, Photometry type,
                            int edition) {
   using Shape = LuminousOpening::Shape;

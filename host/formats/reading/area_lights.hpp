@@ -40,7 +40,7 @@ struct LightTraits {
   std::string lamp = {};  ///< as LightSource::lamp
 };
 
-/// Panels count as objects of their own, after all visits of nodes.
+/// Panels count as further objects, after all visits of nodes.
 inline constexpr std::uint64_t first_panel_object = limits::max_node_visits;
 
 /// What a material emits, in cd/m2 or W/(m2 sr).

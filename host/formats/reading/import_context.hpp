@@ -32,7 +32,7 @@ struct ImportContext {
     return InputError(folder.scene_file().string() + ": " + message);
   }
 
-  /// To be called for each line, triangle and the like: looks now and then whether the user asked
+  /// To be called for each line, triangle and the like: checks now and then whether the user asked
   /// to stop. Errors: Interrupted.
   void check_cancelled() {
     constexpr std::uint32_t calls_between_checks = 1024;

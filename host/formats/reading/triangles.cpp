@@ -223,7 +223,7 @@ Triangulation triangulate_polygon(std::span<const glm::dvec3> corners, const Pro
     --left;
   };
   ask_all(current);
-  // Where a polygon crosses itself, to ask for one ear may mean to look at all corners.
+  // Where a polygon crosses itself, the search for one ear may visit all corners.
   constexpr std::size_t rounds_between_checks = 256;
   for (std::size_t round = 1; left > 3; ++round) {
     if (round % rounds_between_checks == 0) progress.throw_if_cancelled();
@@ -284,8 +284,8 @@ glm::dvec3 SceneOrigin::best() const {
 
 namespace {
 
-/// An instance costs Embree about as much memory as so many triangles, and each ray that meets its
-/// box the move into the mesh's space.
+/// The fewest triangles of a mesh that is shared: an instance takes about as much of Embree's
+/// memory as these, and each ray that meets its box has to be moved into the mesh's space.
 constexpr std::ptrdiff_t least_triangles = 64;
 
 /// Triangles that sharing a mesh must save, about a megabyte of Embree's memory: less is not worth

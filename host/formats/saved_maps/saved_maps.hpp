@@ -1,4 +1,4 @@
-// Photons and groups in a file, so that the same scene is looked at again without tracing it, or
+// Photons and groups in a file, so that the same scene is rendered again without tracing it, or
 // traced by several processes. The format is docs/saved-maps.md.
 #pragma once
 

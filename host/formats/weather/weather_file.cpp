@@ -82,7 +82,8 @@ Site site_of(const Line& line) {
   if (lower(line.field(0)) != "location") line.refuse("an EPW file begins with LOCATION");
   const Site site{line.number(6, "latitude", -90, 90), line.number(7, "longitude", -180, 180),
                   line.number(8, "time zone", -12, 14)};
-  // Clocks are at most three hours and a half from the sun's; a wrong sign is farther.
+  // Clock time differs from solar time by at most three and a half hours; with a wrong sign it
+  // differs by more.
   constexpr double most_hours = 5, degrees_per_hour = 15;
   const double apart =
       std::remainder(site.time_zone - site.longitude_degrees / degrees_per_hour, 24.0);

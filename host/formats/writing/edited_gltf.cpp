@@ -105,7 +105,7 @@ class Document {
     }
   }
 
-  /// The definition of a node's light in an extension, of its own.
+  /// The definition of a node's light in an extension; a separate copy for this node.
   Json& own_definition(const LightSetting& light, const char* extension) {
     Json& lights = json_["extensions"][extension]["lights"];
     Json& own = node(light)["extensions"][extension];
@@ -154,7 +154,7 @@ class Document {
     }
   }
 
-  /// The material of a light, of its own.
+  /// The material of a light; a separate copy for this light.
   Json& own_material(const LightSetting& light) {
     Json& materials = json_["materials"];
     if (lights_of_[light.source.material] == 1) return materials.at(light.source.material);
@@ -168,7 +168,7 @@ class Document {
     return materials[own];
   }
 
-  /// The mesh of a light's node, of its own.
+  /// The mesh of a light's node; a separate copy for this node.
   Json& own_mesh(const LightSetting& light) {
     Json& owner = node(light);
     Json& meshes = json_["meshes"];
@@ -261,7 +261,7 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
     write_file(copy, binary
                          ? gltf::BinaryFile::head(json.dump(), parts.rest.size()).append(parts.rest)
                          : json.dump(2) + "\n");
-  } catch (const Json::exception&) {  // its text means something to programmers alone
+  } catch (const Json::exception&) {  // its text is meaningful to programmers only
     throw InputError(fmt::format(
         "{}: its lights cannot be set, for it is malformed; export it again", scene.string()));
   }

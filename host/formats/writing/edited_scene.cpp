@@ -98,7 +98,7 @@ void refuse_taken(const std::filesystem::path& file) {
       fmt::format("{}: is there already; remove it, or take another name", file.string()));
 }
 
-// OBJ: the text of the file with a library of its own, in which lamps have other Ke.
+// OBJ: the text of the file with a separate library, in which lamps have other Ke.
 
 namespace {
 

@@ -57,8 +57,8 @@ struct EditedScene {
 /// `mix`. In glTF the intensities and colours of KHR_lights_punctual, emissive factors and
 /// strengths, and what photile reads beside them (EXT_lights_ies, EXT_lights_area, photile_lumens,
 /// photile_kelvin); lights that share a definition, a material or a mesh get their own. An OBJ file
-/// gets a library of its own, SCENE.NAME.mtl, with other Ke. Everything else stays as it was.
-/// Lights of power 0 stay in the file and emit nothing, so that they are dropped when it is read.
+/// gets a separate library, SCENE.NAME.mtl, with other Ke. Everything else stays as it was. Lights
+/// of power 0 stay in the file and emit nothing, so that they are dropped when it is read.
 ///   scene     file to copy; its buffers, pictures and libraries stay where they are
 ///   options   with which it was loaded: lights that they add are left out
 ///   mix       of LightMix::of, changed

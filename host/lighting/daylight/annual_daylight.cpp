@@ -74,7 +74,7 @@ std::vector<SkyHour> sky_hours(const weather::WeatherYear& weather,
     hour.day = from.day;
     hour.hour = from.hour;
     hour.weekday = (weather.first_weekday + static_cast<int>(i / 24)) % 7;
-    // The 29th of February has the sun of the 28th, all but.
+    // On the 29th of February the sun is nearly that of the 28th.
     const bool leap_day = from.month == 2 && from.day == 29;
     const LocalTime time{any_common_year, from.month, leap_day ? 28 : from.day, from.hour};
     hour.sun = weather::sun_position(weather.site, time);

@@ -25,7 +25,7 @@ struct DaylightMatrix {
     return from_sky[sensor * patches + patch];
   }
 
-  /// The mean of matrices of the same sensors, by rays of their own each. `shares` add up to 1.
+  /// The mean of matrices of the same sensors, each by independent rays. `shares` add up to 1.
   static DaylightMatrix mean(std::span<const DaylightMatrix* const> of,
                              std::span<const double> shares);
 };

@@ -91,7 +91,7 @@ VisibleByRays SkyRays::from(std::span<const trace::Photometer> places, std::uint
       const trace::Photometer& place =
           places[static_cast<std::size_t>(batch * rays + ray) % places.size()];
       portals_.measure(glm::dvec3(place.origin()), portals);
-      // A ray alone follows the cosine: what it brings is then no more than what is there.
+      // A single ray follows the cosine, so that its light is no more than the radiance there.
       const double looking = portals.sum > 0 ? (rays / 2) / static_cast<double>(rays) : 0;
       const bool looks = looking > 0 && ray % 2 == 1;
       const auto index = static_cast<std::uint32_t>(looking > 0 ? ray / 2 : ray);
@@ -126,7 +126,7 @@ constexpr std::size_t least_rays = 65'536;
 /// A cell has, for each batch, as many rays as end there, up to this part of a sensor's.
 constexpr int rays_of_cell = 16;
 
-/// What a row's rays saw, but for the cells of surfaces.
+/// What a row's rays saw, without the cells of surfaces.
 TransportRow row_of(const VisibleByRays& seen, const TransportParameters& parameters) {
   TransportRow row;
   row.mean_sky.assign(static_cast<std::size_t>(parameters.sky.batches), glm::vec3(0.0f));

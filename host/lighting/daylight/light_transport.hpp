@@ -57,7 +57,7 @@ class SkyRays {
   /// What a point sees, in the order of its rays. Depends on the point, its number and the
   /// parameters only.
   ///   points   one, or several points of a surface, which take turns
-  ///   number   of the point, below 2^31; that of no other
+  ///   number of the point, below 2^31; no other point has it
   ///   rays     of each batch
   VisibleByRays from(std::span<const trace::Photometer> places, std::uint64_t number,
                      int rays) const;

@@ -69,7 +69,7 @@ std::vector<SkyState> sky_states(const Year& year, Scene& scene, std::span<const
 /// What the states give by the hour.
 void light_hours(const Year& year, std::vector<SkyState>& states);
 
-/// The same states again and again, by rays of their own: their mean, and how far it may be off.
+/// The same states repeated with independent rays: their mean, and its error.
 class SkyRounds {
  public:
   static constexpr std::size_t most_parts = 8;

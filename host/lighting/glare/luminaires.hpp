@@ -33,10 +33,11 @@ struct VisibleLuminaire {
 
 class Luminaires {
  public:
-  /// Each connected part of an area light is a luminaire of its own, and each lamp of a photometric
-  /// file, spot or point light. Where a file gives intensities, it gives the opening, too, unless
-  /// the area light has another size: then that is its opening, flat. A lamp without any counts as
-  /// the least source. Light from beyond the scene comes from no luminaire. The rays are kept.
+  /// Each connected part of an area light is a separate luminaire, and so is each lamp of a
+  /// photometric file, spot or point light. Where a file gives intensities, it gives the opening,
+  /// too, unless the area light has another size: then that is its opening, flat. A lamp without
+  /// any counts as the least source. Light from beyond the scene comes from no luminaire. The rays
+  /// are kept.
   ///   samples   of a luminaire, spread over its area
   Luminaires(const RayScene& rays, int samples);
 

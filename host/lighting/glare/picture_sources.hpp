@@ -26,7 +26,7 @@ struct SourceSearch {
   /// Luminance of a source's pixels: above 100 cd/m2, up to 100 times the mean luminance.
   double threshold = defaults::glare_source_luminance;
   double angle = defaults::glare_source_angle;  ///< radians: pixels nearer than that are one source
-  double peak = defaults::glare_peak_luminance;  ///< cd/m2: pixels above are sources of their own
+  double peak = defaults::glare_peak_luminance;  ///< cd/m2: pixels above are separate sources
 };
 
 struct PictureSource {

@@ -26,7 +26,7 @@ namespace photile::measuring {
 ///   where it is not in that air, where less than an eighth of the directions before it end in that
 ///   air or under the open sky, and where no row of points of the grid, each visible from the one
 ///   before through a gap of 10 cm, leads to it from that air. Where most of the grid seems to lie
-///   in things, the room was not understood, and none does;
+///   in things, the room was misread, and no point counts as lying in one;
 /// - with a surface less than a centimetre beside or before them, such as the face of a partition:
 ///   half of their light is hidden by what they touch.
 ///   inside   a point in the room that the grid is of; none = the first camera's

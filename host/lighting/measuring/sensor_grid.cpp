@@ -147,8 +147,8 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
                        full_plane(plane.vector("origin"), along_u, along_v, counts));
 }
 
-/// The band of so many metres, by a key, around an area. Its cells are as wide as the area's, those
-/// of a background as EN 12464-1 has them for a rectangle of its size.
+/// The band around an area whose width in metres a key gives. Its cells are as wide as the area's,
+/// those of a background as EN 12464-1 has them for a rectangle of its size.
 SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayout& inner,
                        GridRole role) {
   const double band = plane.metres(key);

@@ -89,9 +89,9 @@ PlaneLayout full_plane(const glm::dvec3& origin, const glm::dvec3& u, const glm:
 /// Reads a JSON object {"name", "origin", "u", "v"} with either "spacing" or "columns" and "rows",
 /// or a list of such: a rectangle from a corner along two sides at a right angle, metres in the
 /// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. With
-/// "surroundings" the band of so many metres around it is a grid of its own, and with "background"
-/// the one around that; a task comes before its bands. Errors: InputError
-/// naming the file, the plane and the key.
+/// "surroundings" the band of this many metres around it is a separate grid, and with "background"
+/// the band around that; a task comes before its bands. Errors: InputError naming the file, the
+/// plane and the key.
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file);
 
 /// Reads lines of six numbers: x y z of a point in metres and the direction that it faces, of any

@@ -18,8 +18,8 @@ struct Chromaticities {
 };
 
 /// From RGB of these primaries to Rec.709: white stays white, and luminance what it is, exactly,
-/// since X and Z alone are scaled where the whites differ. Nothing where it would change no bit
-/// that counts. Errors: DecodeError where the primaries span no colours.
+/// since X and Z alone are scaled where the whites differ. Nothing where it would change no
+/// significant bit. Errors: DecodeError where the primaries span no colours.
 std::optional<glm::dmat3> to_rec709(const Chromaticities& from);
 
 /// From CIE XYZ whose white is X = Y = Z; luminance stays what it is.

@@ -25,7 +25,7 @@ namespace {
 constexpr std::string_view exr_reader = "openexr";
 
 std::unique_ptr<Decoder> open_by_openimageio(const char* reader, Encoded bytes) {
-  // It stays loaded: OpenImageIO and what it is made of are not made to be unloaded.
+  // It stays loaded: OpenImageIO and its libraries are not designed to be unloaded.
   static const Module& module = *new Module("photile_openimageio.so");
   static auto* const open =
       module.find<decltype(photile_openimageio_decoder)>("photile_openimageio_decoder");
@@ -64,7 +64,7 @@ const char* reader_of(const std::string& name, Encoded bytes) {
 namespace {
 
 /// The channels of an EXR that are its picture: R, G and B, or Y, of the first part that has them,
-/// or of its one layer, or of that called Combined. Depth, normals or lights are none of it.
+/// or of its one layer, or of that called Combined. Depth, normals or lights are not part of it.
 struct ExrPicture {
   std::size_t part = 0;
   std::vector<std::size_t> channels;

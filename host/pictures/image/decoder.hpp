@@ -98,8 +98,8 @@ std::unique_ptr<EncodedPicture> open_picture(const std::string& name, Encoded by
 
 extern "C" {
 
-/// OpenImageIO's readers, in a module of their own (host/pictures/openimageio): opens a picture of
-/// any format but EXR, which `bytes` must outlive; the caller deletes it. Errors: DecodeError.
+/// OpenImageIO's readers, in a separate module (host/pictures/openimageio): opens a picture of any
+/// format but EXR, which `bytes` must outlive; the caller deletes it. Errors: DecodeError.
 __attribute__((visibility("default"))) photile::image::Decoder* photile_openimageio_decoder(
     const char* reader, photile::image::Encoded bytes);
 

@@ -25,7 +25,7 @@ struct DisplayTransform {
   double outlier_factor = 20.0;
   double f90 = 0.04, ks = 0.8 - f90, kd = 0.15;
   /// Multiples of white from which on something beside a pixel is a lamp or a window, whose border
-  /// is mixed as it is displayed: highlights seldom are as bright.
+  /// is mixed as it is displayed: highlights are seldom as bright.
   double least_of_light = 4;
 };
 inline constexpr DisplayTransform display_transform;

@@ -77,7 +77,7 @@ void check_bmp(Encoded bytes) {
   }
 }
 
-/// The reader looks texels up in the palette without asking whether it has so many.
+/// The reader looks texels up in the palette without checking its size.
 void check_targa(Encoded bytes) {
   const bool palette = number_at(bytes, 2, 1) == 1 || number_at(bytes, 2, 1) == 9;
   const std::uint32_t first = number_at(bytes, 3, 2), colours = number_at(bytes, 5, 2),
@@ -162,8 +162,7 @@ void check_encoded(std::string_view reader, Encoded bytes) {
 
 namespace {
 
-/// Bytes of the types that have a size of their own (OpenEXR, "File Layout", predefined
-/// attributes).
+/// Bytes of the types that have a fixed size (OpenEXR, "File Layout", predefined attributes).
 constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> sizes{{{"box2f", 16},
                                                                             {"box2i", 16},
                                                                             {"chromaticities", 32},

@@ -238,7 +238,7 @@ PictureMetadata tiff_metadata(Encoded tiff) {
   return metadata;
 }
 
-/// A bitmap with a header of version 4 or 5 may have colours of its own.
+/// A bitmap with a header of version 4 or 5 may state its own colour space.
 PictureMetadata bmp_metadata(Encoded bmp) {
   PictureMetadata metadata;
   constexpr std::size_t version_4 = 108, space_offset = 14 + 56;

@@ -210,8 +210,8 @@ void write_single_part(OutputFile& output, const LayeredPicture& picture,
 }
 
 /// The root as the first part, which has the picture's attributes, and each light as a part that
-/// bears the name of its layer. Beside the root, which is little beside so many lights, no more
-/// than a few rows of one light are in memory.
+/// bears the name of its layer. Apart from the root, which is small compared with all the lights,
+/// no more than a few rows of one light are in memory.
 void write_parts(OutputFile& output, const LayeredPicture& picture, LayerPrecision precision) {
   if (precision == LayerPrecision::dwaa) precision = LayerPrecision::half;
   // A row a block. OpenEXR keeps two blocks of each part for each thread until the file is closed:

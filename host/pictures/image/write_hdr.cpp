@@ -36,7 +36,7 @@ Rgbe encoded(const glm::dvec3& rgb) {
           static_cast<std::uint8_t>(exponent + 128)};
 }
 
-/// Radiance's colour of as many cd/m2.
+/// The colour of Radiance for this many cd/m2.
 Rgbe texel_of(const glm::dvec3& rgb, double white_luminance) {
   const double weight = bright(rgb), seen = white_luminance * luminance(rgb);
   return weight > 0 && seen > 0 ? encoded(seen / (white_efficacy * weight) * rgb) : Rgbe{};

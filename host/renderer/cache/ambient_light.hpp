@@ -1,5 +1,5 @@
-// Light in space, as nodes around there have it: shown on surface whose own nodes are not valued
-// yet.
+// Light in space, interpolated from the nodes around: shown on surface whose own nodes are not
+// valued yet.
 #pragma once
 
 #include <array>

@@ -16,7 +16,7 @@ namespace {
 /// Tiles of the coarsest level of a scene: 4 bytes each, whether they are filled or not.
 constexpr double most_roots = 1 << 22;
 
-/// With fewer triangles, looking at all is as quick as a tree.
+/// With fewer triangles, testing all of them is as fast as a tree.
 constexpr std::size_t least_triangles_of_tree = 16;
 
 struct Rectangle {
@@ -82,8 +82,9 @@ std::vector<glm::dvec3> directions_in_plane(const Scene& scene, std::uint32_t tr
   return directions;
 }
 
-/// The nearest point of a triangle that is so far from its edges, or half as far as its middle is:
-/// nearest to a point a little towards the middle, for walls may stand on the triangle itself.
+/// The nearest point of a triangle that is at least this far from its edges, or half as far as its
+/// middle is: nearest to a point a little towards the middle, because walls may stand on the
+/// triangle itself.
 NearestPoint nearest_within(const Corners2& c, glm::dvec2 p, double inset) {
   const double opposite[3] = {glm::distance(c[1], c[2]), glm::distance(c[2], c[0]),
                               glm::distance(c[0], c[1])};

@@ -59,7 +59,7 @@ class Charts {
  public:
   ///   spacing         metres, > 0: of the coarsest nodes, at most
   ///   angle_degrees   largest angle between the normals of neighbours in a smooth component
-  /// Where the lattices would be too many, spacing is larger.
+  /// Where there would be too many lattices, the spacing is larger.
   Charts(const Scene& scene, double spacing, double angle_degrees);
 
   std::size_t size() const { return charts_.size(); }
@@ -87,7 +87,7 @@ class Charts {
   Support support(const NodeCoordinates& node, int levels) const;
   /// The surface that any position of the chart stands for.
   ///   position   the position, metres from its origin, across and along
-  ///   reach   metres: surface that lies so near is found fastest
+  ///   reach metres: surface within this distance is found fastest
   Support support(std::uint32_t chart, const glm::dvec2& position, double reach) const;
 
   /// The cell of the coarsest lattice that a position lies in, or the nearest one.
@@ -124,7 +124,7 @@ struct ChartGrowth {
 /// Charts grow from the largest triangles over shared edges, as far as the surface stays near the
 /// plane of the first one and folds little, and over edges that run along each other, as those of
 /// tiles do, where it does not fold: the two sides of a plate, and plates that lie on each other,
-/// are charts of their own. Triangles that coincide share a chart. A rule of geometry alone.
+/// are separate charts. Triangles that coincide share a chart. A rule of geometry alone.
 ///   spacing         metres, > 0: how far a chart may leave its plane
 ///   angle_degrees   largest angle between the normals of neighbours in a smooth component
 ChartGrowth grow_charts(const Scene& scene, double spacing, double angle_degrees);

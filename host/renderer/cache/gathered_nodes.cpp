@@ -23,7 +23,7 @@ constexpr NodeSource::Surroundings averaged{.window = defaults::averaged_window,
                                             .rounds = defaults::averaged_rounds,
                                             .fine_window = defaults::averaged_fine_window};
 /// Differences that may be noise. Direct light ends at borders: beyond the horizon of
-/// a light that is near, points know that they are dark, and those before it are not sure of much.
+/// a light that is near, points are certainly dark, and the error of points before it is large.
 constexpr NoiseTolerance of_indirect{.errors = defaults::tolerated_errors};
 constexpr NoiseTolerance of_direct{.errors = defaults::tolerated_errors,
                                    .ratio = defaults::tolerated_error_ratio};
@@ -35,7 +35,7 @@ std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
   return numbers;
 }
 
-/// Links between chosen points alone, by their numbers among those chosen.
+/// Links between the chosen points only, by their numbers among those.
 PointLinks links_between(const PointLinks& all, std::span<const std::uint32_t> chosen) {
   std::vector<std::uint32_t> index_of(all.position.size(), none);
   for (std::uint32_t i = 0; i < chosen.size(); ++i) index_of[chosen[i]] = i;
@@ -120,8 +120,8 @@ void GatheredPoints::append(std::span<const std::uint64_t> numbers, NodeRays of_
 
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double spacing) {
   // Shadow borders stand at the finer levels: there light samples matter more than rays.
-  // Nine of these are averaged. In the open few light samples find the sky through a window: what
-  // single ones find would show.
+  // Nine of these are averaged. In the open few light samples find the sky through a window, and
+  // the light of single samples would show.
   const bool open = std::any_of(scene.lights.begin(), scene.lights.end(),
                                 [](const Light& light) { return light.is_distant(); });
   const int of_few = static_cast<int>(std::lround(times_where_few(scene, spacing) * coarse));
@@ -231,7 +231,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
 
 /// The links of a batch, without those across what stands on the surface between two points, such
 /// as a wall on a floor that runs on under it. Only points whose light is unlike are looked at: a
-/// bright one that is not sure of its light would brighten a dark one.
+/// bright one with a large error would brighten a dark one.
 ///   rows   of all points
 PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
                                         std::span<const std::size_t> rows) const {

@@ -19,9 +19,10 @@ struct GatheredNodesParameters {
   NodeRays fine{25, 32};    ///< at all others
 };
 
-/// So many rays at the coarsest level and a quarter at others, and defaults::light_samples_per_ray;
-/// where a sun or a sky shines more rays, and as many light samples at all levels.
-/// Where few nodes have room, each has more of both (defaults::few_nodes).
+/// `coarse` rays at the coarsest level and a quarter of them at others, each with
+/// defaults::light_samples_per_ray light samples; where a sun or a sky shines, more rays, and the
+/// same number of light samples at all levels. Where the surface has room for few nodes only, each
+/// has more of both (defaults::few_nodes).
 ///   spacing   of the coarsest nodes, metres; 0 = whatever room there is
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double spacing);
 
@@ -34,7 +35,7 @@ struct GatheredPoints {
   void append(std::span<const std::uint64_t> numbers, NodeRays of_each, GatheredParts found);
 };
 
-/// Gathers irradiance at nodes. The noise of rays is taken out by rules that ask for the noise
+/// Gathers irradiance at nodes. The noise of rays is removed by rules that depend on the noise
 /// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
 /// finer ones with those next to them, as far as differences may be noise and nothing stands
 /// between the nodes. Direct light and light of other surfaces are treated apart.
@@ -42,8 +43,8 @@ class GatheredNodes : public NodeSource {
  public:
   /// References are kept. One LightMaps uses it.
   ///   rays     of a node, with those that it has in `former`
-  ///   former   points of light maps before, with the same numbers. Those that nobody asks for
-  ///            again go with it
+  ///   former   points of earlier light maps, with the same numbers. Those that are not requested
+  ///            again are released with it
   GatheredNodes(IrradianceGather& gather, std::span<const double> layer_powers,
                 const GatheredNodesParameters& rays, GatheredPoints former = {})
       : gather_(gather), layer_powers_(layer_powers), rays_(rays), former_(std::move(former)) {}
@@ -53,7 +54,7 @@ class GatheredNodes : public NodeSource {
   std::uint64_t bytes() const override;
   void forget() override;
 
-  /// The points at which rays gathered so far; none are left.
+  /// Takes the points at which rays gathered so far.
   GatheredPoints take_points() { return std::move(raw_); }
 
   /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
@@ -75,7 +76,7 @@ class GatheredNodes : public NodeSource {
   GatheredNodesParameters rays_;
   GatheredPoints former_;
   GatheredPoints raw_;
-  GatheredParts nodes_;  ///< valued so far, but for their distances
+  GatheredParts nodes_;  ///< valued so far, without their distances
 };
 
 }  // namespace photile::cache

@@ -36,7 +36,7 @@ double squared_difference(const Total& a, const Total& b, const NoiseTolerance& 
   return difference * difference / (tolerated.errors * tolerated.errors * variance);
 }
 
-/// How much errors that are too different leave.
+/// The weight that is left where errors differ too much.
 double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance& tolerated) {
   const auto [calm, noisy] = a.error < b.error ? std::pair(a, b) : std::pair(b, a);
   if (!(tolerated.ratio * calm.error < noisy.error)) return 1;
@@ -167,7 +167,7 @@ void Similarity::compare(const KnownLight& a, const KnownLight& b,
     for (const std::uint16_t layer : point->lit()) {
       const double squared = squared_difference(a.of_layer(layer), b.of_layer(layer), tolerated);
       if (squared <= defaults::parting_difference || different_[layer] > 0) continue;
-      // Beyond the least number it would be no difference any more.
+      // Below the smallest number there would be no difference.
       different_[layer] = std::max(errors * std::exp(-squared), std::numeric_limits<double>::min());
       different_layers_.push_back(layer);
     }

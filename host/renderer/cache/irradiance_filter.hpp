@@ -1,5 +1,5 @@
 // Takes noise from irradiance at points that see much the same: whether the light of two points may
-// be the same but for noise, and means with weights of each layer.
+// differ by noise alone, and means with weights of each layer.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -22,13 +22,13 @@ namespace photile::cache {
 
 /// What may be noise.
 struct NoiseTolerance {
-  /// Differences of so many standard errors count less by e.
+  /// At differences of this many standard errors the weight falls to 1 / e.
   double errors = defaults::tolerated_errors;
   /// Where one standard error is larger than this many times the other, the two count less, by the
   /// square of what is more: they do not see the same light.
   double ratio = std::numeric_limits<double>::infinity();
   /// The ratio counts only where the smaller error is at most this fraction of the light it is of:
-  /// a point that few rays brought light to, or none, does not know its error.
+  /// where few rays or none found light, the error is unknown.
   double known = defaults::known_error;
 };
 
@@ -195,12 +195,12 @@ class MeanOfPoints {
         other_(layer_powers.size()),
         similarity_(layer_powers) {}
 
-  /// The point itself; as heavy as so many.
+  /// Adds the point itself, with the weight of `weight` points.
   void add_own(const KnownPoints& from, std::size_t point, double weight = 1) {
     own_.read(from, point);
     sums_.add(from.irradiance(), from.row(point), weight, [&](std::size_t) { return weight; });
   }
-  /// One that may have the same light as the point itself; as heavy as so many.
+  /// Adds one that may have the same light as the point itself, with the weight of `weight` points.
   void add_other(const KnownPoints& from, std::size_t point, const NoiseTolerance& tolerated,
                  double weight = 1) {
     other_.read(from, point);
@@ -216,7 +216,7 @@ class MeanOfPoints {
   Similarity similarity_;
 };
 
-/// Means that add(i, mean) makes of each of so many points; `like` has their batches and form.
+/// The means of `count` points, each made by add(i, mean); `like` has their batches and form.
 template <class Add>
 LightTable means_of(const LightTable& like, std::size_t count, std::span<const double> layer_powers,
                     const Add& add) {
@@ -241,7 +241,7 @@ LightTable means_of(const LightTable& like, std::size_t count, std::span<const d
 }
 
 /// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to
-/// to[first[i] .. first[i + 1]). Who links says what one surface is.
+/// to[first[i] .. first[i + 1]). The caller decides what one surface is.
 struct PointLinks {
   std::vector<std::uint32_t> first;  ///< one more than there are points
   std::vector<std::uint32_t> to;
@@ -265,9 +265,9 @@ struct IrradianceFilterParameters {
 /// `layer_powers`. Where neighbours lie to one side, as where surface ends, those that are nearer
 /// weigh more, as far as light changes along it: their mean is then that of a plane through them,
 /// at the point (a regression of the first order, as Bitterli et al. 2016 have for pixels). All
-/// batches of a layer have the same weights, so that errors are known afterwards, too. Points of no
-/// error stay what they are, but for equal ones. Does not depend on threads, nor on whether they
-/// flush denormal numbers.
+/// batches of a layer have the same weights, so that errors are known afterwards, too. Points
+/// without error change only by points that are equal. Does not depend on threads, nor on whether
+/// they flush denormal numbers.
 LightTable filter_irradiance(LightTable irradiance, const PointLinks& links,
                              std::span<const double> layer_powers,
                              const IrradianceFilterParameters& parameters = {});

@@ -150,7 +150,8 @@ struct RunLight {
       }
     }
   }
-  /// Adds to all batches what lights bring that need no chance. Returns its luminance.
+  /// Adds to all batches the light of those lights that are sampled without chance. Returns its
+  /// luminance.
   double add_sampled_apart(const trace::SurfacePoint& where, BatchSums& sums) const {
     thread_local trace::ShadowRays shadow_rays;
     const trace::HotSpots& hot_spots = trace::hot_spots_of(rays);
@@ -170,8 +171,8 @@ struct RunLight {
     }
     hot_spots.for_each_at(where.position, [&](std::uint32_t light) {
       if (!std::isfinite(parameters.resolution)) return;
-      // As seen from below the surface, the light is as far off as it is to be. Its hot spot, as
-      // far as it reaches, keeps the flux of a light that shines evenly.
+      // As seen from below the surface, the light is at the distance that it is moved to. Its hot
+      // spot, as far as it reaches, keeps the flux of a light that shines evenly.
       const double height = static_cast<double>(
           glm::dot(rays.scene().lights[light].position - where.position, where.normal));
       if (!(height > 0)) return;
@@ -348,7 +349,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
 
   const int rays_per_batch = per_batch(rays, parameters_.batches);
   const int light_samples_per_batch = per_batch(light_samples, parameters_.batches);
-  // This round's share of as many as all rounds may take.
+  // This round's part of the samples that all rounds may take.
   const int most_light_samples_per_batch =
       defaults::most_light_samples_again * light_samples /
       (std::max(1, before.light_samples + light_samples) * parameters_.batches);
@@ -395,7 +396,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
          .rays_per_batch = rays_per_batch,
          .light_samples_per_batch = light_samples_per_batch,
          .most_light_samples_per_batch = most_light_samples_per_batch,
-         // Those before may have been so many times as many, where light was uncertain.
+         // Earlier rounds may have taken up to this factor more, where light was uncertain.
          .first_light_sample = static_cast<std::uint32_t>(
              defaults::light_samples_again * per_batch(before.light_samples, parameters_.batches)),
          .points = points,

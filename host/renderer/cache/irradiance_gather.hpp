@@ -27,8 +27,8 @@ struct IrradianceGatherParameters {
   int rays = 144;
   /// Light samples from each point; 0 = direct light is left out.
   int light_samples = 96;
-  /// Rays and light samples are shared by so many independent batches, rounded up to a whole number
-  /// in each: their scatter is the error.
+  /// The number of independent batches that rays and light samples are divided into, rounded up to
+  /// a whole number in each: their scatter is the error.
   int batches = 8;
   /// Surface nearer than this, metres, is not read but gathered from by one ray and one light
   /// sample, for photon estimates blur over such distances and miss what hides there; and so are
@@ -66,8 +66,7 @@ struct GatheredParts {
 ///
 /// Ends read light maps whose nodes photon estimates value: what a point gets depends on itself and
 /// its number, and not on the points beside it. Ends on surfaces whose lobe reflects much have
-/// estimates of their own; those of weaker lobes count as if they reflected the same light
-/// diffusely.
+/// separate estimates; those of weaker lobes count as if they reflected the same light diffusely.
 class IrradianceGather {
  public:
   /// References are kept.
@@ -84,10 +83,10 @@ class IrradianceGather {
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
   ///   rays, light_samples   in place of the parameters'
-  ///   before   that the points have already: these go on to spread evenly with them
+  ///   before rays and samples that the points have already: the new ones continue their sequences
   /// Where several processes have the photon maps, all give the same points; each gathers at a part
   /// of them, and all get all.
-  /// Errors: as DeviceEstimators; Interrupted, when `progress` says so.
+  /// Errors: as estimate::PhotonEstimate; Interrupted, when `progress` says so.
   GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
                        int light_samples, const Progress& progress = Progress::none(),
                        NodeRays before = {});
@@ -97,7 +96,7 @@ class IrradianceGather {
                     const Progress& progress = Progress::none());
 
   const RayScene& rays() const { return rays_; }
-  /// What rays find where they end.
+  /// The light that rays find where they end.
   SecondaryLight& secondary() { return secondary_; }
 
   /// Bytes of the light maps where rays end; `forget` empties them.
@@ -118,7 +117,7 @@ class IrradianceGather {
  private:
   /// Of no points.
   GatheredParts none_yet() const;
-  /// Gathers at this process's points, in as many rounds as so many points take.
+  /// Gathers at this process's points, in as many rounds as `most` points take.
   GatheredParts gather_own(const PrimaryHits& points, std::span<const std::uint64_t> number,
                            int rays, int light_samples, NodeRays before, std::size_t most,
                            const Progress& progress);

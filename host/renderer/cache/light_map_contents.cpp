@@ -17,7 +17,7 @@ using cache::Tiles;
 
 namespace {
 
-/// Whether these are the light of so many nodes, as files may not have it.
+/// Whether these are the light of `nodes` nodes, which the content of a file may not be.
 bool are_values_of(const LightTable& values, std::size_t nodes, const SceneNeeds& needs) {
   if (!values.radiance.empty()) return false;
   for (const glm::vec3& light : values.irradiance) {
@@ -32,8 +32,7 @@ bool are_values_of(const LightTable& values, std::size_t nodes, const SceneNeeds
          maps::all_below(values.light, needs.light_count);
 }
 
-/// Whether the values tell light by the normal, where rays found it and the scene asks for it
-/// alone.
+/// Whether the values hold light by the normal exactly where rays found it and the scene needs it.
 bool tell_by_normal(const LightTable& values, bool requested) {
   return values.by_normal.size() == (requested ? values.irradiance.size() : 0) &&
          std::all_of(values.by_normal.begin(), values.by_normal.end(), [](const glm::vec4& light) {
@@ -41,7 +40,7 @@ bool tell_by_normal(const LightTable& values, bool requested) {
          });
 }
 
-/// Whether these are errors and distances of so many nodes, or none.
+/// Whether these are errors and distances of `nodes` nodes, or empty.
 bool are_errors_of(const std::vector<float>& error, const std::vector<float>& distance,
                    std::size_t nodes) {
   const auto sensible = [](float value) { return value >= 0; };  // infinite: nothing is near

@@ -33,7 +33,7 @@ static_assert(packet_side * packet_side == trace::coherent_rays);
 /// Seconds of valuing a position, before they are known: by photons, and by rays at it and around
 /// it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
-/// Seconds of valuing positions until it is asked whether somebody waits for the frame.
+/// Seconds of valuing positions after which it is checked whether the frame is to end.
 constexpr double seconds_of_batch = 0.015;
 
 /// Where ray `i` meets a pixel: the first in its middle, and any number of them evenly spread
@@ -44,7 +44,7 @@ glm::vec2 position_in_pixel(int i) {
   return glm::vec2(glm::fract(0.5 + glm::dvec2(i / plastic, i / (plastic * plastic))));
 }
 
-/// Light in space is gathered anew when so many times as many nodes are valued.
+/// Light in space is gathered anew when the number of valued nodes has grown by this factor.
 constexpr double more_nodes = 1.1;
 
 }  // namespace
@@ -207,7 +207,7 @@ void LightMapFrames::forget_unseen() {
   source_.forget();
   if (own <= bound_ / 2) return;
   seen_.resize(statistics.nodes, 0);
-  // The oldest frame whose cells stay: so many nodes take half of the memory.
+  // The oldest frame whose cells stay: the nodes that are kept take half of the memory.
   const auto bytes = static_cast<double>(own);
   const auto staying = static_cast<std::size_t>(static_cast<double>(bound_) / 2 / bytes *
                                                 static_cast<double>(statistics.nodes));
@@ -218,7 +218,7 @@ void LightMapFrames::forget_unseen() {
   const std::uint32_t oldest = std::min(*nth + 1, frame_ - 1);
   std::vector<std::uint8_t> keep(seen_.size());
   for (std::size_t node = 0; node < keep.size(); ++node) keep[node] = seen_[node] >= oldest ? 1 : 0;
-  // A view that takes more than there is keeps what it has; a few nodes are not worth the work.
+  // A view that needs more memory than allowed keeps its nodes; a few nodes are not worth the work.
   const auto stay = std::count(keep.begin(), keep.end(), std::uint8_t{1});
   if (static_cast<std::size_t>(stay) > keep.size() - keep.size() / 4) return;
   const std::vector<std::uint32_t> former = maps_.forget(keep);
@@ -316,7 +316,7 @@ void LightMapFrames::fill(std::span<const MissingSample> samples, double seconds
   std::size_t first = 0;
   double left = seconds;
   do {
-    // So many as the time is enough for: a batch too many is a frame too late.
+    // As many as the time allows: one batch too many makes the frame late.
     const double of_batch = std::min(left, seconds_of_batch);
     const std::size_t count =
         std::isinf(left)
@@ -378,7 +378,7 @@ glm::vec3 LightMapFrames::seen(const View& view, std::uint32_t pixel, const glm:
   const glm::vec3 light =
       irradiance(view, oriented(triangle, side), view.eye + distance * direction, missing);
   if (surface.kind == Surface::plain) return surface.reflects * light;
-  trace::SurfacePoint point;  // its position in textures: all that is asked of it
+  trace::SurfacePoint point;  // its position in textures: no other attribute is read
   point.where = {triangle, u, v};
   point.side = side;
   const scene::Reflectance reflectance = trace::reflectance(scene_, point);

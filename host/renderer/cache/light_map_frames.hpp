@@ -30,8 +30,8 @@ class LightMapFrames {
   LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
 
   /// From now on, frames forget the cells that were seen least recently where light maps take more
-  /// than so many bytes: down to half of it, but none that the latest frame sees; first of all,
-  /// what their source keeps. 0 = no bound.
+  /// than this many bytes: down to half of it, but none that the latest frame sees. What their
+  /// source keeps is released first. 0 = no bound.
   void bound(std::uint64_t bytes) { bound_ = bytes; }
 
   /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Pixels whose nodes

@@ -29,11 +29,11 @@ constexpr double doubted_errors = 3;
 /// surface, as likely as not.
 constexpr double dark_of_sparse = 0.5;
 
-/// Cells all of whose nodes are dark, and have something nearer than so many times their spacing,
+/// Cells all of whose nodes are dark, and have something nearer than this many times their spacing,
 /// are split: the gap between two doors may lie among them.
 constexpr double near_of_spacing = 2;
 
-/// Places of the finest lattice are counted in 32 bits.
+/// Positions of the finest lattice are counted in 32 bits.
 int levels_that_fit(const Charts& charts, int requested) {
   std::uint64_t cells = 1;
   for (std::size_t i = 0; i < charts.size(); ++i) {

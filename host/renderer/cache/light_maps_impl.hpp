@@ -26,7 +26,7 @@ struct LightMaps::Impl {
   /// Takes numbers back.
   void forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
               std::span<const cache::NodeCoordinates> added);
-  /// Lets go of all nodes.
+  /// Releases all nodes.
   void clear();
   /// What the source says of nodes, and where they are.
   std::pair<NodeValues, PrimaryHits> values_of(std::span<const cache::NodeCoordinates> nodes,

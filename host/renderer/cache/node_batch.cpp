@@ -87,8 +87,8 @@ class Lattices {
     return step_of(node, levels_) == coarsest_step(levels_);
   }
 
-  /// Calls visit(coordinates) for those up to so many positions away to both sides, and up and
-  /// down.
+  /// Calls visit(coordinates) for those up to `across` positions away to both sides, and `along`
+  /// positions up and down.
   template <class Visit>
   void around(const NodeCoordinates& node, int across, int along, const Visit& visit) const {
     const Chart& chart = charts_[node.chart];

@@ -55,8 +55,8 @@ glm::vec4 summed(const LightTable& values, std::size_t first, std::size_t last,
   return sum.get();
 }
 
-/// Nodes [begin, end) where each holds all of so many lights: a number known beforehand lets
-/// processors work at several nodes at once.
+/// Nodes [begin, end) where each holds all `lights` lights: a number that is known at compile time
+/// lets processors work on several nodes at once.
 template <std::size_t lights>
 void mix_dense(const LightTable& values, std::size_t begin, std::size_t end,
                std::span<const Four> all_powers, std::vector<glm::vec4>& mixed) {

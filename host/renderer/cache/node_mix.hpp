@@ -17,9 +17,8 @@ namespace photile::cache {
 class NodeMix {
  public:
   /// Brings the mix to these powers: nodes that hold light whose power changed are summed anew, and
-  /// those that are new. Every sum is made whole, in one order: a difference added would leave a
-  /// rounding of its own, and the mix would depend on how sliders came to where they are. Work is
-  /// shared by TBB.
+  /// those that are new. Every sum is made whole, in one order: adding a difference would leave its
+  /// rounding, and the mix would depend on the path that sliders took. Work is shared by TBB.
   ///   values   what the nodes hold, see LightMaps::values
   ///   powers   per layer: power x tint
   void mix(const LightTable& values, std::size_t nodes, std::span<const glm::vec3> powers);

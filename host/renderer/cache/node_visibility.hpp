@@ -20,7 +20,7 @@ bool sees(const RayScene& rays, const trace::SurfaceLocation& from,
           const trace::SurfaceLocation& to);
 
 /// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
-/// the light of where they are, which is none of what the eye sees beside them.
+/// the light of their own position, which does not reach the visible surface beside them.
 class NodeVisibility {
  public:
   /// References are kept.
@@ -30,9 +30,9 @@ class NodeVisibility {
       : rays_(rays), maps_(maps), contrast_(contrast) {}
 
   /// Leaves out the nodes that something hides from the point, or covers and not the point, where
-  /// the nodes differ so much that it matters: their weight becomes 0, and those of the others 1
-  /// together. Returns false where none is left; then the weights are what they it was. Depends on
-  /// the point and its nodes alone. Thread-safe; the caller's thread must flush denormals
+  /// the nodes differ so much that it matters: their weight becomes 0, and the others' weights are
+  /// scaled to sum to 1. Returns false where none is left; then the weights are unchanged. Depends
+  /// on the point and its nodes alone. Thread-safe; the caller's thread must flush denormals
   /// (ray_query.hpp).
   ///   position   of an opaque surface, metres
   ///   bilinear   of LightMaps::find, which found all nodes

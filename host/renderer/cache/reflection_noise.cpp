@@ -17,19 +17,19 @@ namespace {
 /// Hits of a pixel that are compared with each other, at most.
 constexpr std::size_t most_compared = 64;
 
-/// Noise of photons in a pixel's reflections, relative, that is not seen: about what rays of lobes
-/// leave. Less than that of 100 photons, so that what mirrors of metal show is clean.
+/// The relative noise of photons in a pixel's reflections that is not visible: about that which
+/// rays of lobes leave. Less than that of 100 photons, so that what mirrors of metal show is clean.
 constexpr double tolerated_noise = 0.09;
 
-/// Estimates on surface so near to the one that shows them, in widths, would show their blur there,
-/// as on a bright wall behind a sconce of brass.
-/// Where the reflection is less than this part of what is seen, it does not show.
+/// Estimates on surface nearer to the reflecting surface than this, in widths of the estimate,
+/// would show their blur there, as on a bright wall behind a sconce of brass. Where the reflection
+/// is less than this part of what is seen, it does not show.
 constexpr double near_widths = 2, faint_reflection = 0.4;
 
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t pixels_per_task = 64;
 
-/// What the light at a hit counts, if all surfaces receive the same.
+/// The weight of the light at a hit, if all surfaces receive the same.
 double weight_of(const PrimaryHits& hits, std::size_t hit) {
   return luminance(glm::dvec3(hits.throughput[hit] * hits.diffuse_albedo[hit]));
 }
@@ -57,7 +57,7 @@ double relative_variance(const PrimaryHits& hits, std::span<const std::uint32_t>
   return weights > 0 ? variance / (weights * weights) : 0.0;
 }
 
-/// Whether one of these lies so near to a position.
+/// Whether one of these lies within this distance of a position.
 bool any_near(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
               const glm::vec3& position, double near) {
   return std::any_of(chosen.begin(), chosen.end(), [&](std::uint32_t hit) {

@@ -138,7 +138,7 @@ void SecondaryLight::add_point(const IndirectLight& light, std::size_t point, st
   }
 }
 
-/// Finds which ray hits have estimates of their own, and what estimates weigh at each.
+/// Finds which ray hits have separate estimates, and the weight of estimates at each.
 void SecondaryLight::classify(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   const trace::EyeRecord& ray_hits = light.rays.ray_hits;
   light.weight.resize(ray_hits.hits.size());
@@ -170,7 +170,8 @@ bool SecondaryLight::find(std::uint32_t oriented_face, const glm::vec3& position
   return is_open(bilinear) || maps_->visibility.keep_visible(oriented_face, position, bilinear);
 }
 
-/// Whether the middle of a cell sees all of its nodes. All who ask at once find the same.
+/// Whether the middle of a cell sees all of its nodes. Threads that ask at the same time find the
+/// same.
 bool SecondaryLight::is_open(const BilinearWeights& cell) const {
   const std::atomic_ref<std::uint8_t> known(maps_->cells[cell.node[0]]);
   std::uint8_t state = known.load(std::memory_order_relaxed);
@@ -181,8 +182,8 @@ bool SecondaryLight::is_open(const BilinearWeights& cell) const {
   return state == open_cell;
 }
 
-/// Finds the nodes of ray hits that have no estimates of their own. Those that none of their
-/// nodes sees get one.
+/// Finds the nodes of ray hits without a separate estimate. Those that see none of their nodes get
+/// one.
 void SecondaryLight::find_nodes(IndirectLight& light, std::vector<std::uint8_t>& has_own) const {
   light.nodes.resize(has_own.size());
   tbb::parallel_for(std::size_t{0}, light.rays.first.size() - 1, [&](std::size_t point) {

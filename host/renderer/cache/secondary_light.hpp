@@ -27,8 +27,8 @@ struct SecondaryEstimates {
 /// What the rays of a run of points meet, and what counts there.
 struct IndirectLight {
   trace::HemisphereRays rays;
-  std::vector<std::uint32_t> own_of;  ///< of each hit: its own estimate, or none: light maps answer
-  std::vector<BilinearWeights> nodes;  ///< of each hit that they answer
+  std::vector<std::uint32_t> own_of;   ///< of each hit, or none where light maps are read
+  std::vector<BilinearWeights> nodes;  ///< of each hit that reads them
   std::vector<glm::vec3> weight;       ///< of each hit: of irradiance, or of radiance
   SecondaryEstimates own;              ///< of the run
 };
@@ -57,24 +57,24 @@ class ValuedBy : public NodeSource {
 class SecondaryLight {
  public:
   /// References are kept.
-  ///   photons   answers for hits that light maps do not answer, and `of_nodes` for nodes: the same
-  ///             but where several processes have the photons. What a point gets does not depend on
-  ///             the points beside it.
+  ///   photons   the light at hits that do not read light maps, and `of_nodes` that for nodes: the
+  ///             same, unless several processes have the photons. What a point gets does not depend
+  ///             on the points beside it.
   ///   maps      of one level: a cell is known by its first node
   SecondaryLight(const RayScene& rays, light::LightAtPoints& photons,
                  light::LightAtPoints& of_nodes, const LightMapParameters& maps)
       : rays_(rays), photons_(photons), nodes_(of_nodes), parameters_(maps) {}
 
   /// Finds an estimate for each ray hit.
-  /// Errors: as DeviceEstimators; Interrupted.
+  /// Errors: as estimate::PhotonEstimate; Interrupted.
   IndirectLight query(trace::HemisphereRays rays, const Progress& progress);
 
-  /// Adds what the rays of a point of the run see, its batches having so many rays each.
+  /// Adds what the rays of a point of the run see; each of its batches has this many rays.
   void add_point(const IndirectLight& light, std::size_t point, std::uint32_t batches,
                  std::uint32_t rays_per_batch, BatchSums& sums) const;
 
   /// The nodes around hits, and what nodes hold, in the form of estimates: node n is hit n. They
-  /// are valued where none did so yet. Errors: as DeviceEstimators; Interrupted.
+  /// are valued where they are not yet. Errors: as estimate::PhotonEstimate; Interrupted.
   std::vector<BilinearWeights> nodes_around(const PrimaryHits& hits, const Progress& progress);
   const LightTable& values() const { return maps_->maps.values(); }
 
@@ -82,8 +82,8 @@ class SecondaryLight {
   /// alone.
   auto* processes() const { return parameters_.processes; }
 
-  /// 1 for each oriented face of a slat: a chart narrower than so many metres, before which other
-  /// surface lies nearer than it is wide. Found once, for the first width.
+  /// 1 for each oriented face of a slat: a chart narrower than `width` metres, with other surface
+  /// in front of it at a smaller distance than its width. Found once, for the first width.
   std::span<const std::uint8_t> slats(double width);
 
   /// Metres, from node to node: as wide as the estimates that value them.

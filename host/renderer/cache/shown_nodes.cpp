@@ -12,10 +12,10 @@
 namespace photile::cache {
 namespace {
 
-/// So many times as bright as all other corners of a cell one of them may be.
+/// A corner of a cell may be this many times as bright as all others.
 constexpr double most_over_others = 3;
 
-/// What a node counts at least, so that some corner of each cell counts.
+/// The least weight of a node, so that some corner of each cell counts.
 constexpr float least_weight = 1e-3f;
 
 double luminance_of(const glm::vec4& light) { return luminance(glm::dvec3(light)); }

@@ -13,13 +13,13 @@
 namespace photile::cache {
 
 /// The light of all lights together at the nodes, at their powers, and how much each node counts
-/// between others. Where nodes are lacking it is softened, so that nobody sees where:
+/// between others. Where nodes are lacking it is softened, so that this does not show:
 ///   - Nodes on the border of a larger cell show the mean which that cell has at their position,
 ///     whatever they hold: otherwise there would be a step along that border.
 ///   - A corner of a cell counts less where its surroundings are nearer than the next corner: it
-///     may stand behind a door, and tells little of the surface before that.
-///   - No corner of a cell is more than so many times as bright as all others: nodes beside lights
-///     would show as bright squares.
+///     may lie behind a door, and says little about the surface in front of that.
+///   - No corner of a cell is brighter than all others by more than a given factor: nodes beside
+///     lights would show as bright squares.
 class ShownNodes {
  public:
   /// Brings the light up to date with what the maps hold. Work is shared by TBB.

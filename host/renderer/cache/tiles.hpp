@@ -31,7 +31,7 @@ struct Tile {
   }
 };
 
-/// A cell that nobody compared yet.
+/// A cell that has not been compared yet.
 struct MissingCell {
   std::uint32_t tile;  ///< or root, where the root has no tile
   std::uint32_t cell;  ///< y * 8 + x

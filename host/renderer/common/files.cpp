@@ -106,7 +106,7 @@ int create_locked(const fs::path& file) {
   for (;;) {
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0) return -1;
-    ::flock(descriptor, LOCK_EX);  // without locks of the file system nobody removes it either
+    ::flock(descriptor, LOCK_EX);  // without locks in the file system no run removes it either
     struct stat status {};
     if (::fstat(descriptor, &status) != 0 || status.st_nlink > 0) return descriptor;
     ::close(descriptor);  // another run has found it before it was locked

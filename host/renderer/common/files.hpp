@@ -12,8 +12,8 @@
 
 namespace photile {
 
-/// What keeps it from being one, with the remedy: "no such file; check the path", "is not a regular
-/// file; name one". "" where nothing does.
+/// What keeps it from being read, with the remedy: "no such file; check the path", "is not a
+/// regular file; name one". "" where nothing does.
 std::string why_no_regular_file(const std::filesystem::path& file);
 
 /// The whole content. Errors: InputError naming the file where it is missing, unreadable, no
@@ -90,8 +90,9 @@ class RunFiles {
   RunFiles& operator=(const RunFiles&) = delete;
 };
 
-/// For whoever reads a file that the user named, or that such a file names. One that does not exist
-/// is not noted. Errors: UsageError naming both where it is an output of the run.
+/// To be called by code that reads a file which the user named, or which such a file names. One
+/// that does not exist is not noted. Errors: UsageError naming both where it is an output of the
+/// run.
 void note_input(const std::filesystem::path& file);
 
 /// For each file that the run is to write, as early as its name is known.

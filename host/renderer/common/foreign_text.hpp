@@ -1,5 +1,5 @@
 // Text of others, such as names in scenes and of files, made fit for what it is written into: here
-// is all that photile knows of that, one function for each kind of output.
+// are all such conversions of photile, one function for each kind of output.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,16 @@ std::size_t utf8_sequence_length(std::string_view text);
 /// Bytes that are no UTF-8 become U+FFFD.
 std::string utf8_of(std::string_view text);
 
-/// UTF-8 without what commands a terminal: control characters but tabs and line ends become '?'.
+/// UTF-8 without commands for a terminal: control characters except tabs and line ends become '?'.
 std::string terminal_text(std::string_view text);
 
-/// The same in one line: control characters are blanks, but for line ends at its end, which go.
+/// The same in one line: control characters become blanks, and line ends at its end are removed.
 std::string one_line(std::string_view text);
 
 /// Bytes of a name, or of other text of a file, that a message quotes.
 inline constexpr std::size_t longest_quote = 80;
 
-/// At most so many bytes: longer text is cut between characters, and ends in "...".
+/// Text of at most this many bytes: longer text is cut between characters, and ends in "...".
 std::string shortened(std::string_view text, std::size_t most);
 
 /// Content of XML and HTML, or an attribute's value in double quotes, in UTF-8. Characters that XML

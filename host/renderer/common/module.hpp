@@ -1,5 +1,5 @@
-// Shared objects that a process loads when it first needs them: those that need none start sooner
-// and take less memory.
+// Shared objects that a process loads when it first needs them: processes that need none start
+// faster and take less memory.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@ namespace photile {
 
 class Module {
  public:
-  /// Who sees what the module brings: itself, or also what it loads in its turn.
+  /// Where the symbols of the module are visible: in itself, or also in what it loads in turn.
   enum class Symbols { own, global };
 
   /// `file`: a path, or the name of one of photile's modules, which the run paths of the command,

@@ -1,5 +1,5 @@
-// What others need of the system for photile and end the process for want of: threads, which TBB
-// and PoCL make, and addresses, which PoCL's compiler takes.
+// Resources without which libraries end the process: threads, which TBB and PoCL make, and
+// addresses, which PoCL's compiler takes.
 #pragma once
 
 #include <array>

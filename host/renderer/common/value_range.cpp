@@ -81,7 +81,7 @@ void check_value(std::string_view name, const SettingValue& value, const ValueRa
 }
 
 std::string out_of_range(std::string_view found, const ValueRange& range) {
-  // Else 1e300 would be called no number greater than 0.
+  // Otherwise the message would say that 1e300 is not a number greater than 0.
   const std::string bounds =
       std::holds_alternative<PositiveNumbers>(range)
           ? fmt::format(", from {:.2g} to {:.2g}", least_positive, most_positive)

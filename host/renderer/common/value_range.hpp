@@ -23,7 +23,7 @@ struct PositiveNumbers {};
 struct Words {
   std::vector<std::string_view> words;
 };
-/// Any text; whoever takes it says what it cannot be.
+/// Any text; the code that reads it checks it.
 struct Text {
   std::string_view form;  ///< "NAME or INDEX"
 };
@@ -48,11 +48,11 @@ void check_value(std::string_view name, const SettingValue& value, const ValueRa
 double shortest_double(float value);
 inline double shortest_double(double value) { return value; }
 
-/// A field of parameters that is no word.
+/// A field of parameters that is not a word.
 template <class T>
 SettingValue setting_value(const T& field) {
   if constexpr (std::integral<T>) {
-    // What is below zero is in no range of whole numbers, as a number that is none.
+    // A negative number becomes one that is in no range of whole numbers.
     if (field < T{0}) return static_cast<double>(field);
     return static_cast<std::uint64_t>(field);
   } else {

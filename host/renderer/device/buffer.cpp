@@ -45,8 +45,8 @@ constexpr std::size_t least_bytes = 4 * huge_page;
 
 /// Asks the operating system to back a new buffer of a CPU device with large pages: a query reads
 /// short ranges all over a map, and with pages of 4 KiB waits for the translation of their
-/// addresses. For large buffers; a wish that may go unheard. Call it before the buffer is
-/// first written.
+/// addresses. For large buffers; the system may ignore it. Call it before the buffer is first
+/// written.
 void prefer_huge_pages(cl_command_queue queue, cl_mem memory, std::size_t bytes) {
   if (bytes < least_bytes) return;
   // On a CPU a mapped buffer is the buffer itself; where it is a copy, the advice is merely
@@ -61,8 +61,8 @@ void prefer_huge_pages(cl_command_queue queue, cl_mem memory, std::size_t bytes)
   clEnqueueUnmapMemObject(queue, memory, mapped, 0, nullptr, nullptr);
 }
 
-/// PoCL ends the process where it gets no addresses for a command, or for a buffer that it
-/// allocates when it is first used.
+/// PoCL ends the process when it gets no addresses for a command, or for a buffer that it allocates
+/// when it is first used.
 constexpr std::uint64_t addresses_for_commands = std::uint64_t{64} << 20;
 
 /// Whether the addresses of the process, of which the host takes more and more, suffice for a
@@ -82,7 +82,7 @@ cl_mem_flags flags_of_buffers() {
 /// A runtime fills a buffer from one core, and the system clears its memory on the way.
 constexpr std::size_t least_bytes_for_all_cores = std::size_t{1} << 20;
 
-/// A block of elements to fill so many bytes with, one block after the other.
+/// A block of elements to fill this many bytes with, one block after the other.
 std::vector<unsigned char> repeated(const void* element, std::size_t element_bytes,
                                     std::size_t bytes) {
   constexpr std::size_t block_bytes = std::size_t{1} << 18;

@@ -91,7 +91,7 @@ void warn(const std::string& line) {
 
 namespace {
 
-/// All kernels together: whichever changes, the test is to be made again.
+/// All kernels together: when any of them changes, the test has to be run again.
 const std::string& all_kernels() {
   static const std::string text = [] {
     std::vector<EmbeddedFile> files(embedded_files().begin(), embedded_files().end());

@@ -128,7 +128,7 @@ std::vector<std::unique_ptr<Context>> Context::open_all(const DeviceOptions& opt
 
 Context::~Context() {
   // Kernels that still run use the programs and PoCL's files. An error has been reported by then,
-  // or nobody waits for the result.
+  // or the result is not needed.
   clFinish(impl_->queue.get());
 }
 

@@ -30,7 +30,7 @@ int rank(const DeviceInfo& device) {
   return device.type == DeviceType::cpu ? 2 : 3;
 }
 
-/// The rank of a device that nobody has asked for.
+/// The rank of a device that was not asked for.
 int default_rank(const DeviceInfo& device) {
   const bool untested = device.type == DeviceType::gpu && device.test_result != passed;
   return untested ? 3 : rank(device);
@@ -91,7 +91,7 @@ struct Partition {
   std::vector<std::uint32_t> compute_units;  ///< "=A+B"
 };
 
-/// Cuts the partition off the end of `name`. Device names may hold a '/' or '=' of their own: only
+/// Cuts the partition off the end of `name`. Device names themselves may hold a '/' or '=': only
 /// numbers after it make it a partition.
 Partition take_partition(std::string& name) {
   const std::size_t at = name.find_last_of("/=");

@@ -21,9 +21,9 @@ namespace {
 /// one step must not wrap.
 constexpr std::size_t max_work_items = std::size_t{1} << 31;
 
-/// Below so many work-items PoCL 3.1 compiles a version of the kernel for small grids alone, and
-/// again for a larger one (docs/runtimes.md): work-items that have nothing to do cost microseconds,
-/// a version 60 ms.
+/// For fewer work-items than this PoCL 3.1 compiles a separate version of the kernel for small
+/// grids, and another for larger ones (docs/runtimes.md): idle work-items cost microseconds, a
+/// version 60 ms.
 constexpr std::size_t least_unspecialised = std::size_t{1} << 16;
 
 /// Held while PoCL compiles for one of several devices: two threads of a process that compile the

@@ -24,7 +24,7 @@ namespace {
 constexpr std::array<std::string_view, 4> without_effect{
     "POCL_CACHE_DIR=", "POCL_DEBUG", "POCL_MAX_PTHREAD_COUNT=", "POCL_CPU_MAX_CU_COUNT="};
 
-/// The entries of the environment that begin like this, sorted, but for those without effect.
+/// The entries of the environment that begin like this, sorted, except those without effect.
 std::set<std::string> variables_of(std::string_view runtime) {
   std::set<std::string> entries;
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {

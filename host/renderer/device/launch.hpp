@@ -75,7 +75,7 @@ class LaunchPace {
   explicit LaunchPace(Context& context)
       : context_(context), cuts_(context.info().type != DeviceType::cpu) {}
 
-  /// Calls launch(first, count) for [0, total), part by part; parts are multiples of `unit` but for
+  /// Calls launch(first, count) for [0, total), part by part; parts are multiples of `unit`, except
   /// the last.
   template <class Launch>
   void run(std::uint32_t total, std::uint32_t unit, Launch launch) {

@@ -3,9 +3,9 @@
 //
 // PoCL (3.1) ends the process on a truncated shared object, a damaged program.bc or a folder that
 // it cannot write, and two processes may be writing one folder at a time, so that no check of a
-// shared folder holds. Every process therefore gets a fresh folder of its own, into which only
-// verified files are put (PoclCache), and which goes when the process ends. A killed process's
-// folder goes when the next one starts.
+// shared folder holds. Every process therefore gets its own new folder, into which only verified
+// files are put (PoclCache), and which is removed when the process ends. A killed process's folder
+// is removed when the next one starts.
 #pragma once
 
 #include <filesystem>

@@ -134,8 +134,8 @@ namespace {
 constexpr std::array tested_neighbours = {50, 1};
 constexpr estimate::PlaneSampleSize size{.photons = 20'000, .hits_per_side = 32};
 
-/// Distances that agree but for rounding, relative: which of two such photons is the nearer is
-/// open.
+/// The relative difference of distances that agree within rounding: either of two such photons may
+/// be the nearer one.
 constexpr double tie = 1e-5;
 
 /// Roundings of a sum of 50 numbers in single precision and of a division, by far.

@@ -54,7 +54,7 @@ class EstimateBuffers final : private device::Reclaimer {
   EstimateBuffers(const EstimateBuffers&) = delete;
   EstimateBuffers& operator=(const EstimateBuffers&) = delete;
 
-  /// Makes room for the estimates of so many hits, all zero.
+  /// Makes room for the estimates of this many hits, all zero.
   void begin(std::uint32_t hits);
   /// What the kernels left becomes the estimates of the hits [first, first + hits) in `result`,
   /// which has room for them; with many lights it is appended. Waits for the kernels.

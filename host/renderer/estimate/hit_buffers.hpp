@@ -43,7 +43,9 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 /// The hits [first, first + maps.size()).
 ///   maps      of those hits
 ///   normals   per oriented face, if a map is filtered by normals (maps::MapStore::normals); or
-///   empty surface   where areas are clipped, else null needs     of which `glossy` asks for lobes
+///             empty
+///   surface   where areas are clipped, else null
+///   needs     of which `glossy` asks for lobes
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
                        const SurfaceBuffers* surface, const SceneNeeds& needs);
@@ -54,9 +56,9 @@ struct HitBatchNeeds {
   std::uint64_t bytes_per_hit;          ///< in all together
 };
 
-/// Hits of a batch, at least one: so many that no buffer is larger than `largest_buffer` or than
-/// what 32 bits address, all together take a quarter of `memory` (the rest is for photon maps), and
-/// not more than fill a device comfortably.
+/// Hits of a batch, at least one: as many as keep each buffer within `largest_buffer` and within
+/// what 32 bits address, all buffers within a quarter of `memory` (the rest is for photon maps),
+/// and no more than it takes to occupy a device.
 std::size_t plan_hit_batch(const HitBatchNeeds& needs, std::uint64_t largest_buffer,
                            std::uint64_t memory);
 

@@ -15,7 +15,7 @@ namespace photile::estimate {
 
 namespace {
 
-/// What one of several devices sees of the progress: only the first tells, all are stopped.
+/// The progress as one of several devices sees it: only the first reports, all are stopped.
 class SharedProgress : public Progress {
  public:
   SharedProgress(Progress& progress, bool tells, const std::atomic<bool>& failed)
@@ -121,7 +121,7 @@ std::vector<std::size_t> LoadBalance::cuts(std::size_t count) const {
   std::vector<double> weights;
   double sum = 0;
   for (const Work& work : work_) sum += weights.emplace_back(throughput(work));
-  // Until every device has been measured, and if a clock stood still, all count the same.
+  // Until every device has been measured, and where a clock does not advance, all count the same.
   const bool even = !std::all_of(weights.begin(), weights.end(), [](double w) { return w > 0; });
   std::vector<std::size_t> cuts{0};
   double below = 0;

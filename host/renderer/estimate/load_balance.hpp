@@ -11,10 +11,11 @@
 
 namespace photile::estimate {
 
-/// Calls work(i, progress) for every device i, each on a thread of its own, and returns once all
-/// have ended. The first device tells `progress` of its stages, all of them hear of a wish to stop.
-/// Where one fails, the others are asked to stop, and the error is thrown once they have: that of
-/// the first of the devices that failed by themselves, a DeviceError with its device's name.
+/// Calls work(i, progress) for every device i, each on its own thread, and returns once all have
+/// ended. The first device reports its stages to `progress`; all of them are asked to stop when the
+/// user asks for it. Where one fails, the others are asked to stop, and the error is thrown once
+/// they have: that of the first of the devices that failed by themselves, a DeviceError with its
+/// device's name.
 void for_each_device(std::span<Device> devices, Progress& progress,
                      const std::function<void(std::size_t, Progress&)>& work);
 

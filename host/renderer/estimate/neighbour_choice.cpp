@@ -13,11 +13,11 @@ namespace {
 /// Levels differ by this factor in k.
 constexpr int level_factor = 4;
 
-/// Differences beyond so many standard deviations of their noise are bias. More would let blur
-/// through, fewer noise.
+/// Differences of more than this many standard deviations of their noise are bias. A larger number
+/// would let blur through, a smaller one noise.
 constexpr double tolerated_deviations = 3.0;
 
-/// The part of an Estimates that belongs to one hit.
+/// The part of a LightTable that belongs to one hit.
 struct Row {
   std::size_t first, count;
 };

@@ -1,4 +1,4 @@
-// A number of neighbours of its own for each hit: where the error of its estimate is least.
+// A separate number of neighbours for each hit: that for which the error of its estimate is least.
 #pragma once
 
 #include <span>

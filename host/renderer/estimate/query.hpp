@@ -80,7 +80,7 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// What kernels get to know of a page's hits.
+/// What kernels are given about a page's hits.
 inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
                              const QueryParameters& parameters) {
   return {.first_hit = hits.first,
@@ -94,7 +94,7 @@ inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
           .least_cosine = static_cast<float>(store.cos_angle - cosine_slack)};
 }
 
-/// Sets the arguments that every kernel takes, but for the query itself.
+/// Sets the arguments that every kernel takes, except the query itself.
 inline void set_page_arguments(device::Launch& launch, const PageHits& hits) {
   launch.set("hits", hits.hits.hits)
       .set("hit_surfaces", hits.hits.surfaces)

@@ -86,8 +86,8 @@ int rounded_up(int value, int multiple) { return (value + multiple - 1) / multip
 
 constexpr int least_capacity = 256;
 
-/// Work-items of a group where it may hold several that estimate hits of their own, or several
-/// teams of lanes with shuffles.
+/// Work-items of a group where it may hold several that each estimate a hit, or several sets of
+/// lanes with shuffles.
 constexpr std::size_t usual_group = 64;
 
 /// Local memory that a group of every device with shuffles may have.

@@ -59,18 +59,18 @@ struct Specialisation {
   LightSums sums;
 
   device::Defines defines() const;
-  /// Work-items that estimate so many hits.
+  /// Work-items that estimate `hits` hits.
   std::size_t work_items(std::uint32_t hits) const;
-  /// Work-items of nearest.cl for so many hits.
+  /// Work-items of nearest.cl for `hits` hits.
   std::uint32_t nearest_items(std::uint32_t hits) const;
   /// Bytes of the arrays that one work-item keeps in private memory.
   std::size_t private_bytes() const;
-  /// Bytes of local memory of a group: kernels/estimate/lane_path.clh. 0 but for `lanes`.
+  /// Bytes of local memory of a group: kernels/estimate/lane_path.clh. 0 except for `lanes`.
   std::size_t local_bytes() const;
 };
 
-/// What a device other than a CPU keeps in memory for a work-item at most: a work-item of AMD's may
-/// have so much.
+/// The most memory that a device other than a CPU keeps for a work-item: the limit of AMD's
+/// work-items.
 inline constexpr std::size_t max_private_bytes = 16u << 10;
 
 /// The capacities hold the candidates that k photons usually need. Where the

@@ -1,4 +1,4 @@
-// Light of photons that stand behind something is no light of a hit.
+// Excludes the light of photons that something hides from a hit.
 #pragma once
 
 #include <cstddef>
@@ -33,10 +33,10 @@ class VisiblePhotons {
   std::vector<std::uint32_t> beside_something(const PrimaryHits& hits, const LightTable& estimates,
                                               double radius) const;
 
-  /// Where a hit sees so few of a light's photons that they say less than a quarter of the light,
-  /// on the area that it sees, replaces the light's estimate by what they say, and where more than
-  /// a tenth of the light lies behind the surface itself, as in the cavity above a ceiling. Else
-  /// the estimate stands: it has less noise, and knows the area exactly.
+  /// Where the photons of a light that a hit sees, on the area that it sees, give less than a
+  /// quarter of the light, replaces the light's estimate by that of these photons, and where more
+  /// than a tenth of the light lies behind the surface itself, as in the cavity above a ceiling.
+  /// Else the estimate stands: it has less noise, and knows the area exactly.
   ///   chosen   of the hits
   ///   near     of the chosen hits
   void leave_out_hidden(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
@@ -64,7 +64,7 @@ class VisiblePhotons {
   /// Sums the photons of the lights that are in doubt, all and those that are seen.
   ///   full   the farthest photon tells the radius
   void sum_seen(const Disc& disc, bool full, std::vector<Layer>& layers) const;
-  /// The surface of about this normal, at most so many metres above or below a point.
+  /// The surface of about this normal, at most `within` metres above or below a point.
   std::optional<trace::SurfaceLocation> surface_at(const trace::SurfaceLocation& point,
                                                    float within) const;
   /// What the kernel integrates to over the surface of a disc that is seen from its middle, m2.

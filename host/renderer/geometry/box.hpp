@@ -54,8 +54,8 @@ inline float squared_reach(double radius) {
   return static_cast<float>(radius * radius * (1 + 1e-5));
 }
 
-/// Whether they share a point. Without branches: most boxes are apart, along which axis nobody
-/// knows.
+/// Whether they share a point. Without branches: most boxes are apart, along an axis that cannot be
+/// predicted.
 inline bool overlap(const Box& a, const Box& b) {
   const auto overlap_along = [&](int axis) {
     return static_cast<int>(a.lower[axis] <= b.upper[axis]) &

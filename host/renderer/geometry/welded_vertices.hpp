@@ -12,7 +12,7 @@
 namespace photile::geometry {
 
 /// Per vertex the smallest index of those at the same position. Scenes of load_scene and
-/// SceneBuilder have one each; those that somebody fills by hand may have several.
+/// SceneBuilder have one vertex at each position; those that are filled by hand may have several.
 inline std::vector<std::uint32_t> welded_vertices(const std::vector<glm::vec3>& vertices) {
   std::vector<std::uint32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0u);

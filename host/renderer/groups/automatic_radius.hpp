@@ -10,7 +10,7 @@
 
 namespace photile::groups {
 
-/// Photons that distances are found among, at most.
+/// The most photons among which distances are found.
 inline constexpr std::size_t max_subsample = 1u << 18;
 
 /// Index of the i-th of `count` samples spread over `size` elements, each in the middle of its

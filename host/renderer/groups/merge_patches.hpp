@@ -67,8 +67,8 @@ void rename_maps(std::vector<Offset>& offsets, std::vector<std::uint32_t>& maps,
   maps.shrink_to_fit();
 }
 
-/// From one photon of a sample to the next, of so many: about 32,768 are left. The first is half a
-/// step from the first of all.
+/// The step from one photon of a sample to the next among `photons` photons, so that about 32,768
+/// are left. The first of the sample is half a step from the first of all.
 std::uint64_t sample_step(std::uint64_t photons);
 
 /// Every n-th photon, by sample_step. It enters the maps of its group whose

@@ -12,9 +12,9 @@
 namespace photile::light {
 
 /// Tells the irradiance and the reflected radiance of every light at points of opaque surfaces.
-/// The photon estimate answers by photons, rays that gather by asking another where they end, a
-/// cache by samples that another valued, and an exchange by asking the process that has the
-/// photons. PassLight says which of them a rendering is made of.
+/// The photon estimate answers from photons; rays that gather query another source where they end;
+/// a cache interpolates samples that another source valued; and an exchange asks the process that
+/// has the photons. PassLight chooses which of them a rendering uses.
 class LightAtPoints {
  public:
   virtual ~LightAtPoints() = default;

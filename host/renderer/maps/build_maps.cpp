@@ -127,7 +127,7 @@ void set_map_sizes(std::vector<std::uint32_t> counts, PhotonMapStatistics& stati
 }
 
 /// Builds the pages of `queue` into the store.
-///   release   what lets go of photons, for the last page; null: they stay
+///   release what releases the photons, for the last page; null: they stay
 void build_pages(MapStore& store, const Build& build, const CountedMaps& counted, PageQueue& queue,
                  const PhotonRelease* release, Progress& progress) {
   while (const auto range = queue.next()) {

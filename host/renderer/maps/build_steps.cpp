@@ -84,7 +84,7 @@ std::uint32_t total_cells(Context& context, const Buffer<std::uint32_t>& cells_o
   return static_cast<std::uint32_t>(total);
 }
 
-/// Grids of the page's maps, but for their first cells. Returns cells per map, and a zero.
+/// Grids of the page's maps, without their first cells. Returns cells per map, and a zero.
 Buffer<std::uint32_t> size_grids(const Build& build, MapPage& page) {
   const std::uint32_t maps = page.last_map - page.first_map;
   page.grids = build.context.allocate<PhotileGrid>(maps, "photon map grids");

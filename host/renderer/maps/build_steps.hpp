@@ -66,17 +66,17 @@ void fill_cells(const Build& build, MapPage& page);
 /// program that holds grid/sort_cells.cl.
 void sort_cells(const device::KernelSet& kernels, const MapPage& page);
 
-/// What lets go of photons on the host, once their one page has let go of them.
+/// Releases photons on the host, once their one page has released them.
 struct PhotonRelease {
   std::function<void()> lists;    ///< of candidate maps
-  std::function<void()> records;  ///< all that records copy, but for the photons' triangles
+  std::function<void()> records;  ///< all that records copy, except the photons' triangles
 };
 
 /// How records are gathered.
 struct RecordCopying {
   /// 3 floats per oriented face, where the records keep normals; else null.
   const device::Buffer<float>* normals = nullptr;
-  /// Is called as soon as no kernel reads what it lets go of, where photons are one page; null:
+  /// Is called as soon as no kernel reads what it releases, where photons are one page; null:
   /// photons are needed for further pages of maps.
   const PhotonRelease* release = nullptr;
   device::MemoryPages memory = device::MemoryPages::large;

@@ -11,7 +11,7 @@
 
 namespace photile::maps {
 
-/// What is wrong with photons on a scene of so many oriented faces; "" = nothing.
+/// What is wrong with photons on a scene of `oriented_faces` oriented faces; "" = nothing.
 std::string problem_of(const Photons& photons, const SceneNeeds& needs,
                        std::uint64_t oriented_faces);
 

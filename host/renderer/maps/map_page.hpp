@@ -59,12 +59,12 @@ struct MapPage : PageExtent, PageBuffers {};
 /// Cells of a page at most, and photons: kernels step over them in 32 bits.
 inline constexpr std::uint64_t max_items = std::uint64_t{1} << 31;
 
-/// Photon records are read in vectors of up to so many floats, which may reach this far beyond the
-/// last.
+/// The widest vector, in floats, by which photon records are read, and which may reach this far
+/// beyond the last.
 inline constexpr std::uint32_t record_padding = PHOTILE_MOST_LANES;
 inline constexpr std::uint32_t most_record_padding = 2 * record_padding - 1;
 
-/// Distance of the planes of so many records: a multiple of the widest vector, so that aligned
+/// Distance of the planes of `records` records: a multiple of the widest vector, so that aligned
 /// vectors of any plane are one cache line.
 constexpr std::uint32_t record_stride(std::uint32_t records) {
   return (records + most_record_padding) / record_padding * record_padding;
@@ -73,7 +73,7 @@ constexpr std::uint32_t record_stride(std::uint32_t records) {
 /// Bytes of a record's light: 0 with one light, 1 up to 256, else 2.
 std::uint32_t bytes_per_light(const SceneNeeds& needs);
 
-/// Bytes of a record in all of its buffers, but for the normals of normal-filtered maps:
+/// Bytes of a record in all of its buffers, without the normals of normal-filtered maps:
 /// docs/kernels.md, "Records".
 std::uint32_t bytes_per_record(const SceneNeeds& needs);
 

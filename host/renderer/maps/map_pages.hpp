@@ -37,7 +37,7 @@ struct PageLimits {
 };
 
 /// Splits the maps into pages; maps without photons at either end of a page are left out. A map
-/// that does not keep to the limits has a page of its own. `map_count`: photons per map.
+/// that exceeds the limits has its own page. `map_count`: photons per map.
 std::vector<MapRange> plan_map_pages(std::span<const std::uint32_t> map_count,
                                      const PageLimits& limits);
 

@@ -43,8 +43,8 @@ struct PhotonRange {
   }
 };
 
-/// Splits photons so that no buffer of a page is larger than `max_bytes`, but for the lists of a
-/// oriented face that alone are larger. Errors: DeviceError when those are beyond 32 bits.
+/// Splits photons so that no buffer of a page is larger than `max_bytes`, except by the lists of
+/// one oriented face that alone are larger. Errors: DeviceError when those are beyond 32 bits.
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
@@ -52,7 +52,7 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
 PhotonPage upload_photon_records(device::Context& context, const Photons& photons,
                                  PhotonRange range);
 
-/// Uploads the lists of candidate maps as well, which must stay, too, but for `inserted`.
+/// Uploads the lists of candidate maps as well, which must stay, too; `inserted` is not uploaded.
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range);
 
@@ -104,8 +104,8 @@ class PhotonPages final : private Residents {
 
   /// Whether one page holds all photons.
   bool single() const { return ranges_.size() == 1; }
-  /// Let go of parts of the one page: of lists and `inserted`, of all else but oriented_face. It
-  /// cannot be uploaded again afterwards.
+  /// Release parts of the only page: lists and `inserted`; all else but oriented_face. It cannot be
+  /// uploaded again afterwards.
   void release_lists();
   void release_records();
   bool released() const { return released_; }

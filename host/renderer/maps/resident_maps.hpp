@@ -62,7 +62,7 @@ class ResidentMaps final : private Residents {
   const MapPage& use(std::size_t page);
   using Residents::release;
 
-  /// Lets go of the page in use at the end of a block.
+  /// Releases the page in use at the end of a block.
   struct Release {
     ResidentMaps& pages;
     ~Release() { pages.release(); }

@@ -22,7 +22,7 @@ namespace photile {
 class Exchange : public light::LightAtPoints {
  public:
   enum class Points {
-    own,    ///< each process asks for points of its own, or for none
+    own,    ///< each process asks for its own points, or for none
     common  ///< all ask for the same points: each estimates those of its maps, and all have all
   };
 

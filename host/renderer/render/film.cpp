@@ -50,7 +50,7 @@ void add_row(const LightLayers::Row& row, std::size_t x, PixelSums& sums) {
   }
 }
 
-/// What a hit counts in the illuminance of its pixel.
+/// The weight of a hit in the illuminance of its pixel.
 float illuminance_weight(const PrimaryHits& hits, std::size_t hit, float sample_weight) {
   return hits.fraction.empty() ? sample_weight : sample_weight * hits.fraction[hit];
 }
@@ -169,8 +169,8 @@ struct Scatter {
     sum += value;
     squares += value * value;
   }
-  /// Variance of `sum` over so many runs, those that were not added being black: of independent
-  /// runs, less what comes of their being strata of one sequence.
+  /// Variance of `sum` over `runs` runs, where those that were not added are black: that of
+  /// independent runs, less the part that is due to their being strata of one sequence.
   glm::dvec4 variance(double runs) const {
     const glm::dvec4 independent =
         glm::max(squares - sum * sum / runs, glm::dvec4(0.0)) * (runs / (runs - 1));

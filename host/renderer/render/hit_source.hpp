@@ -25,7 +25,7 @@ class HitSource {
   /// Whether automatic light maps are read: hits lie so close that many share nodes.
   virtual bool dense() const { return false; }
 
-  /// A film of standard errors, for those who ask for them where nodes of light maps gather.
+  /// A film of standard errors, where they are requested and nodes of light maps gather.
   virtual LightLayers* errors() const { return nullptr; }
 };
 

@@ -17,7 +17,7 @@ namespace photile {
 namespace {
 
 /// Whether a map may hold photons of different normals that agree: queries then compare normals, by
-/// kernels of their own. Among many triangles some always do.
+/// separate kernels. Among many triangles there are always some such.
 bool may_mix_normals(const Scene& scene, double angle_degrees) {
   constexpr std::size_t many = 256;
   constexpr double alike = 1 - 1e-4;

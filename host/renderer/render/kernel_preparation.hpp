@@ -11,15 +11,15 @@
 
 namespace photile {
 
-/// Has the kernels of a rendering compiled on a thread of its own. A runtime may compile a kernel
-/// within its first launch, so a sample with the needs of the scene is rendered; what a device
-/// keeps of it are the kernels.
+/// Compiles the kernels of a rendering on its own thread. A runtime may compile a kernel within its
+/// first launch, so a sample with the needs of the scene is rendered; only the compiled kernels are
+/// kept.
 class KernelPreparation {
  public:
-  /// Begins with those devices that have not run any kernel yet. Until wait() returns, nobody else
-  /// may use the devices. References are kept.
+  /// Begins with those devices that have not run any kernel yet. Until wait() returns, no other
+  /// code may use the devices. References are kept.
   ///   lists      of neighbours will be asked for, beside estimates
-  ///   caustics   will have estimates of their own
+  ///   caustics will have separate estimates
   KernelPreparation(const Scene& scene, std::span<Device> devices,
                     const RenderParameters& parameters, bool lists, bool caustics);
 
@@ -31,9 +31,9 @@ class KernelPreparation {
   std::future<void> done_;
 };
 
-/// Has the kernels compiled that scenes of many triangles want in pictures of the qualities draft
-/// and good: of matt and glossy surfaces, with and without normal maps, and of up to
-/// max_dense_lights layers. Where kernels are kept between runs, they are there from now on.
+/// Compiles the kernels that scenes of many triangles need in pictures of the qualities draft and
+/// good: of matt and glossy surfaces, with and without normal maps, and of up to max_dense_lights
+/// layers. Where kernels are kept between runs, they are there from now on.
 void compile_usual_kernels(Device& device, Progress& progress);
 
 }  // namespace photile

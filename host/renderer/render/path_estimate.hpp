@@ -15,8 +15,8 @@
 
 namespace photile {
 
-/// A number of its own for each hit of a batch of rows: pixel x samples + sample, below 2^48. Does
-/// not depend on how the picture is split into batches, for the order of a pixel's own hits does
+/// A unique number for each hit of a batch of rows: pixel x samples + sample, below 2^48. It does
+/// not depend on how the picture is split into batches, because the order of a pixel's hits does
 /// not.
 std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHitParameters& film,
                                         int first_row, int last_row);

@@ -148,7 +148,7 @@ PassPhotons PhotonPasses::waiting(TracedPhotons& prepared, const KeepPhotons* ke
   };
   const auto waiting = std::make_shared<Waiting>(Waiting{std::move(prepared), std::nullopt});
   const auto built = [this, waiting]() -> Maps& {
-    // Nobody may stop this: photons that are released on the way would be lost.
+    // This must not be cancelled: photons that are released on the way would be lost.
     if (!waiting->maps) {
       waiting->maps = trace_and_build(&waiting->photons, nullptr, Progress::none());
     }
@@ -207,7 +207,7 @@ PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estim
 }
 
 /// A map is not cut, and holds the photons of a triangle at least. Where those of one may be too
-/// many, a few paths tell before all are traced. Errors: DeviceMemoryError.
+/// many, a few paths are traced first to find out. Errors: DeviceMemoryError.
 void PhotonPasses::check_map_memory() const {
   constexpr std::uint64_t few = 10'000, most_of_a_path = 8;
   std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();

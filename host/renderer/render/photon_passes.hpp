@@ -42,13 +42,13 @@ struct PassPhotons {
 
 /// How far light maps have grown (docs/light-maps.md).
 struct Growth {
-  int parts = 1;  ///< so many times the rays that were asked for start from nodes, in all rounds
+  int parts = 1;  ///< in all rounds: nodes have this many times the rays of the settings
   cache::GatheredPoints points = {};  ///< at which rays gathered in the rounds before
 };
 
-/// The light of a scene, as the photons of one pass give it: what answers whom is decided here, by
-/// the plan. By photons alone it is the photon estimate; where light maps are read, a cache whose
-/// nodes the estimate values, or rays, which read a coarser cache where they end.
+/// The light of a scene by the photons of one pass: the plan decides here which source is queried
+/// for which points. By photons alone it is the photon estimate; where light maps are read, a cache
+/// whose nodes the estimate values, or rays, which read a coarser cache where they end.
 class PassLight {
  public:
   /// References are kept. Errors: those of SurfaceCache.
@@ -75,8 +75,8 @@ class PassLight {
   cache::GatheredPoints take_points() { return gathered_->take_points(); }
 
   /// The order in which the light is found fastest: per oriented face, the map of a hit; empty
-  /// where the order does not matter, and where processes share the maps: each has maps of its own,
-  /// and by their numbers the hits of a pixel would be summed in another order on each.
+  /// where the order does not matter, and where processes share the maps: each has other maps, by
+  /// whose numbers the hits of a pixel would be summed in another order on each.
   std::span<const std::uint32_t> map_of() const;
   /// Each device's part of all points so far; empty where that is not known.
   std::vector<double> fractions() const;
@@ -95,9 +95,9 @@ class PassLight {
   std::optional<cache::SurfaceCache> cache_;
 };
 
-/// Traces the photons of one pass after another, and builds their maps. The first pass says the
-/// radius, the groups and the lit surface of all. Where light maps are read there is one pass, and
-/// they may grow: further photons say a radius, groups and lit surface of their own, and all
+/// Traces the photons of one pass after another, and builds their maps. The first pass determines
+/// the radius, the groups and the lit surface of all. Where light maps are read there is one pass,
+/// and they may grow: further photons determine their own radius, groups and lit surface, and all
 /// photons so far how close together nodes lie.
 class PhotonPasses {
  public:
@@ -110,7 +110,7 @@ class PhotonPasses {
   ///              Where it has light maps of these settings, photon maps are built when an estimate
   ///              is first needed.
   ///   keep       is given those of the first pass, or null
-  ///   parts      where light maps are read: so many times the photons that were asked for
+  ///   parts where light maps are read: the factor on the number of photons
   /// Errors: those of the stages.
   PassPhotons next(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress,
                    int parts = 1);

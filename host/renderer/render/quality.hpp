@@ -11,13 +11,13 @@ namespace photile {
 /// The settings that the quality `final` has more of than `good` (photons, samples of a pixel, rays
 /// of nodes) times `factor`, each within its range.
 RenderParameters with_work(RenderParameters parameters, double factor);
-/// Whether all of these settings may be so many times as large.
+/// Whether all of these settings may be multiplied by `factor`.
 bool allows_work(const RenderParameters& parameters, int factor);
 
 /// Whether light maps are to grow in rounds (docs/light-maps.md): their nodes gather, and there are
 /// several passes, each a part of the work.
 bool grows(const RenderParameters& asked);
-/// The settings of so many parts together, which `grows` where there are several.
+/// The settings of this many parts together, which `grows` where there are several.
 RenderParameters of_parts(const RenderParameters& part, int parts);
 /// The settings of one of its parts, which has a ray, a photon and a sample at least. `all.passes`
 /// is at least 1.
@@ -27,7 +27,8 @@ constexpr int parts_after(int parts) {
   const int power = static_cast<int>(std::bit_floor(static_cast<unsigned>(parts)));
   return parts == power ? parts + std::max(1, parts / 2) : 2 * power;
 }
-/// Calls grow(parts) for each round after the first that leads to so many parts.
+/// Calls grow(parts) for each round after the first, with the parts that it adds, until there are
+/// `all`.
 template <class Grow>
 void for_later_rounds(int all, const Grow& grow) {
   for (int parts = 1; parts < all;) {
@@ -36,18 +37,18 @@ void for_later_rounds(int all, const Grow& grow) {
     parts = next;
   }
 }
-/// So many times the photons of a part are there with so many parts of rays and samples: photons
-/// err less than rays, and nodes need to lie closer together only when these err little.
+/// The factor on the photons of a part when there are this many parts of rays and samples: photons
+/// err less than rays, and nodes need to lie closer together only when the error of rays is small.
 constexpr int photons_of_parts(int parts) {
   int photons = 1;
   while (parts / 16 >= photons) photons *= 4;
   return photons;
 }
 
-/// What is asked of the first picture of those that these parameters ask for:
+/// The settings of the first picture in a sequence that ends with these parameters:
 /// defaults::view_first_photons paths. Nodes that gather lie half a metre apart, and closer where
-/// their light differs; otherwise estimates value the coarsest nodes alone, and direct light
-/// is among them, whatever finds it later.
+/// their light differs; otherwise estimates value the coarsest nodes alone, and direct light is
+/// among them, whatever finds it later.
 RenderParameters first_picture_parameters(const RenderParameters& asked);
 
 }  // namespace photile

@@ -24,18 +24,19 @@ constexpr double first_fraction = 0.25;
 /// A round leaves 0.71 to 0.87 of an error that is noise, and more than this of one that is not.
 constexpr double stalled = 0.97;
 
-/// The part of the time left that a round is planned to take. The rest is for what the plan does
-/// not know, such as other programs.
+/// The part of the time left that a round is planned to take. The rest allows for what the plan
+/// cannot predict, such as other programs.
 constexpr double planned_part = 0.9;
 
-/// Nodes are this power of the photons many, for they lie closer together with more of them: with
-/// four times the work, `--quality final` takes five to seven times as long as `good`.
+/// The number of nodes is in proportion to this power of the number of photons, because nodes lie
+/// closer together with more photons: with four times the work, `--quality final` takes five to
+/// seven times as long as `good`.
 constexpr double power_of_nodes = 0.5;
 
 /// What the photons of a part take beside its rays.
 constexpr double time_of_photons = 0.5;
 
-/// Stops a picture that the time is over for.
+/// Stops a picture when the time is over.
 class Deadline : public Progress {
  public:
   Deadline(Progress& to, const std::function<double()>& elapsed, double seconds)
@@ -62,13 +63,13 @@ double least_error(const RenderParameters& part, int parts, double error) {
   return error;
 }
 
-/// What goes with the time of all rounds that add up to so many parts.
+/// The work of all rounds that add up to `parts` parts, in proportion to their time.
 double work_of(int parts) {
   const double photons = photons_of_parts(parts);
   return parts * std::pow(photons, power_of_nodes) + time_of_photons * photons;
 }
 
-/// What the next round is likely to take after one that led to so many parts in so many seconds.
+/// The likely seconds of the next round, after one that took `seconds` and led to `parts` parts.
 ///   before   parts before that; 0 = none
 double seconds_of_next(double seconds, int before, int parts) {
   const double work_before = before > 0 ? work_of(before) : 0;

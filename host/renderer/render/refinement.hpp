@@ -16,12 +16,12 @@ struct RefinementGoal {
   bool is_given() const { return error > 0 || seconds > 0; }
 };
 
-/// What refine asks for and tells.
+/// What refine requests and reports.
 struct RefinementSteps {
-  /// Adds so many parts of work to those before, and makes the picture of all. Errors: Interrupted,
-  /// when `progress` says so.
+  /// Adds this many parts of work to those before, and makes the picture of all. Errors:
+  /// Interrupted, when `progress` says so.
   std::function<RenderResult(int parts, Progress& progress)> make;
-  /// The picture of so many parts is there.
+  /// The picture of this many parts is finished.
   std::function<void(int parts, const RenderResult&)> finished;
   /// Since the time began to count, seconds.
   std::function<double()> elapsed;

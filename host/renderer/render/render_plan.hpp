@@ -21,8 +21,8 @@ namespace photile {
 /// light is not that of nodes, or light samples from the hits replace a part of it.
 bool nodes_gather(const RenderParameters& asked);
 
-/// Who asks for light: pictures, whose hits lie so close that many share nodes of light maps, or
-/// points here and there, which read them only where they are asked to.
+/// What light is requested for: pictures, whose hits lie so close that many share nodes of light
+/// maps, or scattered points, which read light maps only where the settings say so.
 enum class HitsAsk { pictures, points };
 
 class RenderPlan {
@@ -53,7 +53,7 @@ class RenderPlan {
 
   /// The parameters of tracing in this pass, whose paths follow those of the passes before.
   ///   paths_before   of each light
-  ///   parts          where light maps are read: so many times the paths that were asked for
+  ///   parts where light maps are read: the factor on the number of paths
   PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before,
                                  int parts = 1) const;
 
@@ -64,7 +64,7 @@ class RenderPlan {
   NeighbourGroupParameters groups(double first_radius) const;
   PhotonMapParameters maps(int pass, double first_radius) const;
 
-  /// The parameters of each k that hits choose from, ascending; just one unless they are to have
+  /// The parameters of each k that hits choose from, ascending; just one unless hits are to have
   /// their own.
   ///   surface   where areas are clipped, else null
   std::vector<EstimateParameters> estimates(
@@ -96,7 +96,7 @@ class RenderPlan {
 
  private:
   int neighbours_at_ends() const;
-  /// How far an estimate there reaches where one by all neighbours reaches so far, metres.
+  /// The reach of an estimate there where one by all neighbours reaches `radius` metres.
   double reach_at_ends(double radius) const;
 
   RenderParameters used_;

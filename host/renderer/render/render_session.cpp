@@ -84,7 +84,7 @@ RenderResult RenderSession::render(const HitSource& hits, const Film& film, Prog
   for (const auto& pass : passes_) picture.add(hits, *pass, progress);
   RenderResult result = picture.finish(photons_.radius());
   if (parts_ > 1) {
-    // Each round has a radius of its own, unless one was asked for.
+    // Each round has its own radius, unless one was asked for.
     const Film made = result.used.film;
     result.used = of_parts(plan_.used(), parts_);
     result.used.film = made;

@@ -37,10 +37,9 @@ class RenderSession {
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
                       const LayerMixdown* mixdown = nullptr);
 
-  /// Lets light maps whose nodes gather grow by a round: so many times more of the rays start that
-  /// were asked for, from the nodes that are looked at from now on, among photons traced anew where
-  /// `photons_of_parts` says so. Pictures are then those of `of_parts`, if as many were made on the
-  /// way.
+  /// Lets light maps whose nodes gather grow by a round: `parts` times the requested rays are added
+  /// at the nodes that are read from now on, and photons are traced anew where `photons_of_parts`
+  /// says so. Pictures are then those of `of_parts`, if as many were made on the way.
   void grow(int parts, Progress& progress);
   /// The film asked for, with the samples of all parts.
   Film film() const { return with_work(plan_.used(), parts_).film; }

@@ -44,7 +44,7 @@ std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, cons
 struct PhotonsMoved {
   std::uint64_t sent = 0;   ///< to other processes
   std::uint64_t bytes = 0;  ///< of these
-  std::uint64_t held = 0;   ///< by this process in the end, for maps of its own
+  std::uint64_t held = 0;   ///< by this process in the end, for its own maps
 };
 
 /// Sends photons to the processes whose maps they may enter, those near a border to several, in

@@ -24,7 +24,7 @@ using trace::RandomBlock;
 using trace::RandomStream;
 using trace::SurfacePoint;
 
-/// Of the numbers of scattering: those of no bounce.
+/// The index of random numbers for scattering that no bounce uses.
 constexpr std::uint32_t hot_spot_blocks = 1u << 31;
 
 class SurfacePath {

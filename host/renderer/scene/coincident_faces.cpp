@@ -54,7 +54,7 @@ struct Face {
     return most;
   }
 
-  /// Whether the other lies beyond one of the edges, but for rounding.
+  /// Whether the other lies beyond one of the edges, up to rounding.
   bool is_apart_from(const Corners& other, double margin) const {
     for (std::size_t i = 0; i < 3; ++i) {
       if (inside(i, other[0]) <= margin && inside(i, other[1]) <= margin &&

@@ -1,5 +1,5 @@
-// Panes: surfaces through which light passes straight on, whatever the file calls them. All that
-// asks for windows asks here.
+// Panes: surfaces through which light passes straight on, whatever the file calls them. All code
+// that looks for windows uses these functions.
 #pragma once
 
 #include <glm/glm.hpp>

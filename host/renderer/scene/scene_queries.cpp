@@ -1,4 +1,4 @@
-// Questions about a scene that several rooms ask.
+// Queries of a scene that several folders use.
 #include "scene/scene_queries.hpp"
 
 #include "geometry/box_tree.hpp"

@@ -1,4 +1,4 @@
-// Questions about a scene: how far it reaches, which positions it can hold, which glass encloses
+// Queries of a scene: how far it reaches, which positions it can hold, which glass encloses
 // nothing, and its hash.
 #pragma once
 
@@ -32,7 +32,7 @@ inline bool within_limit(const glm::dvec3& position) {
          std::abs(position.z) <= most;
 }
 
-/// Adds where surface is and how it reflects, but for the texels of pictures.
+/// Adds the geometry of surfaces and how they reflect, without the texels of pictures.
 void add_surfaces(const Scene& scene, ContentHash& hash);
 
 /// Adds everything that light depends on: geometry, materials, texels, lights with their groups,

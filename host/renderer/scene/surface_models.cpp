@@ -92,7 +92,7 @@ void add_needs(const Material& material, SceneNeeds& needs) {
   needs.see_through |= material.has_cutouts() || scene::is_pane(material);
 }
 
-/// Cosine above which two normals are the same but for the rounding of files: 0.15 degrees.
+/// Cosine above which two normals are the same up to the rounding of files: 0.15 degrees.
 constexpr float same_normal = 1.0f - 0x1p-18f;
 
 /// Whether the vertex normals of a triangle bend its shading. A zero one stands for its own.

@@ -54,8 +54,8 @@ bool conserve_energy(Material& material);
 /// what to read of a mesh before the first triangle. light_count stays 0.
 SceneNeeds needs_of_materials(std::span<const Material> materials);
 
-/// Lets go of shading normals where none is asked for: all are those of their triangles, or lie on
-/// what scatters no light, and no material that the needs tell of is specular or glossy.
+/// Removes shading normals where none is needed: all are those of their triangles, or lie on what
+/// scatters no light, and no material that the needs tell of is specular or glossy.
 void drop_flat_normals(Scene& scene, const SceneNeeds& of_materials);
 
 /// The fraction of light from all directions that an opaque surface sends back, per channel: the
@@ -68,8 +68,8 @@ struct MaterialReflectance {
   double matt = 0;  ///< of the diffuse colour alone, as the file has it
 };
 
-/// With a texture for the mean, by area, of what the surface shows of it. Of panes that of all their
-/// surface (panes.hpp). None for glass that bends light.
+/// With a texture for the mean, by area, of what the surface shows of it. Of panes that of all
+/// their surface (panes.hpp). None for glass that bends light.
 std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Material& material);
 
 /// Scales the diffuse colour of an opaque material so that it reflects that fraction, and with it

@@ -22,12 +22,13 @@ struct BoundaryEdge {
 /// metres.
 bool run_along(const BoundaryEdge& a, const BoundaryEdge& b, double tolerance);
 
-/// Finds the edges that lie on one line and share some of it. Edges of like directions have a tree
-/// of their own: those that meet in a point, as the blades of a fan do, are told apart by it.
+/// Finds the edges that lie on one line and share some of it. Edges of similar directions are in
+/// one tree, separate from others: those that meet in a point, as the blades of a fan do, are told
+/// apart by it.
 class BoundaryEdges {
  public:
-  /// Of those that run along an edge no more are found from either end. Surfaces that part so many
-  /// edges within the tolerance are no surfaces, and looking at all pairs of them takes for ever.
+  /// No more edges than this that run along an edge are found from either end. More edges within
+  /// the tolerance bound no real surface, and testing all of their pairs would take too long.
   static constexpr int most_along = 64;
 
   /// \param tolerance metres, as that of run_along
@@ -76,11 +77,11 @@ class BoundaryEdges {
     geometry::BoxTree tree;              ///< over pieces
   };
 
-  /// Directions are told apart by the cells of a cube, two opposite sides of which are one, so many
-  /// across.
+  /// The number of cells across a cube by which directions are distinguished; two opposite sides of
+  /// the cube are one.
   static constexpr int cells_across = 16;
   static int cell_along(float position) {
-    // Written so that what is no number has a cell, too.
+    // Written so that a NaN has a cell, too.
     return position > -1.0f
                ? static_cast<int>(std::min(0.5f * (position + 1.0f), 0.9999f) * cells_across)
                : 0;

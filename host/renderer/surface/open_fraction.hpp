@@ -1,5 +1,5 @@
-// How much of a triangle lies open to light, and how much under what lies on it: the wall behind
-// tiles, the desk under a book.
+// How much of a triangle is open to light, and how much is covered by what lies on it: the wall
+// behind tiles, the desk under a book.
 #pragma once
 
 #include <cstdint>

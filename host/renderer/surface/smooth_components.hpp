@@ -30,12 +30,12 @@ void for_each_pair_of_sides(std::span<const Connection> connections, const Visit
 
 /// Triangles connect where they share both corners of an edge, or where their edges run along each
 /// other, however unlike their ends (as tiles do); each pair once or more. Of the many that share
-/// an edge in a fan not all pairs are listed, but so many that the same triangles are joined.
+/// an edge in a fan not all pairs are listed, but enough of them to join the same triangles.
 ///   radius   metres: edges at most a thousandth of it apart run along each other
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees);
 
-/// What connects, but for sides of which one is dark and the other is not.
+/// What connects, without pairs of sides of which one is dark and the other is not.
 ///   dark   per oriented face, or empty
 SmoothComponents join_components(const SurfaceMesh& mesh, std::span<const Connection> connections,
                                  std::span<const std::uint8_t> dark = {});

@@ -26,7 +26,7 @@ struct Range {
   Box box;
 };
 
-/// Ranges of more are split by tasks of their own.
+/// Ranges of more pieces are split by separate tasks.
 constexpr std::size_t pieces_per_task = 2048;
 
 class TreeBuilder {
@@ -75,8 +75,8 @@ class TreeBuilder {
     return static_cast<std::uint32_t>(tree.leaves.size() - 1) | PHOTILE_SURFACE_LEAF;
   }
 
-  /// Appends what add_child left in a tree of its own; returns the link to it, as if it had been
-  /// added there.
+  /// Appends what add_child left in a separate tree; returns the link to it, as if it had been
+  /// added here.
   static std::uint32_t append(SurfaceTree& child, SurfaceTree& tree) {
     const auto first_node = static_cast<std::uint32_t>(tree.nodes.size());
     const auto first_leaf = static_cast<std::uint32_t>(tree.leaves.size());

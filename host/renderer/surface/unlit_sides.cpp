@@ -171,7 +171,7 @@ class PartFinder {
     const auto& [a, b, c] = corner;
     const glm::dvec2 middle = 0.5 * (a + b), cut = middle - c;
     const double side_of_a = cross(cut, a - c);
-    const glm::dvec2 apex = c;  // of its own: what is written to positions cannot change it
+    const glm::dvec2 apex = c;  // a copy: what is written to positions cannot change it
     const std::size_t split = partition(points, [cut, apex, side_of_a](const glm::dvec2& p) {
       return cross(cut, p - apex) * side_of_a >= 0;
     });

@@ -14,7 +14,8 @@
 namespace photile::trace {
 namespace {
 
-/// Panes and cutouts that a ray may pass on its way to a light: each takes it on, but for rounding.
+/// Panes and cutouts that a ray may pass on its way to a light: each moves the ray on, up to
+/// rounding.
 constexpr int most_passed = 4096;
 
 /// The light from one part of a sun that nothing hides is no less than this part of that from

@@ -34,7 +34,7 @@ class LightSampleNumbers {
  public:
   /// `sequences`: shading points that share them, as the samples of a pixel do, take others of
   /// their points each.
-  ///   surface   of a path, counted from 0: each has sequences of its own
+  ///   surface of a path, counted from 0: each has its own sequences
   LightSampleNumbers(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
   /// Random numbers of one light sample, and of a direction of the shading point's own.
@@ -58,10 +58,10 @@ enum class ReflectedPart : std::uint8_t {
 };
 
 /// Estimates the direct light at a point of an opaque surface, or through panes of thin
-/// glass and cutouts: just what photons carry that are not scattered before.
-/// `count` times a light is sampled, and a direction of the surface's own is followed; what both
-/// would find is weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to
-/// `found` is unbiased.
+/// glass and cutouts: exactly what photons carry that are not scattered before. `count` times a
+/// light is sampled, and a direction of the surface's own is followed; what both would find is
+/// weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to `found` is
+/// unbiased.
 ///   direction   of the ray that arrived at the point, unit
 ///   part        of the reflection that the radiance has
 void find_direct_light(const RayScene& rays, const LightSampler& light_sampler,
@@ -92,9 +92,9 @@ class ShadowRays {
   std::span<const Found> found(const RayScene& rays);
 
   /// The light of a sun that is sampled apart, without weights; none where all of it is hidden. It
-  /// is looked at in the same directions from all points, more of them where a part of it is
-  /// hidden: neighbours do not differ by chance, and the dark beside the border of its light stays
-  /// dark. Clears all samples.
+  /// is sampled in the same directions from all points, more of them where a part of it is hidden:
+  /// neighbours do not differ by chance, and the dark beside the border of its light stays dark.
+  /// Clears all samples.
   std::optional<Found> light_of_sun(std::uint32_t light, const RayScene& rays,
                                     const LightSampler& light_sampler, const SurfacePoint& point);
 

@@ -68,7 +68,7 @@ struct SpotFalloff {
   double edge;   ///< cosine of the inner cone less that of the outer one
 };
 
-/// A light shines along the -z axis of its own space.
+/// A light shines along the -z axis of its space.
 struct LightAxes {
   explicit LightAxes(const Light& light)
       : x(light.x_axis), z(-glm::dvec3(light.direction)), y(glm::cross(z, x)) {}

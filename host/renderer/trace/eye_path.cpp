@@ -252,9 +252,9 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
 
 namespace {
 
-/// A light sample stands for no more of the base's deviation than light of its radiance from so
-/// many hemispheres. Beside a lamp one sample would take all light of its pixel away, for a
-/// difference of some percent.
+/// The deviation of the base that a light sample stands for is bounded by that of light of its
+/// radiance from this many hemispheres. Beside a lamp a single sample would otherwise remove all
+/// light of its pixel, for a difference of a few percent.
 constexpr float most_received = 8;
 
 /// A light as the lobe reflects it; also by how much the base reflects more or less of it than of
@@ -302,7 +302,7 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     if (!(density > 0.0f)) return;
     glm::vec3 weight = lobe.reflected(*direction) / density;
     const float survival = std::min(1.0f, largest(left * weight) / defaults::least_lobe_weight);
-    // No other use for the word.
+    // The word has no other use.
     if (!(light_sample.direction.uniform(choice_word) < survival)) return;
     weight /= survival;
     left *= weight;

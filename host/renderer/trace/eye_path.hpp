@@ -58,7 +58,7 @@ struct LobeRays {
   const LightSampler& light_sampler;
 };
 
-/// What all samples of a picture share.
+/// What all samples of a picture have in common.
 struct EyeSetup {
   const RayScene::Impl* rays;
   const FilmDirections* film = nullptr;  ///< of the camera; null where rays do not start at one
@@ -90,7 +90,7 @@ struct EyeRay {
   std::uint32_t pixel;
   double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
   int depth = 0;               ///< mirrors and glass so far
-  bool unscattered = true;     ///< but for panes of thin glass, which sampling lights sees through
+  bool unscattered = true;     ///< except by panes of thin glass, which light samples pass
   std::uint32_t cutouts = 0;   ///< that were looked at so far
   float fraction = 1.0f;       ///< of its sample, where glass split it
   const BesideHotSpots* beside = nullptr;  ///< null where no rays are aimed

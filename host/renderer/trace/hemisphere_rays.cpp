@@ -46,7 +46,7 @@ struct Onward {
 };
 
 /// Light that a lobe reflects: of one light sample, which is added to the ray hits, and from a
-/// direction of its own; none where that would enter the surface.
+/// direction of the lobe; none where that would enter the surface.
 ///   hit   where the lobe is, with the throughput of the ray
 std::optional<Onward> reflect_by_lobe(const RunSetup& run, const OpaqueBsdf& bsdf,
                                       const SurfacePoint& point, const RandomStream& random,
@@ -97,8 +97,8 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
     const std::uint32_t triangle = triangle_of(hit.oriented_face);
     const HitReflection reflection = reflection_of(ray_hits, ray_hits.hits.size() - 1);
     if (bounce > defaults::most_near_surfaces) {
-      // Within a solid of metal, as at the rim of a board that its frame holds, hardly any light is
-      // left, but the few photons that found a seam would count for all of it.
+      // Inside a metal solid, as at the rim of a board in its frame, hardly any light is left, but
+      // the few photons that passed through a seam would have a large weight.
       if (reflection.strong_lobe) remove_last();
       return;
     }

@@ -39,7 +39,7 @@ bool may_have(const Light& light) {
 /// By a number in [0, 1) that is as even afterwards.
 std::size_t choose(const std::vector<double>& up_to, double& u) {
   const double target = u * up_to.back();
-  // The last entry is larger than the target, but for rounding.
+  // The last entry is larger than the target, up to rounding.
   const auto chosen =
       std::min(static_cast<std::size_t>(std::upper_bound(up_to.begin(), up_to.end(), target) -
                                         up_to.begin()),

@@ -1,5 +1,5 @@
-// Hot spots: surface so close to a light without size that its light there is as small and bright
-// as no sample of the room would find.
+// Hot spots: surface so close to a light without size that the lit area is too small and bright to
+// be found by sampling the room.
 #pragma once
 
 #include <cstddef>

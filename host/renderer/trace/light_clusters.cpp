@@ -15,14 +15,15 @@ namespace photile::trace {
 
 namespace {
 
-/// Clusters that a point weighs; so many cost less than two rays.
+/// The most clusters that a point weighs, which cost less than two rays.
 constexpr std::size_t most_clusters = 64;
 /// The fraction of light samples that are chosen by power alone.
 constexpr double everywhere = 0.5;
-/// Up to so many clusters have probabilities that are multiples of 1 / `strata`: of so many Sobol
-/// points each then has just its number, where by chance it would have one more or one less, which
-/// is all the noise there is of two suns. Each has one stratum at least, and so three eighths of
-/// the samples at most are chosen by their number alone.
+/// Up to `most_by_strata` clusters get probabilities that are multiples of 1 / `strata`: of
+/// `strata` Sobol points each cluster then gets exactly its number, where by chance it would get
+/// one more or one less, which is all the noise that two suns have. Each cluster has at least one
+/// stratum, so that at most three eighths of the samples are spread over the clusters regardless of
+/// their weights.
 constexpr std::size_t most_by_strata = 12, strata = 32;
 
 /// Cosine of a - b, or 1 where b is larger, by cosines and sines of angles up to pi.
@@ -189,7 +190,8 @@ bool LightClusters::cut(const Scene& scene, std::size_t index) {
   return true;
 }
 
-/// At most, but for its colour and a factor that all clusters share, the illuminance by a cluster.
+/// An upper bound of the illuminance by a cluster, up to its colour and a factor that is the same
+/// for all clusters.
 float LightClusters::weight(const Cluster& cluster, const glm::vec3& position,
                             const glm::vec3& normal) const {
   if (cluster.is_far) return cluster.fraction * far_;
@@ -315,7 +317,7 @@ std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t t
   std::vector<std::uint64_t> paths(count);
   for (std::size_t l = 0; l < count; ++l)
     requested[l] = std::max(0.0, fraction[l] * static_cast<double>(total) - 1.0);
-  // What the smallest lights are given beyond their share is taken from the others in proportion.
+  // What the smallest lights get beyond their fraction is taken from the others in proportion.
   const double beyond = std::accumulate(requested.begin(), requested.end(), 0.0);
   const double available = static_cast<double>(total - count);
   for (std::size_t l = 0; l < count; ++l) {

@@ -36,7 +36,7 @@ inline const SelectionProbabilities by_power_alone;
 /// Clusters are few enough to weigh them all.
 class LightClusters {
  public:
-  /// Beyond so many lights to weigh each would cost more than it saves.
+  /// With more lights than this, weighing each would cost more than it saves.
   static constexpr std::size_t most_lights = 1024;
 
   /// Errors: none; there are no clusters where there are too many lights to weigh each.

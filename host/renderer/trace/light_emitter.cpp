@@ -31,7 +31,7 @@ glm::vec3 entrance(const BoundingSphere& bounds, const glm::vec3& direction, flo
   return glm::vec3(bounds.center + bounds.radius * point);
 }
 
-/// Flux of a ray that was found with `density` in place of its own.
+/// Flux of a ray that was sampled with `density` in place of its own density.
 glm::vec3 over_density(const glm::vec3& color, double own, double density) {
   return density > 0 ? color * static_cast<float>(own / density) : glm::vec3(0.0f);
 }
@@ -49,7 +49,7 @@ LightEmitter::LightEmitter(const Scene& scene, std::uint32_t light, const Boundi
   bool reached = false;
   if (light_->kind == LightKind::environment) {
     const EnvironmentMap& map = scene.environments[light_->environment];
-    // What portals show of a wide texel says little of the directions in it.
+    // What portals show of a wide texel says little about the directions in it.
     if (map.width() < least_map_columns) return;
     reached = !towards_portals_.emplace(map, shown).empty();
   } else {

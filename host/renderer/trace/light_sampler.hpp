@@ -34,13 +34,13 @@ struct LightSample {
   bool distant = false;        ///< from beyond the scene
   std::uint32_t light = none;  ///< one without size that is not beyond the scene
 
-  /// How it counts beside a technique that finds its direction with density `other`, per steradian:
-  /// in full where no other technique can.
+  /// Its weight beside a technique that finds its direction with density `other`, per steradian: in
+  /// full where no other technique can.
   float weight_beside(float other) const {
     return density > 0.0f ? power_heuristic(density, other) : 1.0f;
   }
-  /// How it counts where a surface receives no more than light of its radiance from so many
-  /// hemispheres; lights without size in full.
+  /// Its weight where the light that a surface receives is bounded by that of its radiance from
+  /// this many hemispheres; lights without size count in full.
   float weight_below(float hemispheres) const {
     return density > 0.0f ? std::min(1.0f, hemispheres * PHOTILE_PI * density) : 1.0f;
   }
@@ -66,7 +66,7 @@ class LightSampler {
   }
 
   /// A light as seen from `position`. Nothing where it shines elsewhere.
-  ///   choice, on_light   blocks of their own
+  ///   choice, on_light separate blocks
   std::optional<LightSample> sample(
       const glm::vec3& position, const RandomBlock& choice, const RandomBlock& on_light,
       const SelectionProbabilities& probabilities = by_power_alone) const;
@@ -89,7 +89,7 @@ class LightSampler {
 
   /// Lights beyond the scene that rays can meet, and the density per steradian with which `sample`
   /// would have chosen a direction towards one of them; infinite for those that are sampled apart,
-  /// by probabilities without them: nothing else is to find their light.
+  /// where the probabilities do not contain them: no other technique may find their light.
   const DistantLights& distant() const { return distant_; }
   float density(const DistantLight& light, const glm::vec3& position, const glm::vec3& direction,
                 const SelectionProbabilities& probabilities = by_power_alone) const;

@@ -17,7 +17,7 @@ constexpr float narrow_lobe_alpha = 0.3f, faint_lobe_albedo = 0.25f;
 
 /// Rays of a sample that follow the lobe of a metal; narrower lobes than this scatter so much less.
 constexpr float most_lobe_rays = 16, scattering_lobe_alpha = 0.04f;
-/// Of a lobe that hardly reflects: every other sample has one.
+/// Rays of a lobe that hardly reflects: every other sample has one.
 constexpr float least_lobe_rays = 0.5f;
 /// A lobe over a dark base is most of what is seen, however little it reflects: it has half as many
 /// as a metal whose whole reflection it is.

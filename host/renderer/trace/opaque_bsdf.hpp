@@ -20,7 +20,7 @@ namespace photile::trace {
 using DiffusePart = std::array<glm::vec3, 3>;
 
 /// `n_dot_o`: cosine of the direction in which light leaves to the shading normal; the BSDF is
-/// reciprocal but for normal maps, so that it may as well be the one in which light comes.
+/// reciprocal without normal maps, so that it may also be the direction in which light comes.
 inline DiffusePart diffuse_part(const scene::Reflectance& surface, float n_dot_o) {
   PhotileAlbedoFit fit;
   photile_albedo_fit(surface.alpha, &fit);
@@ -90,11 +90,11 @@ class OpaqueBsdf {
   /// surface reflects.
   float lobe_fraction() const { return lobe_ ? lobe_->fraction : 0.0f; }
 
-  /// Fraction of light from all sides that is reflected, but for one facet's reflection.
+  /// Fraction of light from all sides that is reflected, without one facet's reflection.
   glm::vec3 base_reflectance() const;
 
-  /// What reflection but for one facet's is at a direction, f x cosine per steradian, less what it
-  /// is in the mean over all of them: a coat lets less through at grazing angles.
+  /// The reflection without one facet's in a direction, f x cosine per steradian, less its mean
+  /// over all directions: a coat lets less through at grazing angles.
   glm::vec3 base_deviation(const glm::vec3& direction) const;
 
   /// Whether it is a Lambertian lobe about the geometric normal, and nothing else.

@@ -59,7 +59,8 @@ glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& bef
   return u < survival ? after / survival : glm::vec3(0.0f);
 }
 
-/// Walks that one becomes at a surface, at most, and all of a path: more would know little more.
+/// The most walks that one is split into at a surface, and of a whole path: more would add little
+/// information.
 constexpr int most_copies = 16;
 constexpr std::uint32_t most_branches = 4096;
 
@@ -70,7 +71,7 @@ struct Walk {
   glm::vec3 direction, flux;
   int bounce = 1;  ///< of the surface that it comes to next
   std::uint32_t cutouts = 0;
-  bool unscattered = true;  ///< but for panes and cutouts, which sampling lights sees through
+  bool unscattered = true;  ///< except by panes and cutouts, which light samples pass
 };
 
 /// `walk` after the surface where it arrived; nothing where it ended there.
@@ -221,9 +222,9 @@ struct Chunk {
   std::uint64_t first_path, last_path;
 };
 
-/// Of the seed of paths that are aimed at mirrors and glass: the number of no pass.
+/// The seed index of paths that are aimed at mirrors and glass, which is the number of no pass.
 constexpr std::uint32_t aimed_repeat = 0xFFFF'FFFFu;
-/// Of the numbers of emission: that of no point, direction or portal.
+/// The index of random numbers of emission that no point, direction or portal uses.
 constexpr std::uint32_t aim_block = 0xFFFF'FFFFu;
 
 /// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
@@ -280,7 +281,7 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   return emitters;
 }
 
-/// What leads paths to where photons are wanted; by default nothing.
+/// What leads paths to where photons are needed; by default nothing.
 struct Guidance {
   const trace::WeightWindows* windows = nullptr;
   std::uint64_t paths_per_photon = 1;        ///< that windows trace for each asked for
@@ -288,7 +289,8 @@ struct Guidance {
   bool stores_hot_spots = true;
 };
 
-/// Of paths that are aimed at mirrors and glass: numbers of their own, and more in each pass.
+/// The parameters of paths that are aimed at mirrors and glass: a separate seed, and more paths in
+/// each pass.
 PhotonTracerParameters aimed_at_targets(PhotonTracerParameters parameters) {
   parameters.seed = trace::seed_of_repeat(parameters.seed, aimed_repeat);
   for (std::uint64_t& before : parameters.paths_before) before *= defaults::aimed_paths;
@@ -360,7 +362,7 @@ std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
   QuietProgress quiet(progress);
   std::optional<trace::WeightWindows> map;
   for (std::uint32_t round = 0; round <= defaults::pilots_with_windows; ++round) {
-    // Of their own, so that what windows do does not depend on the paths that they are for.
+    // Separate paths, so that windows do not depend on the paths that they are used for.
     const trace::RandomBlock seed =
         trace::RandomStream(parameters.seed, 0, 0).block(trace::Purpose::photon_window, round);
     pilot.seed = std::uint64_t{seed.word(1)} << 32 | seed.word(0);

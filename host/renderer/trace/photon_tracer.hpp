@@ -52,11 +52,11 @@ struct PathSetup {
 /// Traces path number `path` and appends what it leaves to `record`: photons of all light, or those
 /// that came by mirrors and glass alone. Emitted luminance equals
 /// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
-/// absorption. With windows a path may have branches, whose numbers are their own.
+/// absorption. With windows a path may have branches, each with separate random numbers.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
 
 /// trace_photons, without photons that come straight from a light to its hot spot (hot_spots.hpp):
-/// no density of photons is as fine as that light, which shadow rays find.
+/// no density of photons can resolve that light, which shadow rays find.
 PhotonTracerResult trace_photons_beside_hot_spots(const RayScene& scene,
                                                   const PhotonTracerParameters& parameters,
                                                   Progress& progress = Progress::none());

@@ -1,4 +1,4 @@
-// A camera for files that have none.
+// A camera for files without one.
 #pragma once
 
 #include "photile/scene.hpp"

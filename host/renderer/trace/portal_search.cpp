@@ -28,7 +28,7 @@
 namespace photile::trace {
 namespace {
 
-// The search. None of these changes what is estimated, only how soon.
+// The search. None of these changes what is estimated, only the noise.
 constexpr std::uint64_t paths_of_search = 16'384, most_paths = 131'072;
 constexpr int path_bounces = 3;
 constexpr std::size_t enough_escapes = 400;
@@ -37,7 +37,7 @@ constexpr double outside_fraction = 0.4;
 constexpr std::size_t most_planes = 256;     ///< of the largest area
 constexpr double least_fraction = 0.02;      ///< of what escapes that a portal takes
 constexpr double requested_fraction = 0.97;  ///< of what escapes that all take
-/// So much larger may a portal be that takes more than the narrowest.
+/// The factor by which a portal that takes more may be larger than the narrowest.
 constexpr double roomier = 1.5;
 /// The part of the disc of the bounding sphere above which portals would gain little.
 constexpr double most_portal_area = 0.25;
@@ -65,7 +65,7 @@ std::optional<SurfacePoint> opaque_surface(const RayScene& rays, RayOrigin origi
   return std::nullopt;
 }
 
-/// Ways out on paths from a point, one of so many; none where it stands outside.
+/// Ways out on paths from a point, one of `points`; none where it stands outside.
 std::vector<Escape> escapes_from(const RayScene& rays, const glm::vec3& start, std::size_t points) {
   const std::uint64_t first_paths = paths_of_search / points;
   std::vector<Escape> escapes;

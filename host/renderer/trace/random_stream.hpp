@@ -95,7 +95,7 @@ class RandomStream {
         {path_low_, path_high_and_stream_, index, static_cast<std::uint32_t>(purpose)}, key_));
   }
 
-  /// The numbers of a branch of this path, which has none of its own number yet.
+  /// The random numbers of a branch of this path; each branch needs a different `number`.
   RandomStream branch(std::uint32_t number) const {
     const RandomBlock words = block(Purpose::photon_branch, number);
     RandomStream stream = *this;
@@ -119,7 +119,7 @@ constexpr std::uint64_t seed_of_repeat(std::uint64_t seed, std::uint32_t repeat)
 }
 
 // Points that fill the unit square evenly, by index: Sobol's sequence in its first two dimensions,
-// scrambled. Further dimensions are further pairs with scrambles of their own ("padding": Burley,
+// scrambled. Further dimensions are further pairs, each with its own scramble ("padding": Burley,
 // "Practical hash-based Owen scrambling", 2020).
 
 constexpr std::uint32_t reversed_bits(std::uint32_t x) {

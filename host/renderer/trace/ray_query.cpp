@@ -66,7 +66,7 @@ glm::vec3 transmittance(const RayScene::Impl& rays, const RayOrigin& from, const
 
 namespace {
 
-/// Each cutout takes a ray on, but for rounding: paths must end.
+/// Each cutout moves a ray on, up to rounding: paths must end.
 constexpr std::uint32_t most_cutouts = 4096;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Questions to a RayScene, for rooms that do not know Embree: what a ray meets, alpha cutouts and
-// visibility. Thread-safe; the calling thread must hold a FlushDenormals.
+// Queries of a RayScene, for folders that do not include Embree: what a ray meets, alpha cutouts
+// and visibility. Thread-safe; the calling thread must hold a FlushDenormals.
 #pragma once
 
 #if defined(__SSE__)
@@ -91,7 +91,7 @@ inline SurfaceLocation location_on(const Scene& scene, std::uint32_t oriented_fa
 
 /// How a shadow ray differs from the line between two points.
 struct ShadowRayInset {
-  float offset;    ///< it runs so far above them, metres
+  float offset;    ///< its distance above them, metres
   float left_out;  ///< and ends short of the second by this part of its length
 };
 

@@ -1,4 +1,4 @@
-// What happens to a ray at a surface.
+// The scattering of a ray at a surface.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -49,7 +49,7 @@ class Photometer {
                        glm::dot(direction, facing_);  // sine x cosine of the angle to `facing`
   }
 
-  /// A direction for two numbers that are spread over the unit square and two of its own.
+  /// A direction for two numbers that are spread over the unit square and two independent ones.
   glm::vec3 sample(const glm::dvec2& spread, float own, float side) const {
     const glm::vec3 local =
         sample_cosine_hemisphere(static_cast<float>(spread.x), static_cast<float>(spread.y));

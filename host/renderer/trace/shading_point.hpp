@@ -22,9 +22,8 @@ inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::s
 }
 
 /// How the surface reflects light against the ray of an eye that arrived there, smoothly shaded. A
-/// Lambertian surface does not
-/// ask where it is seen from: where nothing is glossy, hits do not say it, and any direction
-/// serves.
+/// Lambertian surface looks the same from everywhere: where nothing is glossy, hits do not store
+/// the direction, and any one may be used.
 inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit,
                           const SurfacePoint& point) {
   OpaqueBsdf bsdf(scene, point, hits.outgoing.empty() ? -point.normal : -hits.outgoing[hit]);
@@ -34,7 +33,7 @@ inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size
   return bsdf;
 }
 
-/// What light counts for the two things measured at a shading point.
+/// The weights of light for the two quantities measured at a shading point.
 struct LightWeights {
   glm::vec3 irradiance{1.0f};
   glm::vec3 radiance{1.0f};  ///< reflected
@@ -57,7 +56,7 @@ class ShadingPoint {
   }
 
   /// A direction, or nothing where it would enter the surface.
-  ///   choice, random   blocks of their own
+  ///   choice, random separate blocks
   std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const;
 
   /// Density of such directions per steradian.

@@ -21,7 +21,7 @@ class SurfaceCells {
   using Facing = std::array<std::int32_t, 4>;
 
   /// Cubes as wide as the scene's radius, halved until those that hold some of `count` things hold
-  /// no more than so many on average.
+  /// no more than `per_cell` on average.
   ///   cell_of   (cells, i): the cube of thing i, or the surface in it
   template <class CellOf>
   SurfaceCells(const BoundingSphere& bounds, std::size_t count, double per_cell,

@@ -12,11 +12,12 @@
 namespace photile::trace {
 namespace {
 
-/// Of mirrors and glass: a path pays for each when it starts.
+/// The most spheres of mirrors and glass: each costs time when a path starts.
 constexpr std::size_t most_specular_spheres = 16;
 /// Two spheres in place of one have to show less than this part of its disc.
 constexpr double worth_splitting = 0.8;
-/// Rays start so close beside the points that directions are from, in parts of the radius.
+/// The distance of the start of rays from the points that directions are sampled at, over the
+/// radius.
 constexpr double margin = 1e-3;
 
 struct Box {

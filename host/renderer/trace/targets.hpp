@@ -22,7 +22,7 @@ class Targets {
   };
   static constexpr std::size_t most_spheres = 64;
 
-  /// Of the first so many.
+  /// The first `most_spheres` of them.
   explicit Targets(std::vector<Sphere> spheres);
 
   bool empty() const { return spheres_.empty(); }

@@ -1,4 +1,4 @@
-// How light photons are to be where few paths come: windows for their weights.
+// The weights that photons are to have where few paths come: weight windows.
 #pragma once
 
 #include <tsl/robin_map.h>

@@ -20,8 +20,8 @@
 // Imageworks", SIGGRAPH 2017). The base gets what the coat lets through, on the way in and on the
 // way out (Kelemen and Szirmay-Kalos, "A microfacet based coupled specular-matte BRDF model",
 // 2001). Means are over a diffusely lit hemisphere. So f is reciprocal, and a white metal, or a
-// white base under any coat, reflects all that falls in, but for what the approximation of E1 and E
-// is wrong by (docs/materials.md). glTF's own formula, albedo (1 - F) and one facet, loses more
+// white base under any coat, reflects all that falls in, except for the error of the approximation
+// of E1 and E (docs/materials.md). glTF's own formula, albedo (1 - F) and one facet, loses more
 // than half of the light on a rough white metal, and makes light on a smooth white dielectric at
 // grazing angles.
 #ifndef PHOTILE_DEVICE_BSDF_H

@@ -8,7 +8,7 @@ typedef struct {
   unsigned int first_hit, hit_count; /* hits [first_hit, first_hit + hit_count) of the batch */
   unsigned int first_map;            /* of the page */
   unsigned int record_stride;        /* from one plane of the page's photon records to the next */
-  unsigned int k;                    /* at most so many neighbours, */
+  unsigned int k;                    /* at most this many neighbours, */
   float radius;                      /* none farther than this, metres */
   float least_radius;                /* that a smaller disc is taken to have, metres */
   float least_cosine;                /* of the angle between normals that agree */
