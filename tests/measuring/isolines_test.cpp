@@ -64,8 +64,6 @@ TEST_CASE("cells without a value have no lines") {
 
 TEST_CASE("bands are the middle fifth of each step, and posterized values have its colour") {
   const report::ColourScale bands({.contours = report::Contours::bands}, 0);  // 8 steps of 125
-  CHECK(bands.bands()[2][0] == Approx(2.4 * 125));
-  CHECK(bands.bands()[2][1] == Approx(2.6 * 125));
   CHECK(bands.in_band(2.5 * 125));
   CHECK_FALSE(bands.in_band(2.39 * 125));
   CHECK_FALSE(bands.in_band(2.61 * 125));

@@ -87,7 +87,14 @@ TEST_CASE("the JSON of a plan has its lines in metres from the plane's corner") 
   const Scene scene = room();
   const auto plan = report::plan_json(RayScene(scene), layout());
   CHECK(plan["reach"] == 1);
-  CHECK_THAT(plan["walls"].get<std::string>(), Catch::Contains("-0.500 ") && Catch::Contains("L"));
+  // The room's outline is one line, of triangles that meet in it.
+  const auto walls = plan["walls"].get<std::string>();
+  CHECK(std::count(walls.begin(), walls.end(), 'M') == 1);
+  CHECK(std::count(walls.begin(), walls.end(), 'L') <= 5);
+  for (const char* const corner :
+       {"-0.500 -0.500", "3.500 -0.500", "3.500 5.500", "-0.500 5.500"}) {
+    CHECK_THAT(walls, Catch::Contains(corner));
+  }
   CHECK(plan["lamps"][0]["number"] == 1);
   CHECK(plan["lamps"][0]["position"][0].get<double>() == Approx(1));
   CHECK(plan["lamps"][0]["position"][1].get<double>() == Approx(3));

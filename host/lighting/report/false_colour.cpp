@@ -73,15 +73,6 @@ std::vector<double> ColourScale::levels() const {
   return values;
 }
 
-std::vector<std::array<double, 2>> ColourScale::bands() const {
-  std::vector<std::array<double, 2>> values;
-  for (int step = 0; step < steps_; ++step) {
-    values.push_back(
-        {value_at((step + band_begin) / steps_), value_at((step + band_end) / steps_)});
-  }
-  return values;
-}
-
 bool ColourScale::in_band(double value) const {
   const double share = share_of(value);
   if (!(share > 0) || !(share < 1)) return false;

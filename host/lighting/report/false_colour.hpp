@@ -54,8 +54,6 @@ class ColourScale {
   /// Where isolines are drawn: the middles of the legend's steps, as falsecolor has them,
   /// ascending.
   std::vector<double> levels() const;
-  /// The values between which the band around each level lies.
-  std::vector<std::array<double, 2>> bands() const;
   /// Whether a value lies within one of them.
   bool in_band(double value) const;
   /// Number of levels below a value: isolines run where it changes.

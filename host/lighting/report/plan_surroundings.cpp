@@ -8,7 +8,9 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "trace/ray_query.hpp"
 #include "trace/room.hpp"
@@ -254,12 +256,53 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
 
 namespace {
 
-/// To a millimetre.
+/// In metres, to a millimetre. Segments that meet are one line, and a straight run of them is one
+/// segment.
 std::string path_of(const std::vector<Segment>& segments, const glm::dvec2& cell) {
+  const auto key = [&](const glm::dvec2& end) {
+    const glm::dvec2 millimetres = glm::round(1000.0 * end * cell);
+    return std::pair(millimetres.x, millimetres.y);
+  };
+  std::multimap<std::pair<double, double>, std::size_t> meeting;
+  std::vector<bool> drawn(segments.size());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const auto [begin, end] = segments[i];
+    drawn[i] = key(begin) == key(end);  // no length
+    meeting.emplace(key(begin), i);
+    meeting.emplace(key(end), i);
+  }
+  // The other end of a segment that goes on from here.
+  const auto next = [&](const glm::dvec2& end) -> std::optional<glm::dvec2> {
+    const auto [first, last] = meeting.equal_range(key(end));
+    const auto found = std::find_if(first, last, [&](const auto& at) { return !drawn[at.second]; });
+    if (found == last) return std::nullopt;
+    drawn[found->second] = true;
+    const Segment& segment = segments[found->second];
+    return segment[key(segment[0]) == key(end) ? 1 : 0];
+  };
   std::string path;
-  for (const Segment& segment : segments) {
-    const glm::dvec2 a = segment[0] * cell, b = segment[1] * cell;
-    fmt::format_to(std::back_inserter(path), "M{:.3f} {:.3f}L{:.3f} {:.3f}", a.x, a.y, b.x, b.y);
+  const auto add = [&](char command, const glm::dvec2& place) {
+    fmt::format_to(std::back_inserter(path), "{}{:.3f} {:.3f}", command, place.x * cell.x,
+                   place.y * cell.y);
+  };
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (drawn[i]) continue;
+    drawn[i] = true;
+    glm::dvec2 begin = segments[i][0], end = segments[i][1];
+    glm::dvec2 along = glm::normalize((end - begin) * cell);
+    add('M', begin);
+    while (const auto on = next(end)) {
+      constexpr double aside = 1e-3;  // metres
+      const glm::dvec2 way = (*on - begin) * cell;
+      if (std::abs(along.x * way.y - along.y * way.x) > aside ||
+          glm::dot(along, way) < glm::dot(along, (end - begin) * cell)) {
+        add('L', end);
+        begin = end;
+        along = glm::normalize((*on - begin) * cell);
+      }
+      end = *on;
+    }
+    add('L', end);
   }
   return path;
 }
