@@ -176,8 +176,8 @@ enum class LayerPrecision {
   /// 11 significant bits, as half floats have, with the range of floats: within 0.05% of each
   /// value, and half the size, for the bits that are 0 are packed.
   half,
-  /// OpenEXR's lossy DWAA of the whole file, root and illuminance included, for looking at: values
-  /// end at 65504. Pictures of several parts have `half`.
+  /// OpenEXR's lossy DWAA of the whole file, root and illuminance included, for viewing: values end
+  /// at 65504. Pictures of several parts have `half`.
   dwaa
 };
 inline constexpr std::array all_layer_precisions = {LayerPrecision::whole, LayerPrecision::half,

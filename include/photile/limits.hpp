@@ -48,7 +48,7 @@ inline constexpr std::uint64_t max_materials = 1'000'000;
 inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulated in a second or two
 inline constexpr int max_node_depth = 512;
-/// Each takes 600 bytes and 2 us before a triangle of it is seen.
+/// Each takes 600 bytes and 2 us before any of its triangles is read.
 inline constexpr std::uint64_t max_nodes = 250'000;
 /// Instances of nodes beyond their number: shared children multiply. The format has none.
 inline constexpr std::uint64_t max_repeated_visits = 100'000;
@@ -79,7 +79,7 @@ inline constexpr double max_light_power = 1e30;
 /// Lux of a sun or a sky: floats hold the radiance of all of its parts.
 inline constexpr double min_illuminance = 1e-30, max_illuminance = 1e30;
 inline constexpr double max_irradiance = 10'000;  ///< W/m2 of a sun or a sky, seven times the sun's
-/// Each line of photons and each light sample of the sky is held against all of them.
+/// Each line of photons and each light sample of the sky is tested against all of them.
 inline constexpr std::size_t max_portals = 64;
 /// Degrees of a sun's disc: the light of a wider one is that of an environment.
 inline constexpr double max_sun_diameter_degrees = 90;
@@ -119,7 +119,7 @@ inline constexpr std::uint64_t max_input_text_bytes = 256ull << 20;
 inline constexpr std::uint64_t max_sensors = 1'000'000;
 /// Hours times points of a year of daylight: 4 bytes each, twice.
 inline constexpr std::uint64_t max_profile_values = 250'000'000;
-inline constexpr int max_repeats = 1'000;  ///< each traces photons of its own
+inline constexpr int max_repeats = 1'000;  ///< each traces its own photons
 
 // Walks
 inline constexpr int max_frames = 1'000'000;

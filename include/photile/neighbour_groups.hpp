@@ -93,17 +93,17 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
 
 /// Finds groups whose members are the maps of patches, by boxes: each map that holds an oriented
 /// face whose normal agrees and whose box lies at most `radius` from the box of the oriented
-/// face. That is a few more than have a triangle in its group; what those hold in vain, no
-/// query finds. Found patch by patch, so that time grows with the patches near a triangle and not
-/// with the triangles.
+/// face. These are a few more than have a triangle in its group; no query finds the photons that
+/// they hold in excess. Found patch by patch, so that time grows with the patches near a triangle
+/// and not with the triangles.
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
                                   const NeighbourGroupParameters& parameters,
                                   Progress& progress = Progress::none(),
                                   std::span<const std::uint8_t> landed = {});
 
 /// Joins patches that hold mostly the same photons, judged by a sample: each joined pair saves the
-/// references they share. Patches whose queries would look at most photons in vain stay apart. What
-/// a query finds is the same.
+/// references they share. Patches whose queries would test most photons in vain stay apart. What a
+/// query finds is the same.
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
 /// Which photons will be entered in maps by groups.

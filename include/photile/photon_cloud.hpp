@@ -14,7 +14,7 @@
 
 namespace photile {
 
-/// Photons in arrays that stay the caller's. Arrays but the first are empty or as long as it.
+/// Photons in arrays that the caller owns. Arrays but the first are empty or as long as it.
 struct CloudPhotons {
   std::span<const glm::vec3> position;        ///< metres, up to limits::max_coordinate
   std::span<const glm::vec3> normal = {};     ///< unit, of the surface below; empty: none counts

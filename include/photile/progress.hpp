@@ -1,4 +1,4 @@
-// How long work reports itself and is asked to stop.
+// How long work reports its progress and is asked to stop.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,10 @@ class Progress {
   virtual void advance(std::uint64_t count);
   /// The stage is complete.
   virtual void end();
-  /// A line for the user that is no progress: what was chosen, approximated or left out.
+  /// A line for the user that is not progress: what was chosen, approximated or left out.
   virtual void note(const std::string& line);
-  /// A line that users want who want no others: what may make the result wrong. By default a note.
+  /// A warning, which is printed even where notes are not: what may make the result wrong. By
+  /// default a note.
   virtual void warn(const std::string& line);
   /// True once the user asked to stop; stages then throw Interrupted at their next safe point.
   virtual bool cancelled() const;
@@ -33,8 +34,8 @@ class Progress {
   static Progress& none();
 };
 
-/// Passes the wish to stop on, and nothing else: for the stages of one of many renderings, of which
-/// only their number is worth telling.
+/// Passes on only requests to stop: for the stages of one of many renderings, of which only the
+/// number is reported.
 class QuietProgress : public Progress {
  public:
   /// Keeps a reference.

@@ -450,9 +450,10 @@ struct SceneNeeds {
   bool see_through = false;  ///< some material is thin glass or has cutouts, which shadow rays pass
   std::uint32_t light_count = 0;  ///< layers: a group of lights counts as one
 
-  /// Whether photons and estimates tell lights apart.
+  /// Whether photons and estimates distinguish lights.
   bool several_lights() const { return light_count > 1; }
-  /// Whether what points reflect is told beside what arrives there: it is not in proportion to it.
+  /// Whether the reflected radiance at points is stored beside the irradiance, to which it is not
+  /// in proportion.
   bool tells_radiance() const { return glossy || smooth_shading; }
   /// Whether only the lights that reach a point are kept for it.
   bool many_lights() const { return light_count > max_dense_lights; }

@@ -12,8 +12,8 @@
 
 namespace photile {
 
-/// The triangles of a mesh, in arrays that stay the caller's. Arrays per vertex are empty or as
-/// long as `vertices`, arrays per triangle empty or as long as `triangles`.
+/// The triangles of a mesh, in arrays that the caller owns. Arrays per vertex are empty or as long
+/// as `vertices`, arrays per triangle empty or as long as `triangles`.
 struct MeshArrays {
   std::span<const glm::vec3> vertices;    ///< metres
   std::span<const glm::uvec3> triangles;  ///< vertices, counter-clockwise as seen from the front

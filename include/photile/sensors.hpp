@@ -64,7 +64,7 @@ RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
                     const RenderParameters& parameters, Progress& progress = Progress::none());
 
-/// Gathers by `trace_paths`: unbiased, a path from where each ray ends.
+/// Gathers by `trace_paths`: unbiased, one path from each ray's end.
 PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sensors,
                                  const GatherParameters& gathering, std::uint64_t seed,
                                  Progress& progress = Progress::none());
@@ -83,7 +83,7 @@ struct MeasuringParameters {
   double maintenance = defaults::maintenance_factor;  ///< factor of all values
 };
 
-/// What one light, or all together, give.
+/// The readings of one light, or of all together.
 struct LightIlluminance {
   std::string light;              ///< "" for all together
   std::vector<Measured> sensors;  ///< lux, in the order of the sensors

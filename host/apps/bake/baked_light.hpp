@@ -36,7 +36,7 @@ struct BakeParameters {
   bool exact = true;  ///< a texel that is given is not made larger where the picture is too small
   int most_side = 4096;                           ///< of the picture
   std::uint64_t most_texels = ~std::uint64_t{0};  ///< of the picture's area
-  std::vector<double> powers;      ///< per layer, by which the brighter side of a surface is told
+  std::vector<double> powers;      ///< per layer, by which the brighter side of a surface is found
   std::vector<std::uint8_t> open;  ///< as open_sides; empty = all sides are
 };
 
@@ -71,7 +71,7 @@ class BakedLight {
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
   ///   visibility   of the light maps
-  ///   progress reports a stage
+  ///   progress   reports a stage
   BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
              const cache::NodeVisibility& visibility, const BakeParameters& parameters,
              Progress& progress);

@@ -65,7 +65,7 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters);
 
 /// Adds --maintenance: a factor, or its parts by the names of CIE 97, whose product it is.
-///   parts becomes these, "LLMF 0.9 x LMF 0.95", where they are given; null = not needed
+///   parts   becomes these, "LLMF 0.9 x LMF 0.95", where they are given; null = not needed
 void add_maintenance_option(const OptionGroup& group, MeasuringParameters& parameters,
                             std::string* parts = nullptr);
 

@@ -71,7 +71,7 @@ class FrameWorker {
   std::shared_ptr<const Frame> latest() const;
   /// Whether the newest frame has all samples of the newest maps.
   bool finished() const;
-  /// The error that ended the work, or null; each is told once.
+  /// The error that ended the work, or null; each is returned once.
   std::exception_ptr take_error();
 
  private:

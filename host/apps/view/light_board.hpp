@@ -62,7 +62,7 @@ class LightBoard {
 
   double lumen_per_watt() const { return scene_.lumen_per_watt; }
 
-  /// Names of lights whose colour `mix` could not set, for the panel to tell.
+  /// Names of lights whose colour `mix` could not set, for the panel to show.
   std::vector<std::string> refused() const;
 
   /// Resets all controls to the scene's values.

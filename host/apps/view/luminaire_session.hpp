@@ -37,7 +37,7 @@ class SceneLoader {
   };
   /// The newest scene that is loaded, once.
   std::optional<Loaded> take();
-  /// Why the newest list cannot be loaded, or null; each is told once.
+  /// Why the newest list cannot be loaded, or null; each is returned once.
   std::exception_ptr take_error();
   bool busy() const;
 
@@ -113,14 +113,14 @@ class LuminaireSession {
   void released();
 
   /// The scene with the newest list, once; null where there is none.
-  ///   message   is told why there is none
+  ///   message   becomes the reason why there is none
   std::shared_ptr<const Scene> take_scene(std::string& message);
 
   /// Takes a click as LuminaireTool does, but `message` gets the errors.
   bool click(const Camera& camera, const glm::dvec3& direction,
              const std::optional<PhotonInspector::Surface>& surface, std::string& message);
 
-  /// Returns whether it is saved; `message` is told either way.
+  /// Returns whether it is saved; `message` is set in either case.
   bool save(std::string& message);
 
   /// Whether the window may be closed; else what becomes of unsaved changes is asked.

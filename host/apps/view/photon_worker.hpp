@@ -57,7 +57,7 @@ class PhotonWorker {
 
   WorkProgress progress() const;
 
-  /// The error that ended the work, or null; each is told once.
+  /// The error that ended the work, or null; each is returned once.
   std::exception_ptr take_error();
 
  private:

@@ -58,7 +58,7 @@ struct ViewerParameters {
 ///   camera         in the scene's coordinates
 ///   open_devices   called for each set of maps, so that one is built while another is in use
 /// Errors: DeviceError without a display; those of SceneRenderer where there is nothing to show
-/// yet (later ones are told in the window); InputError for a damaged file of moods.
+/// yet (later ones are shown in the window); InputError for a damaged file of moods.
 void run_viewer(const Scene& scene, const Camera& camera, const LightMix& mix,
                 PhotonWorker::OpenDevices open_devices, ViewerParameters parameters);
 

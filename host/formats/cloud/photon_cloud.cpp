@@ -118,7 +118,7 @@ struct PhotonCloud::Impl {
   PhotonMaps build(Device& device, const CloudPhotons& cloud, const CloudParameters& parameters,
                    Progress& progress);
 
-  /// Puts points where maps and normals are looked up, beyond the photons.
+  /// Places points beyond the photons, where their maps and normals are queried.
   PrimaryHits place(std::span<const glm::vec3> points, std::span<const glm::vec3> normals);
 };
 
@@ -205,7 +205,7 @@ CloudNeighbours PhotonCloud::nearest(std::span<const glm::vec3> points,
   result.squared_distance.resize(result.photons.size(), std::numeric_limits<float>::infinity());
   const auto width = static_cast<std::size_t>(k);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size()), [&](const auto& range) {
-    // Distance and photon in one number: those that are not negative sort as their bits do.
+    // Distance and photon in one number: floats that are not negative sort as their bits do.
     std::vector<std::uint64_t> row;
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       row.clear();

@@ -33,7 +33,7 @@ Voxels::Voxels(std::span<const glm::vec3> positions, std::span<const glm::vec3> 
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     low = i == 0 ? glm::dvec3(p) : glm::min(low, glm::dvec3(p));
   }
-  // Grown by what rounding may do to differences of positions on the device.
+  // Grown by the rounding of differences of positions on the device.
   reach_ = radius * (1.0 + 1e-5) + 8.0 * epsilon * (static_cast<double>(largest) + radius);
   margin_ = 4.0 * epsilon * (static_cast<double>(largest) + radius);
   width_ = 4.0 * reach_;
@@ -90,7 +90,7 @@ std::uint32_t Voxels::map_at(const glm::vec3& point, const glm::vec3& normal) co
 
 Voxels::Cell Voxels::cell_of(const glm::dvec3& point) const {
   Cell cell;
-  // Far from every photon all cubes are alike: what is beyond any of them stays in range.
+  // Far from every photon all cubes are empty: positions beyond are clamped to the range.
   constexpr double most = 9e15;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int i = static_cast<int>(axis);

@@ -1,4 +1,4 @@
-// Cubes of space that photons are near, each with a pair of maps.
+// Cubes of space near photons, each with a pair of maps.
 #pragma once
 
 #include <tsl/robin_map.h>
@@ -18,7 +18,7 @@ namespace photile::cloud {
 /// without normals map 2 v serves all.
 class Voxels {
  public:
-  /// Keeps references to no array.
+  /// Keeps no reference to an array.
   ///   normals         empty, or one per photon
   ///   radius          metres, of the search
   ///   angle_degrees   largest angle between normals

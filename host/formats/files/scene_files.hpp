@@ -1,5 +1,5 @@
-// The scene file and the files that it names, read without being led elsewhere, and what is found
-// wrong in them.
+// The scene file and the files that it names, read without leaving the scene's folder, and warnings
+// about them.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct ResourceError : std::runtime_error {
   explicit ResourceError(const std::string& message) : std::runtime_error(one_line(message)) {}
 };
 
-/// Gathered so that a hundred materials with one trouble give one line.
+/// Warnings, grouped so that a hundred materials with the same problem give one line.
 class Warnings {
  public:
   /// A warning about the whole file.
@@ -51,8 +51,8 @@ class Warnings {
 std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
                                              std::uint64_t max_bytes);
 
-/// The folder of a scene file. A scene is data from strangers: it may name only regular files in
-/// its own folder, below the limits of limits.hpp. Names are checked after symbolic links have been
+/// The folder of a scene file. A scene is untrusted data: it may name only regular files in its own
+/// folder, below the limits of limits.hpp. Names are checked after symbolic links have been
 /// resolved and before anything is opened.
 class SceneFolder {
  public:

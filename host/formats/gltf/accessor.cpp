@@ -57,7 +57,7 @@ float component(const unsigned char* bytes, int type, bool normalized) {
   }
 }
 
-/// An unsigned index; `largest` of its type for a component type that no index may have.
+/// An unsigned index; the largest one for a component type that no index may have.
 std::uint32_t index(const unsigned char* bytes, int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:

@@ -18,8 +18,8 @@ namespace {
 constexpr const char* meshopt = "EXT_meshopt_compression";
 constexpr const char* draco = "KHR_draco_mesh_compression";
 
-/// No view is packed more tightly: 16 bytes of a vertex take two bits at least, and three indices
-/// of four bytes one.
+/// The bound on the packing of a view: 16 bytes of a vertex take two bits at least, and three
+/// indices of four bytes one byte.
 constexpr std::uint64_t most_packed = 100;
 
 template <class Function>
@@ -213,7 +213,7 @@ class Unpacking {
   std::uint64_t taken_ = 0;
 };
 
-/// A member of a member of an object; null where it is not there.
+/// A member of a member of an object; null where it is missing.
 const nlohmann::json* member(const nlohmann::json& object,
                              std::initializer_list<const char*> names) {
   const nlohmann::json* found = &object;

@@ -166,7 +166,8 @@ std::string decoded_uri(const std::string& uri) {
 
 namespace {
 
-/// Where bytes are described: what is no number there would be read as another one.
+/// Members that describe bytes, where tinygltf would read a value that is not a number as another
+/// number.
 constexpr std::array<std::string_view, 3> of_bytes{"accessors", "bufferViews", "buffers"};
 /// Members of those that number parts of the file or constants of the format: 32 bits.
 constexpr std::array<std::string_view, 3> numbers{"buffer", "bufferView", "componentType"};
@@ -174,7 +175,7 @@ constexpr std::array<std::string_view, 3> numbers{"buffer", "bufferView", "compo
 /// accessor is sparse.
 constexpr std::array<std::string_view, 4> sizes{"byteLength", "byteOffset", "byteStride", "count"};
 /// Members anywhere that number parts of the file. tinygltf cuts them off at 32 bits; others that
-/// are wrong name nothing, and nothing may ask for it.
+/// are wrong refer to nothing, which has no effect.
 constexpr std::array<std::string_view, 11> indices{"camera",   "index",  "indices", "input",
                                                    "material", "mesh",   "node",    "output",
                                                    "sampler",  "source", "skin"};
@@ -298,10 +299,10 @@ class JsonCheck {
     bool array, free;            ///< free: not of the format itself
     std::string key = {};        ///< of the member that comes, in an object
     std::uint64_t elements = 0;  ///< begun, in an array
-    /// Whether what comes is a whole number, and up to which.
+    /// Whether the next value has to be a whole number, and its upper bound.
     bool whole = false;
     std::uint64_t most = most_size;
-    /// What the member that comes has to be; of an array, the member that it is.
+    /// The type that the next member needs; in an array, that of the array's member.
     const ValueMember* requested = nullptr;
     bool extras = false;  ///< or within some
   };
@@ -317,7 +318,7 @@ class JsonCheck {
     return found == values.end() ? nullptr : &*found;
   }
 
-  /// Whether what comes, or the list that ends, is what its member has to be.
+  /// Whether the next value, or the list that ends, is of the type that its member needs.
   bool is_value(std::string_view shown) {
     if (levels_.empty() || levels_.back().requested == nullptr) return true;
     const Level& level = levels_.back();
@@ -344,7 +345,7 @@ class JsonCheck {
     return n < levels_.size() ? std::string_view(levels_[levels_.size() - 1 - n].key) : "";
   }
 
-  /// Whether what comes has to be a whole number.
+  /// Whether the next value has to be a whole number.
   bool is_whole() const { return !levels_.empty() && levels_.back().whole; }
 
   void set_requested(Level& level) const {
@@ -361,7 +362,7 @@ class JsonCheck {
     if (!levels_.empty()) ++levels_.back().elements;
   }
 
-  /// Shown where it is not what the format has there.
+  /// The type that the format requires, for messages.
   template <class Shown>
   bool value(bool is_sound, const Shown& shown) {
     begin_value();

@@ -33,7 +33,7 @@ constexpr std::array<std::string_view, 15> understood_extensions{
     "KHR_texture_transform",
 };
 
-/// Nothing that a picture could show.
+/// Extensions without effect on a picture.
 constexpr std::array<std::string_view, 14> harmless_extensions{
     "EXT_instance_features",
     "EXT_mesh_features",
@@ -51,7 +51,7 @@ constexpr std::array<std::string_view, 14> harmless_extensions{
     "MSFT_packing_occlusionRoughnessMetallic",
 };
 
-/// What is shown in place of what extensions say, or what to do about them.
+/// What is rendered in place of what extensions describe, or what to do about them.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 14> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
     {"EXT_texture_avif", "save its textures as PNG or JPEG"},
@@ -97,7 +97,7 @@ void check_required_extensions(const std::vector<std::string>& required,
 
 namespace {
 
-/// Names what has the extension. Returns whether anything has.
+/// Names the objects that have the extension. Returns whether there are any.
 class ExtensionUsers {
  public:
   ExtensionUsers(const tinygltf::Model& model, std::string extension, const std::string& remedy,

@@ -107,7 +107,7 @@ bool has_profile(const tinygltf::Node& node) {
 
 namespace {
 
-/// What a node says about the intensities of its light.
+/// The intensities of a node's light, as far as the node states them.
 struct NodeProfile {
   std::uint32_t distribution;    ///< into Scene::distributions
   double multiplier = 1;         ///< of the intensities
@@ -236,7 +236,7 @@ bool set_orientation(const glm::dmat4& world, Light& light) {
   return true;
 }
 
-/// What a node's extras say about its light.
+/// The light of a node by its extras.
 void apply_traits(const reading::LightTraits& traits, Light& light, files::Warnings& warnings) {
   if (!traits.group.empty()) light.group = traits.group;
   if (traits.kelvin > 0.0) light.color = glm::vec3(scene::color_of_temperature(traits.kelvin));

@@ -1,5 +1,5 @@
-// The lights without size of a glTF file (KHR_lights_punctual, EXT_lights_ies), and what the extras
-// of a node say of any light.
+// The lights without size of a glTF file (KHR_lights_punctual, EXT_lights_ies), and the extras of a
+// node about any light.
 #pragma once
 
 #include <cstdint>

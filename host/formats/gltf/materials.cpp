@@ -17,7 +17,7 @@ namespace photile::gltf {
 
 namespace {
 
-/// What tells the picture from others, and messages call it.
+/// What distinguishes the picture from others, and its name in messages.
 std::string name_of(const tinygltf::Image& image, std::size_t number) {
   return fmt::format("image {}{}", number, image.name.empty() ? "" : " " + image.name);
 }
@@ -206,7 +206,7 @@ void Converter::set_opacity(const tinygltf::Material& source, bool emits, Materi
                                           pictures::TextureContent::srgb, "the alpha factor");
   if (texture != none && context_.scene.textures[texture].opaque()) texture = none;
   const bool mask = source.alphaMode == "MASK";
-  // Above 1 nothing is there, however far above.
+  // Above 1 nothing is there, by whatever amount.
   const double cutoff =
       mask && std::isfinite(source.alphaCutoff) ? std::min(source.alphaCutoff, 2.0) : 0.0;
   if (mask && (cutoff <= 0.0 || (texture == none && double{opacity} >= cutoff))) return;
@@ -242,7 +242,7 @@ void Converter::set_glass(const tinygltf::Material& source, const MetallicRoughn
   warn_about_glass(source, model, volume);
 }
 
-/// What a glass asks for and does not get.
+/// What a glass specifies and photile does not support.
 void Converter::warn_about_glass(const tinygltf::Material& source, const MetallicRoughness& model,
                                  const tinygltf::Value* volume) {
   const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
@@ -374,7 +374,7 @@ std::vector<MaterialCoordinates> add_gltf_materials(const tinygltf::Model& model
     coordinates.push_back(
         converter.add(model.materials[i], name.empty() ? fmt::format("material {}", i) : name));
   }
-  // Only where it is used: it has a specular lobe, which costs later stages something.
+  // Only where it is used: it has a specular lobe, which makes later stages slower.
   const bool default_used =
       std::any_of(model.meshes.begin(), model.meshes.end(), [](const tinygltf::Mesh& mesh) {
         return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),

@@ -179,7 +179,7 @@ bool has_normal_map(const Scene& scene) {
                      [](const Material& material) { return material.normal_texture != none; });
 }
 
-/// What the triangles of a primitive are made of.
+/// The material and the emission of a primitive's triangles.
 struct Surface {
   std::uint32_t material;
   reading::Emission emission;
@@ -273,7 +273,7 @@ void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number)
     context_.scene.materials.emplace_back().name = "panel";  // black
   }
   reading::LightTraits traits = light_traits(visit.source->extras, name, context_.warnings);
-  traits.lumens = 0;  // the panel's own say so
+  traits.lumens = 0;  // the panel's radiance holds them
   traits.lamp = lamp_of(*visit.source, "EXT_lights_area");
   const std::uint32_t light =
       context_.area_lights.find_or_add(reading::first_panel_object + visit_number, name,
@@ -338,7 +338,7 @@ std::vector<float> MeshImporter::read_attribute(const tinygltf::Primitive& primi
 }
 
 /// TEXCOORD_`set`; empty, with a warning, where the primitive lacks it. `what` says which texture
-/// wants it and what is used instead.
+/// needs it and what is used instead.
 std::vector<float> MeshImporter::read_coordinates(const tinygltf::Primitive& primitive, int set,
                                                   std::size_t corner_count,
                                                   const std::string& mesh_name,
@@ -350,7 +350,7 @@ std::vector<float> MeshImporter::read_coordinates(const tinygltf::Primitive& pri
   return {};
 }
 
-/// What `surface` cannot have for lack of coordinates is taken from it.
+/// Removes from `surface` the textures that the primitive has no coordinates for.
 PlacedVertices MeshImporter::read_vertices(const tinygltf::Primitive& primitive,
                                            const glm::dmat4& world, const std::string& mesh_name,
                                            Surface& surface) {

@@ -72,14 +72,14 @@ class VisitCounter {
  public:
   explicit VisitCounter(const tinygltf::Model& model) : model_(model), below_(model.nodes.size()) {}
 
-  /// Counts the node and all below it, at most one more than the limit. What counts as nothing here
-  /// (cycles, deep trees, missing nodes) ends the walk, which comes by in the same order.
+  /// Counts the node and all below it, at most one more than the limit. What is not counted here
+  /// (cycles, deep trees, missing nodes) ends the walk, which visits nodes in the same order.
   std::uint64_t count(int node, int depth = 0) {
     if (node < 0 || static_cast<std::size_t>(node) >= below_.size()) return 0;
     if (depth > limits::max_node_depth) return 0;
     std::optional<std::uint64_t>& known = below_[static_cast<std::size_t>(node)];
     if (known) return *known;
-    known = 0;  // until it is known: a node below itself
+    known = 0;  // until it is known: marks a node below itself
     std::uint64_t visits = 1;
     for (const int child : model_.nodes[static_cast<std::size_t>(node)].children) {
       visits = std::min(visits + count(child, depth + 1), limits::max_node_visits + 1);
@@ -177,7 +177,7 @@ class Walk {
   std::vector<Level> path_;
 };
 
-/// Whether a node is called as lights are: exporters leave many others empty.
+/// Whether a node has the name of a light: exporters leave many other nodes empty.
 bool sounds_like_light(const std::string& name) {
   constexpr std::array words{"area", "lamp", "light", "lumi", "leuchte", "spot", "sun"};
   return std::any_of(words.begin(), words.end(), [name = lower(name)](const char* word) {

@@ -1,4 +1,4 @@
-// What the options change in the lights and materials of a scene while it is loaded.
+// The changes by options to the lights and materials of a scene while it is loaded.
 #pragma once
 
 #include <span>

@@ -76,7 +76,7 @@ void check_options(const SceneLoadOptions& options) {
   check_value("ground", options.ground, loading::reflectances);
 }
 
-/// An error about a scene that lacks something. What the import warned about is often the reason: a
+/// An error about a scene that lacks something. The warnings of the import are often the reason: a
 /// missing material library, lamps that the exporter dropped.
 InputError lacks(const std::string& what, const reading::ImportContext& context) {
   constexpr std::size_t warnings_told = 3;
@@ -174,7 +174,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
   } catch (const std::bad_alloc&) {
     throw context.error("not enough memory to load the scene; split it");
   } catch (const std::exception& error) {
-    // The importer libraries throw what they like on malformed files.
+    // The importer libraries may throw any exception on malformed files.
     throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
   }
   gltf::group_instances(scene.lights, context.light_sources);

@@ -27,7 +27,7 @@ struct SourcedScene {
   std::vector<PlacedLuminaires> luminaires;  ///< of each entry of the list of luminaires
 };
 
-/// photile::load_scene, which keeps no sources and goes on whatever the user asks.
+/// photile::load_scene, which keeps no sources and cannot be interrupted.
 ///   progress   is asked whether to go on
 /// Errors: the same; Interrupted.
 SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLoadOptions& options,
@@ -37,7 +37,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options,
                  const Progress& progress);
 
-// Which way is up in a scene file: OBJ files do not say it, and some glTF files have it wrong.
+// The upward axis of a scene file: OBJ files do not state it, and some glTF files have it wrong.
 
 /// The rotation after which `up` ("x" to "-z", "" = "y") points along y. With "z", as CAD programs
 /// have it, x stays and the file's y becomes -z, north. Errors: UsageError for another word.
@@ -50,7 +50,7 @@ glm::dmat3 turn_upright(const std::string& up);
 /// x 2.8 m wide and 3 m high, so nothing is turned.
 void warn_of_other_up(const Scene& scene, files::Warnings& warnings);
 
-// In which unit the lengths of a scene file are: glTF says metres, and many exporters do not care.
+// The unit of the lengths of a scene file: glTF requires metres, which many exporters ignore.
 
 /// "mm", "cm", "m", "in" and "ft".
 std::vector<std::string_view> names_of_units();

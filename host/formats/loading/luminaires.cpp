@@ -46,7 +46,7 @@ struct LampKind {
   bool uplight = false;            ///< whether it shines to the other side of its opening, too
 };
 
-/// What entries have in common, found once: a file of kilobytes may have thousands of them.
+/// Data that entries share, found once: a file of kilobytes may have thousands of entries.
 struct Shared {
   std::map<std::string, LampKind> kinds = {};
   std::optional<std::optional<glm::dvec3>> ceiling = {};  ///< its middle, once it was looked for
@@ -234,7 +234,7 @@ void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t
   }
 }
 
-/// A lamp to see by in a room that has none yet.
+/// A lamp for a room that has no light yet.
 void add_work_light(double lumen_per_watt, Scene& scene) {
   Light light;
   light.name = "work_light";

@@ -16,7 +16,7 @@
 namespace photile::loading {
 
 /// Members keep their order and their numbers: what is not edited is written as it was read.
-/// What they mean is read by add_luminaires.
+/// Their meaning is read by add_luminaires.
 struct LuminaireList {
   std::vector<nlohmann::ordered_json> entries;
   bool alone = false;  ///< one object in place of a list

@@ -33,7 +33,7 @@ weather::SkyIrradiance take_row(const weather::WeatherYear& year, SkySituation& 
   return row.irradiance;
 }
 
-/// What the options ask for with the weather of their hour.
+/// The situation of the options with the weather of their hour.
 struct Weathered {
   SceneLoadOptions options;                           ///< with the file's site, and its sky
   std::optional<weather::SkyIrradiance> of_row = {};  ///< where no sky was given
@@ -222,7 +222,7 @@ void check_flux(const Scene& scene, const std::string& what, const char* remedy)
       what, light.name, light.power, symbol_of(scene.unit), limits::max_light_power, remedy));
 }
 
-/// What is given in lux, in the scene's unit.
+/// A value given in lux, in the scene's unit.
 double in_scene_unit(double lux, const Scene& scene, const SceneLoadOptions& options) {
   return in_unit(lux, PowerUnit::lumen, scene.unit, options.lumen_per_watt);
 }

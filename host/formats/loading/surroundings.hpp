@@ -1,4 +1,4 @@
-// What surrounds a scene by its options: a picture, the sun, the sky of a site and an hour.
+// The surroundings of a scene by its options: a picture, the sun, the sky of a site and an hour.
 #pragma once
 
 #include <cstddef>

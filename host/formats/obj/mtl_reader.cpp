@@ -61,8 +61,8 @@ constexpr std::array map_statements{
     MapStatement{"norm", &MtlMaterial::norm},
 };
 
-/// Statements that say nothing of the light that photile traces, and of pictures that it does not
-/// read.
+/// Statements that do not concern the light that photile traces, and those of pictures that it does
+/// not read.
 constexpr std::array<std::string_view, 4> without_light{"ka", "map_ka", "sharpness", "map_aat"};
 constexpr std::array<std::string_view, 13> ignored_maps{
     "map_ks", "map_ns", "bump",   "map_bump", "disp",   "map_disp", "refl",

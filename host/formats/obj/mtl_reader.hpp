@@ -11,8 +11,8 @@
 
 namespace photile::obj {
 
-/// What a material does not say is empty: no number is made up, and none stays from the material
-/// before.
+/// Values that a material does not state are empty: no number is invented, and none is kept from
+/// the material before.
 struct MtlMaterial {
   std::string name;
   /// Linear Rec.709; Tf is the tint of what passes.
@@ -23,8 +23,8 @@ struct MtlMaterial {
   double norm_scale = 1;                    ///< -bm of norm
 };
 
-/// Reads a library. Keywords are those of the format in any case. What is passed over is named in
-/// a warning. Errors: InputError with the library, the line, what was found and the remedy, where a
+/// Reads a library. Keywords are those of the format in any case. What is ignored is named in a
+/// warning. Errors: InputError with the library, the line, what was found and the remedy, where a
 /// number that decides on light is none, or is out of its range.
 ///   library   as messages name it
 std::vector<MtlMaterial> read_mtl(const std::string& library, std::string text,

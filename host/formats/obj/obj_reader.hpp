@@ -1,5 +1,5 @@
 // An OBJ file as its statements say it, read by tinyobjloader's callback interface, which keeps
-// polygons of any size and tells bad indices from good ones.
+// polygons of any size and distinguishes invalid indices.
 #pragma once
 
 #include <tiny_obj_loader.h>
@@ -37,7 +37,7 @@ struct ObjFile {
 /// InputError naming the face with an impossible vertex index.
 ObjFile read_obj(std::string& text, reading::ImportContext& context);
 
-// What tinyobjloader passes over in silence: lines by their first words, and material libraries.
+// What tinyobjloader ignores silently: lines by their first words, and material libraries.
 
 struct ObjTextFindings {
   /// Vertices (counted from 0) with a coordinate that is no finite number: "nan", "inf", a word.

@@ -230,7 +230,7 @@ LuminousOpening opening_of(const std::vector<double>& size, bool feet, Photometr
     length = height;
   }
   // The photometric horizontal of type A is where the luminaire is aimed, and its height is
-  // vertical. A flat opening of one would lie edge-on in its own beam: it faces it.
+  // vertical. A flat opening would otherwise lie edge-on in its own beam; it is turned to face it.
   if (type == Photometry::type_a && height > 0) {
     std::swap(length, height);
     if (shape == Shape::upright_cylinder) {
@@ -247,7 +247,7 @@ constexpr int first_edition = 1986;
 /// The edition of LM-63 that a line before TILT= names, however it is spelt: "IESNA91",
 /// "IESNA:LM-63-2002", "IES: lm-63-19". Without one, the first.
 int edition_of(const std::vector<std::string_view>& lines, std::size_t end) {
-  constexpr int unnamed = 9999;  // "LM-63" alone is none of the first, which named nothing
+  constexpr int unnamed = 9999;  // "LM-63" alone is not the first edition, whose files name none
   for (std::size_t i = 0; i < end; ++i) {
     std::string line = lower(trimmed(lines[i]));
     if (line.starts_with('[')) continue;

@@ -118,7 +118,7 @@ namespace {
 constexpr std::string_view separators = " \t\f\v,\x1A";  // old files end with Ctrl-Z
 constexpr std::size_t longest_shown = 20;
 
-/// A token as a message can show it.
+/// A token as a message may show it.
 std::string shown(std::string_view token) {
   std::string text(token.substr(0, longest_shown));
   std::replace_if(

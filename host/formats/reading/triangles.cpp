@@ -59,8 +59,8 @@ double signed_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The concave corners of a polygon, for the question whether one of them lies in a triangle: a k-d
-/// tree over all points, each node with the number of concave corners below it.
+/// The concave corners of a polygon, to find out whether one of them lies in a triangle: a k-d tree
+/// over all points, each node with the number of concave corners below it.
 class ConcaveCorners {
  public:
   explicit ConcaveCorners(const std::vector<glm::dvec2>& points)

@@ -71,8 +71,8 @@ class InstanceRecorder {
  public:
   explicit InstanceRecorder(Scene& scene) : scene_(scene) {}
 
-  /// A node placed `mesh`: its triangles are those from `first_triangle` on. `kept` tells of each
-  /// triangle of the file whether the scene took it. `read` gives the mesh itself, when it is met
+  /// A node placed `mesh`: its triangles are those from `first_triangle` on. `kept` says for each
+  /// triangle of the file whether the scene has it. `read` gives the mesh itself, when it is met
   /// for the first time.
   void record(int mesh, const glm::dmat4& world, std::uint32_t first_triangle,
               const std::vector<bool>& kept, const std::function<LocalMesh()>& read);

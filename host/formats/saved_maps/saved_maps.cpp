@@ -37,8 +37,7 @@ struct Part {
   ContentHash::Digest digest{};
 };
 
-/// The head of a file. It knows of all that follows, so that no part can be cut off unseen. No
-/// padding.
+/// The head of a file. It lists all that follows, so that a missing part is noticed. No padding.
 struct Header {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;
@@ -140,7 +139,7 @@ Part part_of(const Write& write) {
   return part;
 }
 
-/// A file being read: knows how many bytes are left before it takes memory for them.
+/// A file being read, which checks how many bytes are left before it takes memory for them.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file) {
@@ -342,7 +341,7 @@ class ShardCollection {
 
   template <class PhotonsOf>
   Photons merged(const PhotonsOf& photons_of) {
-    SceneNeeds needs;  // as far as the photons tell
+    SceneNeeds needs;  // as far as the photons show
     std::uint64_t count = 0;
     for (auto& [index, shard] : shards_) {
       const Photons* photons = photons_of(shard.prepared);

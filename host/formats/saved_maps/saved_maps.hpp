@@ -12,7 +12,7 @@
 
 namespace photile::saved_maps {
 
-/// What a file fits beside the scene, in words that a refusal can name.
+/// What a file has to match beside the scene, in words for a refusal.
 struct Settings {
   std::string photons;
   std::string groups;  ///< what these depend on beside the photons
@@ -40,7 +40,7 @@ TracedPhotons load(const std::filesystem::path& file, const Scene& scene, const 
 void merge(std::span<const std::filesystem::path> files, const std::filesystem::path& output);
 
 /// "" where all indices and sizes fit one another and the scene, and all numbers are finite; else
-/// what does not.
+/// what is wrong.
 std::string problem_of(const TracedPhotons& prepared, const Scene& scene);
 
 }  // namespace photile::saved_maps

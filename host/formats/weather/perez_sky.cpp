@@ -110,7 +110,7 @@ constexpr std::array<Efficacy, bins> direct_efficacies{{{57.20, -4.55, -2.98, 11
                                                         {105.75, 0.77, -1.26, -34.44},
                                                         {101.18, 1.58, -1.10, -8.29}}};
 
-/// The extraterrestrial irradiance over its mean, for the Earth's way round the sun.
+/// The extraterrestrial irradiance over its mean, by the Earth's orbit.
 double eccentricity(int day) {
   const double angle = 2 * pi * (day - 1) / 365;
   return 1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) +

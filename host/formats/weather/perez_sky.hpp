@@ -1,4 +1,4 @@
-// Where the sun stands in the sky of a site, and the all-weather sky of Perez, Seals and
+// The position of the sun in the sky of a site, and the all-weather sky of Perez, Seals and
 // Michalsky.
 #pragma once
 
@@ -56,7 +56,7 @@ class PerezSky {
   float relative_luminance(float sine, float cosine) const {
     return std::max(0.0f, gradation(sine) * indicatrix(cosine));
   }
-  /// The factors of that.
+  /// The two factors of that luminance.
   float gradation(float sine) const;
   float indicatrix(float cosine) const;
 

@@ -53,7 +53,7 @@ class PatchFinder {
   float rows_per_radian_, north_;
 };
 
-/// What stands for the sun: the four patches nearest to it, as gendaymtx has them.
+/// The patches that represent the sun: the four nearest to it, as in gendaymtx.
 struct PatchShare {
   std::size_t patch;
   double share;  ///< of the sun's light; all sum to 1

@@ -111,7 +111,7 @@ Day day_of(const Line& line, std::size_t index) {
   return {*month, *day};
 }
 
-/// What DATA PERIODS says of the lines that follow.
+/// The description of the following lines in DATA PERIODS.
 struct Period {
   Day first, last;
   int first_weekday = WeatherYear().first_weekday;

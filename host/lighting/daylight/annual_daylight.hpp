@@ -10,7 +10,7 @@
 
 namespace photile::daylight {
 
-/// What stands for the sun.
+/// The representation of the sun.
 enum class SunModel : std::uint8_t {
   rays,    ///< its own rays to each sensor, and what it gives by reflection as the nearest patches
   patches  ///< the nearest patches alone, as in Radiance's two-phase method

@@ -1,4 +1,5 @@
-// What each patch of the sky, and each lamp, gives each sensor: found once for a whole year.
+// The light of each patch of the sky, and of each lamp, at each sensor: computed once for a whole
+// year.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What standards ask of a year of daylight, over the hours in which a room is used.
+// The figures of standards for a year of daylight, over the hours in which a room is used.
 #pragma once
 
 #include <array>

@@ -54,10 +54,10 @@ class SkyRays {
   SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
           const SkyRayParameters& parameters);
 
-  /// What a point sees, in the order of its rays. Depends on the point, its number and the
+  /// What the rays of a point meet, in their order. Depends on the point, its number and the
   /// parameters only.
   ///   points   one, or several points of a surface, which take turns
-  ///   number of the point, below 2^31; no other point has it
+  ///   number   of the point, below 2^31; no other point has it
   ///   rays     of each batch
   VisibleByRays from(std::span<const trace::Photometer> places, std::uint64_t number,
                      int rays) const;

@@ -41,7 +41,7 @@ std::vector<std::size_t> blind_schedule(std::span<const std::vector<float>> sun,
                                         std::span<const int> closed, std::size_t sensors,
                                         std::size_t hours);
 
-/// What is the same in all states.
+/// The data that is the same in all states.
 struct Year {
   std::vector<SkyHour> hours;
   std::vector<weather::SkyPatch> patches;
@@ -66,7 +66,7 @@ SkyState sky_state(const Year& year, const Scene& scene, std::string name, int c
 std::vector<SkyState> sky_states(const Year& year, Scene& scene, std::span<const BlindGroup> groups,
                                  Progress& progress);
 
-/// What the states give by the hour.
+/// The light of the states by the hour.
 void light_hours(const Year& year, std::vector<SkyState>& states);
 
 /// The same states repeated with independent rays: their mean, and its error.

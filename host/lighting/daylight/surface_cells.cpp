@@ -11,7 +11,7 @@ namespace {
 constexpr int most_levels = 16;
 constexpr int most_beside = 16;           ///< cells of one cube: leaves of a tree hide each other
 constexpr double sight_above = 1.0 / 32;  ///< of the cell's size, of lines of sight
-/// Where no plane of a building lies, or seldom.
+/// An offset at which planes of buildings seldom lie.
 constexpr double cube_offset = 0.3819660113;
 
 std::uint64_t mixed(std::uint64_t x) {  // splitmix64 (Steele, Lea and Flood 2014)

@@ -1,4 +1,4 @@
-// Surface in cells: what reflects the same light to all rays that end in one.
+// Surface in cells, each of which reflects the same light to all rays that end in it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace photile::daylight {
 
 /// Cells are cubes of space times a range of normals; whatever of their surface a cell's first
-/// point does not see belongs to another cell, so that walls without thickness and shelves part
+/// point does not see belongs to another cell, so that walls without thickness and shelves separate
 /// light. Far from where rays start cells are larger. They depend on the points and their order.
 class SurfaceCells {
  public:

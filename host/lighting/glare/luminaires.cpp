@@ -101,7 +101,7 @@ void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, 
               trace::surface_point(scene, {triangle, uv.x, uv.y}, side);
           if (!trace::emits(scene, point)) continue;
           luminaire.patches.push_back({point, static_cast<float>(area / count)});
-          if (luminaire.opening) break;  // its intensities know the sides
+          if (luminaire.opening) break;  // its intensities distinguish the sides
         }
       }
     }

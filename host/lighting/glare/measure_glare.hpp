@@ -27,7 +27,7 @@ struct GlareParameters {
   int samples = defaults::samples_of_luminaire;  ///< at each luminaire
 };
 
-/// What one observer has before the eyes.
+/// The glare of one observer.
 struct ObserverGlare {
   Observer observer;
   Measured illuminance;          ///< lux at the eye, on a plane that faces forward
@@ -64,13 +64,13 @@ std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Obs
 /// coordinates.
 Camera eye_of(const Scene& scene, const Observer& observer);
 
-/// An observer at each point, who looks where it faces. Names are the grid's with the number of the
+/// An observer at each point, looking in its direction. Names are the grid's with the number of the
 /// point, from 1.
 std::vector<Observer> observers_at(const measuring::SensorGrid& points,
                                    const trace::PlanAxes& axes);
 
-/// At each point of a level plane one who looks in each of several directions, which are spread
-/// evenly round the level and begin with `ahead`: the four of EN 12464-1 are along the walls of a
+/// At each point of a level plane an observer in each of several directions, which are spread
+/// evenly round the horizon and begin with `ahead`: the four of EN 12464-1 are along the walls of a
 /// room that stands along the axes. Names say "plane 3, 90 degrees", clockwise as seen from above.
 std::vector<Observer> observers_on(const measuring::SensorGrid& plane, const trace::PlanAxes& axes,
                                    int directions);

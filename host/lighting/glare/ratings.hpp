@@ -45,7 +45,7 @@ double low_light_correction(double illuminance);
 /// 10 log10(0.478 sum L^1.6 (omega / p^2)^0.8 / (L_b + 0.07 omega^0.5 L)).
 double dgi(std::span<const Source> sources, double background);
 
-/// A person who looks in one direction.
+/// An observer who looks in one direction.
 struct Observer {
   std::string name;
   glm::dvec3 position{0.0};            ///< of the eyes, metres in the scene file's world

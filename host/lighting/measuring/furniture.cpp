@@ -28,7 +28,7 @@ constexpr double beyond_hit = 1e-4;  // metres
 constexpr int most_crossings = 1000;
 constexpr double off_surface = 1e-3;  // metres
 constexpr double touching = 0.01;     // metres to a surface beside or before a point
-/// Metres: a gap that is not as wide, such as one behind a counter, belongs to what it parts.
+/// Metres: a narrower gap, such as one behind a counter, belongs to the furniture around it.
 constexpr double slit = 0.1;
 
 /// Number of surfaces on a ray.
@@ -147,8 +147,8 @@ class OpenAir {
  private:
   static constexpr int directions = 128, open_directions = directions / 8;
   static constexpr std::size_t most_tried = 64;
-  /// What people stand in: cupboards have ceilings, too. Metres of a side, and of the height below
-  /// the cut.
+  /// The least size of a room for people, since cupboards have ceilings, too: metres of a side, and
+  /// of the height below the cut.
   static constexpr double least_side = 0.8, below_cut = 1.6;
 
   /// The rooms around the grid's sensors, which are taken from all over it.

@@ -1,5 +1,5 @@
 // A finished measurement: the values of the sensors of each grid, what standards ask of them, and
-// what the noise of the measurement leaves open.
+// their uncertainty by the noise of the measurement.
 #pragma once
 
 #include <cstddef>
@@ -95,13 +95,13 @@ Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readin
 /// Marks the points without any light, where others have some.
 void mark_dark_points(Measurement& measurement);
 
-/// What is no error and seldom meant, a line each: points without any light, and lights that reach
-/// no point.
+/// Warnings of what is allowed but seldom intended, a line each: points without any light, and
+/// lights that reach no point.
 ///   lights   their powers; those of 0 are off
 std::vector<std::string> doubts_of(const Measurement& measurement,
                                    std::span<const MixedLight> lights);
 
-/// What keeps a sky out of a room, and what to do.
+/// Why the light of a sky does not reach a room, and the remedy.
 inline constexpr const char* closed_to_the_sky =
     "the room has no opening and no pane of glass; leave out what closes its windows, or make it "
     "of glass (KHR_materials_transmission in glTF, d below 1 or illum 4 in MTL)";
@@ -109,7 +109,7 @@ inline constexpr const char* closed_to_the_sky =
 /// A line for each light that is on and reaches nothing; one for all of the sky. The ground is not
 /// named: a floor in the scene may hide it.
 ///   reaches   whether each of the lights does
-///   what      "point", say: is what they do not reach
+///   what      what they do not reach, such as "point"
 std::vector<std::string> lights_that_reach_nothing(std::span<const MixedLight> lights,
                                                    const std::vector<bool>& reaches,
                                                    const std::string& what);

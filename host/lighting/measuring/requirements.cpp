@@ -63,7 +63,7 @@ std::string known_names() {
   return names;
 }
 
-/// The field that a word of one's own sets; null where there is none.
+/// The field that a word of user-defined requirements sets; null where there is none.
 double* field_of(Requirement& requirement, std::string_view word) {
   if (word == "Em") return &requirement.mean;
   if (word == "Uo") return &requirement.uniformity;

@@ -42,7 +42,7 @@ struct BlankPoint {
   std::size_t before = 0;  ///< number of sensors that stand before it in the grid
 };
 
-/// What a grid is of, for the requirements of standards.
+/// The role of a grid, for the requirements of standards.
 enum class GridRole { task, surroundings, background, wall, ceiling, cylindrical, other };
 
 struct SensorGrid {

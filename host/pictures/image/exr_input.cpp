@@ -151,7 +151,7 @@ void take_attributes(const Imf::Header& header, ExrInput::Part& part) {
   if (const auto* envmap = header.findTypedAttribute<Imf::EnvmapAttribute>("envmap")) {
     part.is_cube_map = envmap->value() == Imf::ENVMAP_CUBE;
   }
-  // Not OpenEXR's, but what OpenImageIO keeps of a photograph.
+  // Not an attribute of OpenEXR, but one that OpenImageIO keeps of a photograph.
   if (const auto* turn = header.findTypedAttribute<Imf::IntAttribute>("Orientation")) {
     if (turn->value() > 1 && turn->value() <= 8) {
       throw DecodeError(fmt::format(
@@ -196,7 +196,7 @@ ExrInput::Part part_of(const Imf::Header& header) {
     // OpenEXR keeps a row of tiles.
     const Imf::TileDescription& tile = header.tileDescription();
     block = std::max<std::uint64_t>(tile.xSize, width) * tile.ySize;
-    // Tiles have no need to be far larger than the picture.
+    // Tiles need not be far larger than the picture.
     if (block / 4 > width * height) most_bytes = std::min(most_bytes, unchecked_bytes);
   }
   if (pixel_bytes > 0 && block > most_bytes / pixel_bytes) {
@@ -290,7 +290,7 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   for (std::size_t i = 0; i < last_blocks.size(); ++i) {
     check_exr_block(*stream_, table, last_blocks[i], tiled[i]);
   }
-  // What is missing OpenEXR reads as zeros. Deflate's longest match makes 258 bytes of 2 bits, and
+  // OpenEXR reads what is missing as zeros. Deflate's longest match makes 258 bytes of 2 bits, and
   // halves become floats.
   constexpr std::uint64_t most_deflated = 2 * 4 * 258;
   const bool lacks_bytes = deflated && stored / most_deflated > encoded;
@@ -319,7 +319,7 @@ void ExrInput::read(std::size_t part, int first, int end, std::span<const std::s
     read_stored(part, first, end, channels, planes);
   } else {
     // Where the data window begins in the display window, and those of its rows and columns that
-    // are wanted.
+    // are requested.
     const std::int64_t left = std::int64_t{window.min.x} - shown.min.x,
                        top = std::int64_t{window.min.y} - shown.min.y,
                        stored_height = window.max.y - window.min.y + 1,

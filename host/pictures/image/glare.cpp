@@ -10,7 +10,7 @@
 namespace photile::image {
 namespace {
 
-/// Up to this a limit is a factor.
+/// A limit up to this value is a factor.
 constexpr double largest_factor = 100;
 
 double mean_luminance(const LightLayers& picture, const LightMix& mix) {

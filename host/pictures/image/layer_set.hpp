@@ -28,7 +28,7 @@ void write_light_records(PictureHeader& image, const LightRecords& records);
 /// The records of a picture; none gives an empty mix. Errors: InputError for damaged ones.
 LightRecords read_light_records(const PictureHeader& image);
 
-/// Where one light's layer lies among the channels of a picture.
+/// The position of one light's layer among the channels of a picture.
 struct LayerChannels {
   std::array<std::size_t, 3> rgb;
   std::optional<std::size_t> illuminance;

@@ -227,7 +227,7 @@ class HeaderCheck {
     refuse();
   }
 
-  /// Whether it has no attribute: the end of several parts.
+  /// Whether the header has no attribute, which ends the list of parts.
   bool read_header() {
     std::size_t attributes = 0;
     for (std::string name = word(); !name.empty(); name = word(), ++attributes) {
@@ -343,7 +343,7 @@ std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::ui
 
 namespace {
 
-/// What runs of equal bytes become, or what is wrong as any other number.
+/// The decoded size of runs of equal bytes; where the data is wrong, another number.
 std::uint64_t bytes_of_runs(std::string_view coded) {
   std::uint64_t bytes = 0;
   for (std::size_t i = 0; i < coded.size();) {

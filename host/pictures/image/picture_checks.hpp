@@ -1,4 +1,4 @@
-// What a picture may ask for, and what is checked before a decoder sees it, EXR headers among it.
+// The limits of a picture, and checks before a decoder reads it, of EXR headers among others.
 #pragma once
 
 #include <OpenEXR/ImfCompression.h>

@@ -1,4 +1,5 @@
-// What picture files say of their pixels: where these lie, and which light they stand for.
+// The metadata of picture files about their pixels: where these lie, and which light they
+// represent.
 #pragma once
 
 #include <cstddef>

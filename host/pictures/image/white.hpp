@@ -15,12 +15,12 @@ namespace photile::image {
 /// in bounds.
 using White = std::array<float, 3>;
 
-/// That of the light of all lamps together: their own colours by what each gives. {1, 1, 1} where
-/// nothing is lit.
+/// The white of the light of all lamps together: their colours, weighted by the light of each. {1,
+/// 1, 1} where nothing is lit.
 ///   illuminance   of each light, summed over the surfaces that are seen
 White white_of_light(std::span<const double> illuminance, const LightMix& mix);
 
-/// That of rendered layers by the illuminance of the surfaces that they show.
+/// The white of rendered layers, by the illuminance of the surfaces that they show.
 ///   mix   the lamps as the scene has them
 White white_of(const LightLayers& layers, const LightMix& mix);
 
@@ -28,7 +28,7 @@ White white_of(const LightLayers& layers, const LightMix& mix);
 /// or by their luminance where the picture has none. Errors: those of kept_white.
 White white_of(const LayeredPicture& picture);
 
-/// That of a colour temperature, kelvin.
+/// The white of a colour temperature, kelvin.
 White white_of_temperature(double kelvin);
 
 /// That which is kept with a picture, or none. Errors: InputError where the attribute is damaged.

@@ -26,8 +26,8 @@ void BatchSums::add_to_all(std::uint32_t layer, const glm::vec3& irradiance,
 
 /// Irradiance goes with the cosine to the normal n, so that light L from w counts L (w . n) for it.
 ///   even   fraction of what is lost when w sinks below the horizon that other light, which rises
-///          above it, makes good: half of light that is the same from all sides, for a plane that
-///          is turned by t gets (1 + cos t) / 2 of it and not cos t
+///          above it, replaces: half of light that is the same from all sides, for a plane that is
+///          turned by t gets (1 + cos t) / 2 of it and not cos t
 void BatchSums::add_by_normal(Sums& sums, const glm::vec3& irradiance, const glm::vec3& direction,
                               float even, float most_inverse_cosine) const {
   const auto light = static_cast<float>(luminance(glm::dvec3(irradiance)));

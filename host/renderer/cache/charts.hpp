@@ -80,14 +80,15 @@ class Charts {
     std::uint32_t side;
   };
   /// The surface that a node stands for: the triangle of the chart whose projection is nearest to
-  /// it, the lowest of several at one distance, and the nearest point of that, a little towards
-  /// its middle: at an edge nothing says on which side of a wall the node is. So a node beyond an
-  /// edge, or in a hole, stands for the surface at the edge. `prepare` has been called.
+  /// it, the lowest of several at one distance, and the nearest point of that, moved a little
+  /// towards its middle, because at an edge it is undefined on which side of a wall the node is. So
+  /// a node beyond an edge, or in a hole, stands for the surface at the edge. `prepare` has been
+  /// called.
   ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
   Support support(const NodeCoordinates& node, int levels) const;
   /// The surface that any position of the chart stands for.
   ///   position   the position, metres from its origin, across and along
-  ///   reach metres: surface within this distance is found fastest
+  ///   reach   metres: surface within this distance is found fastest
   Support support(std::uint32_t chart, const glm::dvec2& position, double reach) const;
 
   /// The cell of the coarsest lattice that a position lies in, or the nearest one.

@@ -47,7 +47,7 @@ double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance
 
 /// What multiplies the weights of a point and of those around it, so that the mean of points that
 /// are all alike is that of a plane through them, at the point. Where they lie around it evenly
-/// that is 1. How alike they are does not count here: beyond an edge there is surface all the same.
+/// that is 1. Their similarity does not count here: beyond an edge there is surface, too.
 class PlaneThroughPoints {
  public:
   /// References are kept.
@@ -94,8 +94,8 @@ void PlaneThroughPoints::fit(std::size_t own, std::span<const std::uint32_t> oth
   slope_ = std::min(share_of_slope(own, others, spread) * middle_ / spread, 1 / farthest);
 }
 
-/// The part of a slope that light shows: of the square of what it changes the mean by, the part
-/// that is more than noise would, which is how James and Stein shrink a mean.
+/// The fraction of a slope that is kept: of the square of the change of the mean by the slope, the
+/// part that exceeds noise, as James and Stein shrink a mean.
 double PlaneThroughPoints::share_of_slope(std::size_t own, std::span<const std::uint32_t> others,
                                           double spread) {
   change_.assign(layer_powers_.size(), 0.0);

@@ -35,7 +35,7 @@ struct IrradianceGatherParameters {
   /// slats narrower than half of it. Not where there are caustics, which only photons know. 0 = all
   /// is read.
   double near = 0;
-  /// Metres: how fine the light of hot spots (trace/hot_spots.hpp) is told at points. A light is
+  /// Metres: the resolution of the light of hot spots (trace/hot_spots.hpp) at points. A light is
   /// taken to be no closer to the point than this, so that its hot spot is as wide, and as bright
   /// altogether. 0 = as it is there; infinity = it is left out.
   double resolution = 0;
@@ -83,7 +83,7 @@ class IrradianceGather {
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
   ///   rays, light_samples   in place of the parameters'
-  ///   before rays and samples that the points have already: the new ones continue their sequences
+  ///   before   what the points have already: the new rays and samples continue its sequences
   /// Where several processes have the photon maps, all give the same points; each gathers at a part
   /// of them, and all get all.
   /// Errors: as estimate::PhotonEstimate; Interrupted, when `progress` says so.

@@ -1,4 +1,4 @@
-// What LightMaps hold.
+// The state of LightMaps.
 #pragma once
 
 #include <span>
@@ -28,7 +28,7 @@ struct LightMaps::Impl {
               std::span<const cache::NodeCoordinates> added);
   /// Releases all nodes.
   void clear();
-  /// What the source says of nodes, and where they are.
+  /// The values of nodes by the source, and their positions.
   std::pair<NodeValues, PrimaryHits> values_of(std::span<const cache::NodeCoordinates> nodes,
                                                NodeSource& source, const Progress& progress);
   void append(LightTable light, const PrimaryHits& at,

@@ -51,11 +51,11 @@ std::uint64_t hash_of(const NodeCoordinates& node) {
   return hash ^ hash >> 32;
 }
 
-/// Bits of the numbers of points: as many as random streams tell apart.
+/// Bits of the numbers of points: as many as random streams distinguish.
 constexpr int number_bits = 48;
 
-/// The number of a point is that of its position in the lattice that is the finest without the
-/// levels which skipped ones make room for, if that has it.
+/// The number of a point. A position that the finest lattice without skipped levels also has keeps
+/// its number there; others mix in by how many levels they are finer.
 std::uint64_t number_of(const NodeCoordinates& node, const Levels& levels) {
   NodeCoordinates at = node;
   int finer = levels.skipped;

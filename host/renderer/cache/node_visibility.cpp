@@ -37,7 +37,7 @@ bool NodeVisibility::is_in_slit(const SurfaceLocation& here, const SurfaceLocati
          !is_covered(rays_, here, there.position, reach);
 }
 
-/// Such as the gap behind a door.
+/// Whether the node lies in a slit, such as the gap behind a door.
 bool NodeVisibility::is_in_slit(const SurfaceLocation& here, std::uint32_t node) const {
   const LightMaps::NodePoint& point = maps_.point(node);
   const float apart = glm::distance(here.position, point.position);

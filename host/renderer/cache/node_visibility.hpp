@@ -1,4 +1,4 @@
-// Which of the nodes around a point of the surface say what light falls there.
+// Which of the nodes around a point of the surface give the light that falls there.
 #pragma once
 
 #include <cstdint>

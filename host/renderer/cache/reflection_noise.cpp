@@ -22,8 +22,8 @@ constexpr std::size_t most_compared = 64;
 constexpr double tolerated_noise = 0.09;
 
 /// Estimates on surface nearer to the reflecting surface than this, in widths of the estimate,
-/// would show their blur there, as on a bright wall behind a sconce of brass. Where the reflection
-/// is less than this part of what is seen, it does not show.
+/// would show their blur there, as on a bright wall behind a sconce of brass. A reflection that is
+/// less than this part of all light of a pixel does not show.
 constexpr double near_widths = 2, faint_reflection = 0.4;
 
 /// Large enough to make a task's cost vanish, small enough to share work.

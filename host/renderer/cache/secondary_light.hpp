@@ -57,8 +57,9 @@ class ValuedBy : public NodeSource {
 class SecondaryLight {
  public:
   /// References are kept.
-  ///   photons   the light at hits that do not read light maps, and `of_nodes` that for nodes: the
-  ///             same, unless several processes have the photons. What a point gets does not depend
+  ///   photons the source of light at hits that do not read light maps, and `of_nodes` that at
+  ///   nodes: the same, unless several processes have the photons. What a point gets does not
+  ///   depend
   ///             on the points beside it.
   ///   maps      of one level: a cell is known by its first node
   SecondaryLight(const RayScene& rays, light::LightAtPoints& photons,

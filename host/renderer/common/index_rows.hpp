@@ -19,7 +19,7 @@ struct IndexRows {
   }
 };
 
-/// IndexRows whose items keep the order in which they are told.
+/// IndexRows whose items keep the order in which they are added.
 ///   for_each   is called twice, as for_each(put), and calls put(row, item) for all of them
 template <class ForEach>
 IndexRows rows_of(std::size_t count, const ForEach& for_each) {

@@ -1,4 +1,4 @@
-// Objects in JSON files that users write, read member by member.
+// Objects in JSON files written by users, read member by member.
 #pragma once
 
 #include <filesystem>

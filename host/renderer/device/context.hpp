@@ -28,8 +28,8 @@ struct MemoryCounter {
   std::uint64_t peak = 0;
 };
 
-/// Holds buffers whose content can be brought back. Asked for memory where an allocation or a
-/// launch fails for want of it.
+/// Holds buffers whose content can be restored. It is asked to release memory where an allocation
+/// or a launch fails for lack of it.
 class Reclaimer {
  public:
   /// Releases some memory. False where nothing is left to release.
@@ -92,11 +92,12 @@ class Buffer {
 /// case does not.
 enum class SharedMemory { uncounted, counted };
 
-/// What memory a buffer of a CPU device is to be made of.
+/// The kind of memory that a buffer of a CPU device is made of.
 enum class MemoryPages {
   ordinary,
   /// Large ones, where the operating system has them: for what is kept and read in many short
-  /// ranges. Nothing for a buffer that lives for one call: each time the system must clear them.
+  /// ranges. They do not pay for a buffer that lives for one call, because the system has to clear
+  /// them each time.
   large
 };
 
@@ -118,9 +119,9 @@ class Defines {
   std::vector<std::pair<std::string, std::string>> entries_;
 };
 
-/// What a built kernel takes, as its device says.
+/// The resources that a built kernel takes, as its device reports them.
 struct KernelResources {
-  std::uint64_t private_bytes = 0;  ///< of a work-item in memory, for want of registers
+  std::uint64_t private_bytes = 0;  ///< of a work-item in memory, for lack of registers
   std::uint64_t local_bytes = 0;    ///< of a group
   std::size_t largest_group = 0;    ///< work-items that the device can run of it together
 };
@@ -143,8 +144,8 @@ struct KernelTime {
   std::string kernel;
   std::uint64_t launches = 0;
   double seconds = 0;
-  /// Until it could run first: what the runtime leaves to the first launch. Its program is a
-  /// ProgramTime.
+  /// The time until it could first run: the work that the runtime leaves to the first launch. The
+  /// time of its program is a ProgramTime.
   double preparation_seconds = 0;
 };
 

@@ -140,8 +140,8 @@ std::vector<cl_platform_id> platforms() {
 /// OpenCL call. What the user set stays.
 void keep_intel_from_vectorizing() { ::setenv("CL_CONFIG_CPU_VECTORIZER_MODE", "1", 0); }
 
-/// PoCL aborts for want of a thread, and for a number of them that is none. Call before the first
-/// OpenCL call.
+/// PoCL aborts where it cannot start a thread, and where its number of threads is not a number.
+/// Call before the first OpenCL call.
 void bound_pocl_threads() {
   int threads = core_count();
   for (const char* variable : pocl_thread_variables) {
@@ -151,7 +151,7 @@ void bound_pocl_threads() {
     if (asked > 0) threads = std::min(threads, asked);
     ::setenv(variable, std::to_string(threads).c_str(), 1);
   }
-  static const bool enough = (require_threads(threads), true);  // once: later PoCL has its threads
+  static const bool enough = (require_threads(threads), true);  // once: later, PoCL has its threads
   static_cast<void>(enough);
 }
 

@@ -15,8 +15,8 @@ class KernelTimes {
  public:
   /// Takes over the event of one launch.
   void add(const std::string& kernel, EventHandle event);
-  /// Takes over the event of a launch that took `seconds` from its call to its end: what it did not
-  /// run is preparation.
+  /// Takes over the event of a launch that took `seconds` from its call to its end: the part of
+  /// them in which it did not run is preparation.
   void add_first(const std::string& kernel, EventHandle event, double seconds);
   /// Adds seconds spent until a kernel could run.
   void add_preparation(const std::string& kernel, double seconds);

@@ -142,13 +142,13 @@ namespace {
 thread_local bool compiling = false;
 void (*abort_handler)(int) = nullptr;
 
-/// Tells of a compilation that takes a minute: a user who waits for it sees nothing else.
+/// Reports a compilation that takes a minute, during which the user sees nothing else.
 class SlowCompilation {
  public:
   explicit SlowCompilation(const DeviceInfo& info) {
     try {
       teller_ = std::thread([this, name = info.name] { wait(name); });
-    } catch (const std::system_error&) {  // no thread is left: nothing is told
+    } catch (const std::system_error&) {  // no thread can be started: nothing is printed
     }
   }
   ~SlowCompilation() {

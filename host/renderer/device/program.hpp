@@ -35,8 +35,8 @@ std::optional<NamedBinary> split(std::string_view text);
 /// would stay held.
 bool in_compiler();
 
-/// What to do where the process aborts, from the first compilation on: compilers of devices take
-/// the signal for themselves when they are loaded.
+/// Sets what is done when the process aborts, from the first compilation on: compilers of devices
+/// replace the signal's handler when they are loaded.
 void handle_aborts_by(void (*handler)(int));
 
 /// Where programs are built.

@@ -130,7 +130,7 @@ namespace photile {
 
 namespace {
 
-/// A single neighbour takes other ways through the kernels.
+/// A single neighbour uses other branches of the kernels.
 constexpr std::array tested_neighbours = {50, 1};
 constexpr estimate::PlaneSampleSize size{.photons = 20'000, .hits_per_side = 32};
 
@@ -138,7 +138,7 @@ constexpr estimate::PlaneSampleSize size{.photons = 20'000, .hits_per_side = 32}
 /// be the nearer one.
 constexpr double tie = 1e-5;
 
-/// Roundings of a sum of 50 numbers in single precision and of a division, by far.
+/// A generous bound for the rounding of a sum of 50 numbers in single precision and of a division.
 constexpr double irradiance_tolerance = 1e-4;
 
 /// The mean of estimates over some 400 discs that do not overlap, each of 50 photons, is right to

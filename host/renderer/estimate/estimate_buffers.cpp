@@ -42,7 +42,7 @@ EstimateBuffers::EstimateBuffers(device::Context& context, const LightSums& sums
     : context_(context), sums_(sums), reclaimer_(context, *this) {}
 
 void EstimateBuffers::begin(std::uint32_t hits) {
-  // A batch that was not read has failed, most likely for want of memory. Slots of many lights are
+  // A batch that was not read has failed, most likely for lack of memory. Slots of many lights are
   // as many as their hits: they are scanned.
   const bool fits = sums_.many_lights ? hits == capacity_ : hits <= capacity_;
   if (in_use_ || !fits) release();

@@ -73,7 +73,8 @@ class GridQuery : public Query {
     launch.set("grids", page.grids).set("cell_start", page.cell_start);
   }
 
-  /// A kernel for a page. What the device cannot run gives way to what any runs, from then on.
+  /// A kernel for a page. If the device cannot run it, a kernel that any device can run is used
+  /// from then on.
   template <class SetDefines>
   device::Kernel kernel(const maps::MapPage& page, const char* file, const char* name,
                         SetDefines set_defines) {

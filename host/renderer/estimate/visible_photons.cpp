@@ -48,7 +48,7 @@ struct VisiblePhotons::Disc {
   float height;                            ///< of lines of sight above the surface, metres
 };
 
-/// What is known of a light's photons in a disc.
+/// The photons of a light in a disc, as far as they were tested.
 struct VisiblePhotons::Layer {
   int photons = 0, passed = 0;  ///< how many there are, and are behind in the list
   int probes = 0, probes_seen = 0;
@@ -56,7 +56,7 @@ struct VisiblePhotons::Layer {
   double all = 0, seen = 0;  ///< flux, weighted by the kernel
 
   bool doubtful() const { return probes > 0 && (behind || probes_seen <= most_probes_seen); }
-  /// Up to this part of the light what is seen replaces it.
+  /// Where the visible part of the light is at most this fraction, it replaces the light.
   double kept() const { return behind ? most_kept_before : most_kept; }
 };
 

@@ -18,8 +18,8 @@ namespace photile::estimate {
 
 /// The photons nearest to a hit may lie on the other side of a wall that stands on the same floor:
 /// a dark room would get the light of the yard, and a floor outside a ring of metal that of the
-/// caustic within it. Here the hit's lines of sight along the surface tell which photons count, and
-/// which part of the disc they lie on.
+/// caustic within it. Here the hit's lines of sight along the surface decide which photons count,
+/// and which part of the disc they lie on.
 class VisiblePhotons {
  public:
   /// Keeps a reference to `rays`, and copies of what it needs of the photons.

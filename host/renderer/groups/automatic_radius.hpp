@@ -19,9 +19,9 @@ inline std::size_t spread_index(std::size_t i, std::size_t count, std::size_t si
   return (2 * i + 1) * size / (2 * count);
 }
 
-/// Photons in blocks of neighbours along the Morton curve, each with its box: most blocks are told
-/// from those around a query by their boxes alone. Structures of arrays, so that loops over boxes
-/// and over the photons of a block run in vectors.
+/// Photons in blocks of neighbours along the Morton curve, each with its box: most blocks are
+/// excluded from a query by their boxes alone. Structures of arrays, so that loops over boxes and
+/// over the photons of a block run in vectors.
 class PhotonBlocks {
  public:
   /// Takes `most` of the positions, in equal steps, or all where they are fewer.

@@ -126,13 +126,14 @@ using namespace groups;
 /// A patch joins another that already holds this part of its photons.
 constexpr double least_shared = 0.65;
 
-/// At least as large a part must those be of what the joined patch would hold around it. With less,
+/// These must be at least as large a part of what the joined patch would hold around it. With less,
 /// the queries of either would look at too many photons of the other in vain: of the bright side of
 /// a light for a hit on its unlit side.
 constexpr double least_shared_around = 0.5;
 
 /// Normals this close to the axis leave a map flat: no query needs to look at normals. A flat map
-/// that a join would bend must save this part of its references by it, for every query will pay.
+/// that a join would bend must save this part of its references by it, because every query becomes
+/// slower.
 constexpr double flat_angle = 0.17;  // radians
 constexpr double least_saved_by_bending = 0.3;
 

@@ -94,8 +94,8 @@ bool PatchSplitter::serves_as_patch(const PatchPart& part) const {
          covered_part(scene_, shape, part.triangles, radius_) >= least_cover;
 }
 
-/// The area of references that a part will need: its own, more of it the farther the part is from
-/// serving as a patch, and a border as wide as the radius. A sample of many triangles says enough
+/// The area of references that a part will need: its own area, which counts more the less the part
+/// is fit to be a patch, and a border as wide as the radius. A sample of many triangles says enough
 /// to choose between splits; where all are judged, their shape is the part's.
 double PatchSplitter::cost(PatchPart& part) const {
   PatchShape shape;

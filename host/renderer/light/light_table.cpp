@@ -151,7 +151,7 @@ LightTable::Total LightTable::total(std::size_t row, std::span<const double> pow
     const double power = powers[layer];
     luminance_sum += power * luminance(glm::dvec3(irradiance[entry]));
     for (std::size_t b = 0; b < count; ++b) sums[b] += power * double{batch[entry * count + b]};
-    // Photons, or neighbours, that lights share may err in all of them alike.
+    // Errors of photons, or of neighbours, that lights share may be the same in all of them.
     if (!shared_variance.empty()) shared += power * std::sqrt(double{shared_variance[entry]});
   });
   shared *= defaults::aimed_noise;

@@ -13,8 +13,8 @@
 
 namespace photile::light {
 
-/// What lights add to a row, with room for every light: those that were added to are known, so that
-/// few are read and set back. Sums run in the order in which they are added.
+/// What lights add to a row, with room for every light: the lights that were added to are listed,
+/// so that only these are read and reset. Sums run in the order in which they are added.
 ///   Sums   of one light; those made by default are of nothing
 template <class Sums>
 class RowSum {

@@ -58,7 +58,7 @@ std::unique_ptr<PhotonPages> photon_pages(const Build& build, const CandidateMap
       std::min(context.largest_buffer(), context.memory_limit() / 32));
 }
 
-/// All but what is told by the photons' triangles.
+/// All that does not follow from the photons' triangles.
 void give_back_records(Photons& photons) {
   // Nothing is assigned: that would keep the memory.
   std::vector<glm::vec3>().swap(photons.position);
@@ -127,7 +127,7 @@ void set_map_sizes(std::vector<std::uint32_t> counts, PhotonMapStatistics& stati
 }
 
 /// Builds the pages of `queue` into the store.
-///   release what releases the photons, for the last page; null: they stay
+///   release   what releases the photons, for the last page; null: they stay
 void build_pages(MapStore& store, const Build& build, const CountedMaps& counted, PageQueue& queue,
                  const PhotonRelease* release, Progress& progress) {
   while (const auto range = queue.next()) {

@@ -1,4 +1,4 @@
-// Whether photons can be trusted.
+// Checks of photons from outside.
 #pragma once
 
 #include <algorithm>

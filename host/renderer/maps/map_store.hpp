@@ -37,8 +37,8 @@ struct MapStore {
   std::vector<std::uint32_t> landed;  ///< per oriented face: photons that landed there
   std::vector<glm::vec3> normals;     ///< per oriented face; only if a page has record_normal
 
-  /// Makes what answers queries on these maps where they are no grids: what grids are compared with
-  /// is made so (bench/structures). Empty for grids.
+  /// Makes the queries of these maps where they are not grids: the structures that grids are
+  /// compared with (bench/structures). Empty for grids.
   std::function<std::unique_ptr<estimate::Query>(const MapStore&, const estimate::QueryParameters&)>
       make_query;
 

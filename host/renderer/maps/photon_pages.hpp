@@ -56,10 +56,10 @@ PhotonPage upload_photon_records(device::Context& context, const Photons& photon
 PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range);
 
-/// The photons of a build, page by page: on the device while there is memory, uploaded again where
-/// there was none. `for (const PhotonPage& page : pages)` goes through all of them,
-/// `for (const PhotonPage& page : pages.entering(first_map, last_map))` through those that those
-/// maps may hold photons of; a page stays until the next one is reached.
+/// The photons of a build, page by page: on the device while there is memory, otherwise uploaded
+/// again when they are used. `for (const PhotonPage& page : pages)` goes through all of them, `for
+/// (const PhotonPage& page : pages.entering(first_map, last_map))` through those that those maps
+/// may hold photons of; a page stays until the next one is reached.
 class PhotonPages final : private Residents {
  public:
   using Plan = std::function<std::vector<PhotonRange>(std::uint64_t max_bytes)>;

@@ -19,7 +19,7 @@ class KernelPreparation {
   /// Begins with those devices that have not run any kernel yet. Until wait() returns, no other
   /// code may use the devices. References are kept.
   ///   lists      of neighbours will be asked for, beside estimates
-  ///   caustics will have separate estimates
+  ///   caustics   will have separate estimates
   KernelPreparation(const Scene& scene, std::span<Device> devices,
                     const RenderParameters& parameters, bool lists, bool caustics);
 

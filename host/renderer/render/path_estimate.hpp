@@ -1,5 +1,5 @@
-// The path tracer's answer to the question that photon maps answer with a density: irradiance and
-// reflected radiance at points of opaque surfaces. Unbiased, noisy, and without any of their code.
+// The light at points by path tracing instead of a density of photons: irradiance and reflected
+// radiance at points of opaque surfaces. Unbiased and noisy; it shares no code with photon maps.
 #pragma once
 
 #include <cstdint>

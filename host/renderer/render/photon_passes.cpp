@@ -266,7 +266,7 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
     const bool grouped = prepared && prepared->has_groups();
     radius_ = grouped ? prepared->radius : plan_.radius(traced.photons, progress);
     costs_.radius.add(radius_watch.taken());
-    // Groups are found once, for no later radius is larger.
+    // Groups are found once, because no later radius is larger.
     find_groups(traced.photons, grouped ? prepared : nullptr, progress);
   }
   if (plan_.used().processes) move_to_owners(traced, progress);

@@ -110,7 +110,7 @@ class PhotonPasses {
   ///              Where it has light maps of these settings, photon maps are built when an estimate
   ///              is first needed.
   ///   keep       is given those of the first pass, or null
-  ///   parts where light maps are read: the factor on the number of photons
+  ///   parts      where light maps are read: the factor on the number of photons
   /// Errors: those of the stages.
   PassPhotons next(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress,
                    int parts = 1);

@@ -10,7 +10,7 @@ namespace photile {
 namespace {
 
 /// Hits estimated at a time: enough to fill a device, little enough to stay in memory, and fewer
-/// where each takes longer, so that progress is seen and a wish to stop is heard.
+/// where each takes longer, so that progress is shown and a request to stop takes effect soon.
 std::int64_t hits_per_batch(int neighbours) {
   return (std::int64_t{1} << 20) * defaults::neighbours /
          std::max(defaults::neighbours, neighbours);
@@ -152,7 +152,7 @@ void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatc
     add_to_film(layers_, seen, estimates, illuminance_weight);
     costs_.film.add(film_watch.taken());
     if (!has_errors) return;
-    seen.emission.clear();  // its samples alone err
+    seen.emission.clear();  // only its samples have errors
     add_to_film(*source.errors(), seen, errors, illuminance_weight);
   };
   PrimaryHitBatch reflected;

@@ -1,4 +1,4 @@
-// A picture that fills: hits, their light, and the film.
+// A picture in progress: hits, their light, and the film.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace photile {
 
-/// Asks for the light of what is seen, row by row, and adds it to the film.
+/// Computes the light of what is visible, row by row, and adds it to the film.
 class Picture {
  public:
   /// References are kept.

@@ -1,4 +1,4 @@
-// What the stages of a rendering cost, over all its photon passes.
+// The costs of the stages of a rendering, over all its photon passes.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct StageCost {
   void add(const TimeTaken& time, std::uint64_t host_bytes = 0, std::uint64_t device_bytes = 0);
 };
 
-/// What a stage cost, as a record of a run has it.
+/// The cost of a stage, as a record of a run has it.
 StageStatistics stage(const char* name, const StageCost& cost,
                       std::vector<std::pair<std::string, double>> figures = {});
 
@@ -54,7 +54,7 @@ struct RenderCosts {
   PointTraffic points_sent;                               ///< of the picture
   std::vector<std::pair<std::string, double>> processes;  ///< figures of all
 
-  /// Forgets what the picture before has cost, and not the maps.
+  /// Resets the costs of the last picture, but not those of the maps.
   void start_picture();
 
   /// The stages in their order, with figures.

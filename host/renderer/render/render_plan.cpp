@@ -42,7 +42,7 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
                     "most points receive no light; give a larger radius, or none",
                     radius, nearest));
   } catch (const UsageError&) {
-    // Most photons lie in the same points.
+    // Most photons coincide.
   }
 }
 
@@ -187,7 +187,8 @@ std::vector<EstimateParameters> RenderPlan::estimates(
   return levels;
 }
 
-/// What ends tell may be noisy, for a node adds up many of them, but not blurred.
+/// The light at ray ends may be noisy, because a node adds up many of them, but it must not be
+/// blurred.
 int RenderPlan::neighbours_at_ends() const {
   return std::min(used_.neighbours, std::max(defaults::least_neighbours_at_ends,
                                              used_.neighbours / defaults::neighbours_over_ends));

@@ -1,5 +1,5 @@
-// How a rendering is made: what is asked for, checked once, and all that follows from it. Every
-// stage has its own parameters from here, and from nowhere else.
+// How a rendering is made: the settings, checked once, and all that follows from them. Every stage
+// has its own parameters from here, and from nowhere else.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace photile {
 
-/// Whether nodes of light maps gather light for what is asked: with rays of theirs, and unless the
-/// light is not that of nodes, or light samples from the hits replace a part of it.
+/// Whether nodes of light maps gather light with these settings: where they have rays, unless nodes
+/// are not used, or light samples from the hits replace a part of the light.
 bool nodes_gather(const RenderParameters& asked);
 
 /// What light is requested for: pictures, whose hits lie so close that many share nodes of light
@@ -31,9 +31,9 @@ class RenderPlan {
   /// `check` in render/setting.hpp and of automatic_passes.
   RenderPlan(const RenderParameters& asked, const RayScene& rays, HitsAsk hits, Progress& progress);
 
-  /// What is asked, with what follows from it in place: photon passes that fit in memory, light
-  /// samples where rays gather, discs for naive maps. The radius is 0 where photons tell
-  /// it.
+  /// The settings, completed by what follows from them: photon passes that fit in memory, light
+  /// samples where rays gather, discs for naive maps. The radius is 0 where it follows from the
+  /// photons.
   const RenderParameters& used() const { return used_; }
 
   int passes() const { return used_.passes; }
@@ -53,12 +53,12 @@ class RenderPlan {
 
   /// The parameters of tracing in this pass, whose paths follow those of the passes before.
   ///   paths_before   of each light
-  ///   parts where light maps are read: the factor on the number of paths
+  ///   parts          where light maps are read: the factor on the number of paths
   PhotonTracerParameters tracing(int pass, const std::vector<std::uint64_t>& paths_before,
                                  int parts = 1) const;
 
-  /// The radius of the first pass, metres: as asked, or by its photons. Errors: SettingError where
-  /// they tell none.
+  /// The radius of the first pass, metres: as given, or by its photons. Errors: SettingError where
+  /// no radius follows from them.
   double radius(const Photons& photons, Progress& progress) const;
 
   NeighbourGroupParameters groups(double first_radius) const;

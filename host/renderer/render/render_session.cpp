@@ -78,7 +78,7 @@ RenderSession::RenderSession(std::shared_ptr<const PreparedScene> scene, std::sp
 
 RenderResult RenderSession::render(const HitSource& hits, const Film& film, Progress& progress,
                                    const LayerMixdown* mixdown) {
-  // What light maps that grow take is spread over all of their pictures.
+  // The time of growing light maps is spread over all of their pictures.
   if (parts_ == 1) costs_.start_picture();
   Picture picture(scene_->rays, plan_, devices_, film, plan_.passes(), mixdown, costs_);
   for (const auto& pass : passes_) picture.add(hits, *pass, progress);
@@ -229,8 +229,8 @@ Film film_of(std::span<const Sensor> sensors, const GatherParameters& gathering)
   return {1, static_cast<int>(sensors.size()), gathering.rays};
 }
 
-/// What the film has gathered as illuminance is that of the surfaces seen: replaces it by the
-/// sensors' own.
+/// Replaces the illuminance of the film, which is that of the surfaces seen, by that of the
+/// sensors.
 LightLayers with_own_illuminance(LightLayers layers) {
   const auto own = [](const glm::vec3& radiance) {
     return static_cast<float>(glm::pi<double>() * luminance(glm::dvec3(radiance)));

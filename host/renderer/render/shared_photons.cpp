@@ -83,7 +83,7 @@ std::vector<std::uint8_t> MapOwners::triangles_of(std::uint32_t rank) const {
 
 namespace {
 
-/// Where the photons of a process stand among all, sorted by oriented face.
+/// The positions of a process's photons among all, sorted by oriented face.
 class GlobalIndices {
  public:
   GlobalIndices(Communicator& processes, const Photons& own) : own_(own) {
@@ -290,7 +290,7 @@ Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGr
     if (rank != processes.rank()) moved.sent += for_rank[rank].size();
   }
   moved.bytes = moved.sent * each;
-  // Where one process has no photons it does not know what others send.
+  // A process without photons does not know what others send.
   const std::size_t in_round =
       std::max<std::size_t>(1, defaults::exchange_round_bytes / (each * ranks));
   const std::uint64_t own_rounds = (most + in_round - 1) / in_round;

@@ -183,7 +183,7 @@ class SurfacePath {
     add(light->layer, weigh(light->direction) * (arrives * weight));
   }
 
-  /// Roulette on what is left of the light, as photons play it.
+  /// Roulette on what is left of the light, as for photons.
   bool survives(const glm::vec3& weight, const RandomBlock& numbers) {
     const float before = largest(left_);
     left_ *= weight;
@@ -207,7 +207,7 @@ class SurfacePath {
   std::vector<PathLight>& found_;
 
   LightWeights weights_;        ///< of the radiance that arrives along the path
-  double radiance_factor_ = 1;  ///< of trace::Scattered, so far; roulette does not play with it
+  double radiance_factor_ = 1;  ///< of trace::Scattered, so far; not used by roulette
   glm::vec3 left_{1.0f};        ///< of the light since the first direction was chosen
   glm::vec3 from_{0.0f};        ///< the last opaque point, metres
   float density_ = 0;           ///< of the direction from there; 0 after a mirror or glass

@@ -1,4 +1,4 @@
-// Whether a scene can be trusted.
+// Checks of a scene.
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>

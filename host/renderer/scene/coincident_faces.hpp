@@ -1,4 +1,4 @@
-// Faces in one place: where several triangles of one plane overlap, which of them counts on either
+// Coincident faces: where several triangles of one plane overlap, which of them counts on either
 // side.
 #pragma once
 

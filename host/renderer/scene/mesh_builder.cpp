@@ -122,10 +122,10 @@ bool MeshBuilder::add(const std::array<Corner, 3>& corners, std::uint32_t materi
   return true;
 }
 
-/// Whether the triangle says nothing that one before it in its place does not. Of two that look the
-/// same way the first counts. Two that look away from each other are the two sides of a surface;
-/// where both are of one material, as files often have them, one is enough, since a material
-/// reflects on either side. Lights shine from the front, so that they need both.
+/// Whether the triangle adds nothing to an earlier one in the same place. Of two that look the same
+/// way the first counts. Two that look away from each other are the two sides of a surface; where
+/// both are of one material, as files often have them, one is enough, since a material reflects on
+/// either side. Lights shine from the front, so that they need both.
 bool MeshBuilder::is_duplicate(std::uint32_t triangle, const std::array<const Corner*, 3>& sorted) {
   const std::uint32_t light = scene_.triangle_light[triangle];
   std::uint8_t& front_side = scene_.front_side[triangle];

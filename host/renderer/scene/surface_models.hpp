@@ -55,7 +55,7 @@ bool conserve_energy(Material& material);
 SceneNeeds needs_of_materials(std::span<const Material> materials);
 
 /// Removes shading normals where none is needed: all are those of their triangles, or lie on what
-/// scatters no light, and no material that the needs tell of is specular or glossy.
+/// scatters no light, and by the needs no material is specular or glossy.
 void drop_flat_normals(Scene& scene, const SceneNeeds& of_materials);
 
 /// The fraction of light from all directions that an opaque surface sends back, per channel: the

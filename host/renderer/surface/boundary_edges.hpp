@@ -23,8 +23,8 @@ struct BoundaryEdge {
 bool run_along(const BoundaryEdge& a, const BoundaryEdge& b, double tolerance);
 
 /// Finds the edges that lie on one line and share some of it. Edges of similar directions are in
-/// one tree, separate from others: those that meet in a point, as the blades of a fan do, are told
-/// apart by it.
+/// one tree, separate from others: those that meet in a point, as the blades of a fan do, are
+/// separated by it.
 class BoundaryEdges {
  public:
   /// No more edges than this that run along an edge are found from either end. More edges within

@@ -33,8 +33,9 @@ struct CoplanarRegions {
 CoplanarRegions find_coplanar_regions(const SurfaceMesh& mesh, double radius,
                                       std::span<const std::uint8_t> dark = {});
 
-/// A hierarchy over the triangles that count, whose nodes know whether all of theirs belong to one
-/// region: the middle of a large wall is left out at once, however finely it is tessellated.
+/// A hierarchy over the triangles that count, whose nodes store whether all of their triangles
+/// belong to one region: the middle of a large wall is left out at once, however finely it is
+/// tessellated.
 class PlaneTree {
  public:
   PlaneTree(const SurfaceMesh& mesh, const CoplanarRegions& regions);

@@ -13,7 +13,7 @@ namespace photile::surface {
 
 /// Per oriented face: the fraction of its points above which, within a fifth of the radius, no
 /// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
-/// is covered in places counts as open, so that it is right where it is.
+/// is covered only in places counts as open, so that estimates are right where it is open.
 ///   lit   per component
 std::vector<float> find_open_fractions(const SurfaceMesh& mesh, const CoplanarRegions& regions,
                                        const SmoothComponents& components,

@@ -117,7 +117,7 @@ SurfaceIndex index_of(const Scene& scene, const std::vector<std::uint32_t>& land
   index.region = regions.of_triangle;
   if (photons != nullptr) {
     index.unlit_regions = surface::find_unlit_regions(mesh, *photons, index.dark, hidden, radius);
-    // What counts in part for most hits has no holes for others.
+    // Faces whose area counts only in part for most hits keep no unlit regions.
     std::erase_if(index.unlit_regions, [&](const DarkPart& part) {
       return index.open_fraction[part.oriented_face] < 1;
     });

@@ -21,8 +21,8 @@ namespace photile::surface {
 inline constexpr double most_found_in_the_dark = 0.005;
 
 /// Per oriented face: 1 where its component's mean density leads to expect photons, and next to
-/// none landed. Nearly empty triangles on which so many photons are expected that less than one in
-/// a hundred is empty by chance are judged together with those that they connect to, and are dark
+/// none landed. Nearly empty triangles on which enough photons are expected for less than one in a
+/// hundred to be empty by chance are judged together with those that they connect to, and are dark
 /// where all of them together are.
 ///   components   those of `connections`
 ///   landed   per oriented face: how many photons did

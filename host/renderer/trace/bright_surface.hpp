@@ -13,7 +13,7 @@ namespace photile::trace {
 /// all reflected light comes from it (`defaults::bright_light`), as from the ceiling above a cove;
 /// none where light is spread wider. Rays with the density of the cosine seldom meet such
 /// surface. Found by the photons of a pilot of `defaults::pilot_paths` paths; textures do not
-/// count, for spheres decide where rays go and not what they find.
+/// count, because spheres decide where rays go and not what they find.
 ///   layer_powers   of the lights together, per layer
 Targets bright_surface(const RayScene& rays, std::span<const double> layer_powers,
                        std::uint64_t seed);

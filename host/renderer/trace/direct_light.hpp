@@ -34,7 +34,7 @@ class LightSampleNumbers {
  public:
   /// `sequences`: shading points that share them, as the samples of a pixel do, take others of
   /// their points each.
-  ///   surface of a path, counted from 0: each has its own sequences
+  ///   surface   of a path, counted from 0: each has its own sequences
   LightSampleNumbers(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
   /// Random numbers of one light sample, and of a direction of the shading point's own.
@@ -50,7 +50,7 @@ class LightSampleNumbers {
   std::uint32_t first_;
 };
 
-/// What of a surface's reflection is requested.
+/// The part of a surface's reflection that is requested.
 enum class ReflectedPart : std::uint8_t {
   all,
   but_the_base,  ///< OpaqueBsdf::drop_diffuse

@@ -93,7 +93,7 @@ bool sees_patch(const glm::vec4& patch, const glm::dvec3& direction) {
 
 bool sees_disc(const Light& sun, const glm::vec3& direction) {
   if (sun.is_sky_patch()) return sees_patch(sun.sky_patch, glm::dvec3(direction));
-  // The sine decides, for near 1 a cosine of floats could not tell the disc's border.
+  // The sine is compared, because near 1 a cosine of floats cannot resolve the disc's border.
   const glm::dvec3 seen(direction), centre(-sun.direction);
   return glm::dot(seen, centre) > 0 &&
          glm::length(glm::cross(seen, centre)) <

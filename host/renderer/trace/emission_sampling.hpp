@@ -32,7 +32,7 @@ class AreaSampler {
   double density(const TriangleHit& where) const;
 
  private:
-  /// What `surface_point` finds of a triangle, for all points.
+  /// The part of `surface_point` that is the same for all points of a triangle.
   struct Front {
     glm::dvec3 corner, along_u, along_v;
     glm::vec3 normal;

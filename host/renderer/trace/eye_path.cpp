@@ -258,7 +258,7 @@ namespace {
 constexpr float most_received = 8;
 
 /// A light as the lobe reflects it; also by how much the base reflects more or less of it than of
-/// light from all sides, for hits say no more of the base.
+/// light from all sides, because hits hold no more of the base.
 void sample_light(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& whole,
                   const OpaqueBsdf& lobe, const LightSampleNumbers::Sample& light_sample,
                   EyeRecord& record) {

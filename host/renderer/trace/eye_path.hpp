@@ -30,13 +30,13 @@ struct EyeHit {
   float fraction;
 };
 
-/// What a hit has more in scenes with a glossy surface.
+/// The additional data of a hit in scenes with a glossy surface.
 struct GlossyEyeHit {
   glm::vec3 outgoing;
   HitLobe lobe;
 };
 
-/// What a run of samples saw, in the order pixel, sample.
+/// The hits of a run of samples, in the order pixel, sample.
 struct EyeRecord {
   std::vector<EyeHit> hits;
   std::vector<GlossyEyeHit> glossy;       ///< one for each hit; empty unless the scene is glossy
@@ -134,7 +134,7 @@ struct EyeEnd {
 struct LightTechnique {
   const LightSampler& light_sampler;
   float density;      ///< of the ray's direction, per steradian
-  bool only = false;  ///< lights that it does not find count nothing
+  bool only = false;  ///< lights that it does not find have no weight
   const SelectionProbabilities& probabilities = by_power_alone;  ///< at the ray's start
   /// Lights within the scene that the ray meets at once, or through panes, count nothing.
   bool distant_only = false;

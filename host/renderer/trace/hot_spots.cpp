@@ -23,7 +23,8 @@ namespace {
 constexpr double reach_of_surroundings = 1.0 / 8;
 /// Lights whose close surface reflects less of their flux have no hot spot.
 constexpr double least_flux = 1e-3;
-/// As great a part of rays goes to hot spots as they reflect of the lights' flux, within bounds.
+/// The fraction of rays that is aimed at hot spots is the fraction of the lights' flux that they
+/// reflect, within bounds.
 constexpr double least_rays = 0.25, most_rays = 0.5;
 /// Directions in which surface around a light is looked for.
 constexpr std::uint32_t directions_around = 256;

@@ -66,7 +66,7 @@ class LightSampler {
   }
 
   /// A light as seen from `position`. Nothing where it shines elsewhere.
-  ///   choice, on_light separate blocks
+  ///   choice, on_light   separate blocks
   std::optional<LightSample> sample(
       const glm::vec3& position, const RandomBlock& choice, const RandomBlock& on_light,
       const SelectionProbabilities& probabilities = by_power_alone) const;

@@ -25,14 +25,14 @@ struct PhotonRun {
   std::size_t size() const { return position.size(); }
 };
 
-/// What a run of paths of one light left.
+/// The result of a run of paths of one light.
 struct PathRecord {
   PhotonRun photons;
   double escaped = 0;   ///< luminance that left the scene
   double absorbed = 0;  ///< luminance that surfaces, or the bound on path length, took
 };
 
-/// What all paths of one light share.
+/// What all paths of one light have in common.
 struct PathSetup {
   const RayScene::Impl* rays;
   const PhotonTracerParameters* parameters;

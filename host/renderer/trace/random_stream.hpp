@@ -159,8 +159,8 @@ constexpr std::uint32_t second_sobol_digits(std::uint32_t index) {
 /// Point `index` of the sequence that `scramble` names, each coordinate times 2^32. Uniform over
 /// the square for random scrambles; of any 2^n points from a multiple of 2^n on there is one in
 /// each of the 2^n rectangles that halving the square's sides leaves. The order of points is
-/// scrambled in the same way, so that pairs of dimensions know nothing of each other. Sequences of
-/// different scrambles are independent: their scatter is an honest error.
+/// scrambled in the same way, so that pairs of dimensions are independent of each other. Sequences
+/// of different scrambles are independent: their scatter is an honest error.
 inline glm::uvec2 sobol_words(std::uint32_t index, const RandomBlock& scramble) {
   const std::uint32_t position =
       reversed_bits(scrambled_digits(reversed_bits(index), scramble.word(0)));

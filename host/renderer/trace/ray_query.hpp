@@ -89,7 +89,7 @@ inline SurfaceLocation location_on(const Scene& scene, std::uint32_t oriented_fa
   return {position, glm::vec3(face_normal(scene, oriented_face))};
 }
 
-/// How a shadow ray differs from the line between two points.
+/// The difference of a shadow ray from the line between two points.
 struct ShadowRayInset {
   float offset;    ///< its distance above them, metres
   float left_out;  ///< and ends short of the second by this part of its length

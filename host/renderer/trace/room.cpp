@@ -20,7 +20,7 @@ constexpr double border_slack = 0.01;  // of a cell: a wall belongs to the room 
 
 constexpr std::array<glm::i32vec2, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 
-/// Metres to the nearest surface; none: nothing there, or the point is no point.
+/// Metres to the nearest surface; none where there is no surface, or the point is not finite.
 std::optional<double> distance_to(const RayScene& rays, const glm::dvec3& from,
                                   const glm::dvec3& direction) {
   const glm::vec3 ray(direction);
@@ -122,7 +122,7 @@ std::optional<Room> Room::meant(const RayScene& rays, const PlanAxes& axes,
   return room;
 }
 
-/// Reaches cell after cell. False where there is no end.
+/// Fills the plan cell by cell. False where the room has no end.
 bool Room::spread() {
   std::vector<Cell> next{Cell(0)};
   reached_.insert(key_of(next.back()));

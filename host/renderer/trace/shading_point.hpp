@@ -1,4 +1,4 @@
-// A shading point: the surface under a hit, and how it weighs the light that arrives.
+// A shading point: the surface at a hit, and how it weighs the light that arrives.
 #pragma once
 
 #include <cstddef>
@@ -56,7 +56,7 @@ class ShadingPoint {
   }
 
   /// A direction, or nothing where it would enter the surface.
-  ///   choice, random separate blocks
+  ///   choice, random   separate blocks
   std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const;
 
   /// Density of such directions per steradian.

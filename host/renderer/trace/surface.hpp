@@ -1,4 +1,4 @@
-// A point on a triangle, with everything scattering asks about it.
+// A point on a triangle, with all that scattering needs.
 #pragma once
 
 #include <cstdint>

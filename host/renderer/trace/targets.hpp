@@ -61,7 +61,7 @@ class Aim {
     glm::vec3 direction;  ///< unit
     double density;       ///< per steradian, of this direction among all that could be sampled
   };
-  /// Only where it is possible.
+  /// Only where `possible` holds.
   ///   u   in [0, 1)^2: points that fill it evenly give directions that do
   Direction sample(glm::dvec2 u) const;
   /// Per steradian, at which `sample` gives this direction.

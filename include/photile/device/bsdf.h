@@ -1,7 +1,7 @@
 // The one definition of reflection at an opaque surface, compiled by C++ (photon scattering,
 // tests) and by OpenCL C (radiance estimate). Nothing but + - * / and sqrt, which round alike
-// everywhere. What differs between the photons of a hit is a PHOTILE_REAL: a float unless whoever
-// includes this defines it as a vector of floats.
+// everywhere. What differs between the photons of a hit is a PHOTILE_REAL: a float unless the
+// including file defines it as a vector of floats.
 //
 // The model is a coat on a base, as in glTF 2.0's metallic-roughness materials: a GGX reflection
 // over what is Lambertian. With the directions i (towards the light) and o (towards the eye) and h

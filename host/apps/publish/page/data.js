@@ -104,7 +104,7 @@ function decodeTexture(bytes, width) {
     addPredictions(plane, width, 255);
     for (let i = 0; i < count; ++i) texels[4 * i + channel] = plane[i];
   }
-  for (let i = 0; i < bytes.length; i += 4) {  // red and blue are told by what they differ from green
+  for (let i = 0; i < bytes.length; i += 4) {  // red and blue are coded as differences from green
     texels[i] += texels[i + 1] - 128;
     texels[i + 2] += texels[i + 1] - 128;
   }

@@ -33,7 +33,7 @@ class Lights {
       luminances[(row + whole) * lights + i] * (1 - part) + luminances[(row + next) * lights + i] * part);
   }
 
-  /// Errors: none; false where the light lacks a colour that the temperature has.
+  /// Returns false where the light lacks a primary colour that the temperature has.
   setKelvin(i, kelvin) {
     const state = this.states[i];
     state.kelvin = kelvin;

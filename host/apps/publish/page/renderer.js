@@ -285,7 +285,7 @@ class Renderer {
     this.bind(7, gl.TEXTURE_2D, this.palette, uniforms.uPalette);
   }
 
-  /// Draws into what is bound.
+  /// Draws into the bound framebuffer.
   ///   camera   {eye, right, up, forward, projection}
   drawView({eye, right, up, forward, projection}, mode) {
     const gl = this.gl;
@@ -395,7 +395,7 @@ class Renderer {
     this.probeIsOld = false;
     this.drawsProbe = true;
     const projection = perspective(Math.PI / 2, 1, 0.05, this.far);
-    // Faces of a cube map look from inside, their rows downwards.
+    // Faces of a cube map are seen from inside, with rows downwards.
     const faces = [[[1, 0, 0], [0, -1, 0]], [[-1, 0, 0], [0, -1, 0]], [[0, 1, 0], [0, 0, 1]],
                    [[0, -1, 0], [0, 0, -1]], [[0, 0, 1], [0, -1, 0]], [[0, 0, -1], [0, -1, 0]]];
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.probeTarget);

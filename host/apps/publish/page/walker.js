@@ -85,7 +85,7 @@ class Walker {
     if (offset[0] !== 0 || offset[2] !== 0) {
       const from = this.eye.slice();
       const next = this.pushed(add(this.eye, [offset[0], 0, offset[2]]));
-      // Nobody walks off the edge of the floor, or through a wall in one long step.
+      // The viewer cannot walk off the edge of the floor, or through a wall in one long step.
       const way = subtract(next, from), length = Math.hypot(...way);
       const blocked = length > 0 &&
           (this.surfaces.meet(from, scaled(way, 1 / length))?.distance ?? Infinity) < length;
@@ -95,7 +95,7 @@ class Walker {
     const ground = this.ground(this.eye);
     if (ground === null) return;
     const target = ground + this.height;
-    // The ground below is known but for a rounding, which must not keep the page drawing for ever.
+    // The height of the ground is rounded, which must not keep the page drawing for ever.
     if (Math.abs(target - this.eye[1]) < 1e-9) return;
     // A table is not climbed.
     if (target - this.eye[1] > walking.step) return;
@@ -103,7 +103,8 @@ class Walker {
     if (Math.abs(target - this.eye[1]) < 1e-4) this.eye[1] = target;
   }
 
-  /// Away from what stands closer than a body is wide, between the knees and the top of the head.
+  /// Moves away from what is closer than the width of a body, between the knees and the top of the
+  /// head.
   pushed(place) {
     const foot = place[1] - this.height + walking.step, top = place[1] + walking.headroom;
     for (let round = 0; round < 3; ++round) {
