@@ -233,7 +233,7 @@ class MpiCommunicator final : public Communicator {
   }
 
  private:
-  /// What every collective call is within.
+  /// Encloses every collective call.
   class Call {
    public:
     explicit Call(MpiCommunicator& own) : own_(own) {

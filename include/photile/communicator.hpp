@@ -33,7 +33,7 @@ class Communicator {
   /// Sends to_each[r] to rank r, and returns what each rank has sent here, by rank.
   virtual std::vector<Bytes> exchange(std::vector<Bytes> to_each) = 0;
 
-  /// What each rank gave, by rank, on all of them.
+  /// The data of each rank, by rank, on all ranks.
   virtual std::vector<Bytes> gather(std::span<const std::byte> own) = 0;
 
   /// The values of all ranks, those of rank 0 first.
@@ -55,7 +55,7 @@ class Communicator {
   /// Sums over the ranks before this one; zeros on rank 0.
   virtual std::vector<std::uint64_t> sum_before(std::span<const std::uint64_t> values) = 0;
 
-  /// How the work of all has ended.
+  /// The outcome of the work of all.
   struct Conclusion {
     std::uint32_t rank = 0;  ///< the first that failed; 0 where none did
     int code = 0;            ///< its exit code
@@ -64,7 +64,7 @@ class Communicator {
   ///   tell   called in the first that failed, before any ends: a launcher ends all with the first
   virtual Conclusion conclude(int code, const std::function<void()>& tell) = 0;
 
-  /// What this rank has sent to others so far, and waited for them.
+  /// The bytes that this rank has sent to others so far, and the time that it has waited for them.
   struct Traffic {
     std::uint64_t bytes = 0;
     std::uint64_t calls = 0;

@@ -128,7 +128,7 @@ inline constexpr double few_nodes = 80'000, most_times_where_few = 4;
 /// an error of 2% shows as ragged borders.
 inline constexpr double tolerated_light_sample_error = 0.02;
 inline constexpr int light_samples_again = 4, most_light_samples_again = 256;
-/// What a ray of a node counts for normals at a right angle to the node's is its light over the
+/// The weight of a node's ray for normals at a right angle to the node's is its light over the
 /// cosine, whose variance is unbounded: the inverse of the cosine is clamped to this. Surface less
 /// than 2 degrees above the horizon then counts less for them, by 2% of what light of all heights
 /// alike does.
@@ -166,8 +166,8 @@ inline constexpr float photon_ray_offset = 0x1p-2f;
 inline constexpr float least_glass_fraction = 0.02f;
 
 // Gloss by rays
-/// What counts less than this in its sample goes on by chance, and counts this much then. A smooth
-/// dielectric seen from the front reflects 0.04, and is always followed.
+/// A path whose weight in its sample is less than this goes on by Russian roulette, with this
+/// weight. A smooth dielectric seen from the front reflects 0.04, and is always followed.
 inline constexpr float least_lobe_weight = 0.02f;
 /// Runs of a pixel's samples, whose scatter is their error.
 inline constexpr int runs_of_samples = 4;

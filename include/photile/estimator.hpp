@@ -46,10 +46,9 @@ struct EstimateTuning {
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
 };
 
-/// What estimators use unless asked for another: vector width 16 on every CPU, whatever its own
-/// width, so that pictures agree in every bit between CPUs; elsewhere `lanes`: of 16 work-items
-/// where they have shuffles, else of as many as the device runs in step, or of 32 where it does not
-/// say.
+/// The tuning that estimators use by default: vector width 16 on every CPU, whatever its own width,
+/// so that pictures agree in every bit between CPUs; elsewhere `lanes`: of 16 work-items where they
+/// have shuffles, else of as many as the device runs in step, or of 32 where it does not say.
 EstimateTuning shipped_tuning(const DeviceInfo& device);
 
 /// With this strategy, as wide as suits it on the device.
@@ -78,7 +77,7 @@ inline DensityKernel kernel_used(DensityKernel kernel, int neighbours) {
 /// border has little noise then, and does not depend on where the k-th photon happens to lie.
 inline constexpr DensityKernel caustic_kernel = DensityKernel::cone;
 
-/// What a density estimate divides by.
+/// The area that a density estimate divides by.
 enum class AreaMode {
   disc,    ///< the disc through the k-th photon (Jensen 2001): dark at borders and in corners
   clipped  ///< the part of it that is surface which light reaches, near the hit's plane
@@ -99,7 +98,7 @@ struct EstimateParameters {
   int compiled_neighbours = 0;
   /// Naive maps, whose photons are those of one triangle, take the disc in any case.
   AreaMode area = AreaMode::clipped;
-  /// What each photon counts; with one neighbour, 1.
+  /// The weight of each photon; with one neighbour, 1.
   DensityKernel kernel = DensityKernel::constant;
   /// For clipped areas: of the scene, for the radius of the maps or a larger one and the angle of
   /// their groups. Estimators share it; none = the estimator makes its own.

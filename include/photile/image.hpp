@@ -13,7 +13,7 @@
 
 namespace photile {
 
-/// What a picture says of itself beside its pixels.
+/// The metadata of a picture.
 struct PictureHeader {
   int width = 0, height = 0;
   std::vector<std::string> channel_names;  ///< "R", "Combined_lamp.G", ...

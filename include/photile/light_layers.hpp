@@ -10,8 +10,8 @@
 
 namespace photile {
 
-/// What one layer of the picture holds: a light, or all lights of a group at their powers. Its
-/// power scales them together.
+/// One layer of the picture: a light, or all lights of a group at their powers. Its power scales
+/// them together.
 struct LightGroup {
   std::string name;                   ///< of the group, or of the light alone
   std::vector<std::uint32_t> lights;  ///< into Scene::lights, ascending
@@ -64,7 +64,7 @@ struct LightLayers {
   LightLayers dense() const;
 };
 
-/// What becomes of the lights' layers: each is multiplied by a number and added to another. Of
+/// A mixdown of the lights' layers: each is multiplied by a number and added to another. Of
 /// hundreds of patches of a sky one layer is left, which costs a film as much as one light.
 struct LayerMixdown {
   std::vector<std::string> layers;      ///< of the film

@@ -59,8 +59,7 @@ struct NodeValues {
   std::vector<float> distance;
 };
 
-/// What the nodes of light maps get their light from. What a node gets must depend on its position
-/// alone.
+/// The source of the light of nodes. The light of a node must depend on its position alone.
 class NodeSource {
  public:
   virtual ~NodeSource() = default;
@@ -179,10 +178,10 @@ class LightMaps {
   /// source does not tell it.
   float distance(std::uint32_t node) const;
 
-  /// What nodes hold, in the form of estimates: node n is hit n.
+  /// The light of the nodes, in the form of estimates: node n is hit n.
   const LightTable& values() const;
 
-  /// What is held now; `settings` are left empty.
+  /// The contents now; `settings` are left empty.
   LightMapContents contents() const;
   /// Takes in what light maps of the same scene and parameters held, of one pass. Nothing was
   /// filled before. Errors: InputError where it does not fit them; then nothing here is of use.

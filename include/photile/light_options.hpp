@@ -50,7 +50,7 @@ struct LocalTime {
   static LocalTime parse(const std::string& text);
 };
 
-/// What tells where the sun stands and how bright the sky is.
+/// The data that the position of the sun and the luminance of the sky follow from.
 struct SkySituation {
   std::optional<Site> site = std::nullopt;  ///< of the weather file where it is not given
   std::optional<LocalTime> time = std::nullopt;

@@ -12,7 +12,7 @@
 
 namespace photile {
 
-/// What of a file is taken, and what is added to it or changed.
+/// The parts of a file that are loaded, and what is added to it or changed.
 struct SceneLoadOptions {
   float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
@@ -42,13 +42,13 @@ struct SceneLoadOptions {
   SkySituation situation = {};
   std::filesystem::path luminaires =
       {};  ///< luminaires to place, JSON (docs/luminaires.md); "" = none
-  /// What stands for the content of that file while it is edited, "" = the file; a scene without
-  /// any light then gets one to see by.
+  /// Text that replaces the content of that file while it is edited, "" = the file; a scene without
+  /// any light then gets one.
   std::string luminaires_text = {};
   /// Windows for the light of suns and skies: "auto" finds them, "off" takes none, else globs of
   /// the names of materials that fill them.
   std::vector<std::string> portals = {};  ///< empty = auto
-  /// Turns what is given in lumens or lux into the watts of an OBJ scene.
+  /// Turns values in lumens or lux into the watts of an OBJ scene.
   double lumen_per_watt = defaults::lumen_per_watt;
 };
 

@@ -16,7 +16,7 @@
 
 namespace photile {
 
-/// What stages ask of all photons together, where several processes hold them.
+/// Data of all photons together, where several processes hold them.
 struct PhotonsOfAll {
   Communicator* processes = nullptr;  ///< that hold them
   std::uint64_t count = 0;
@@ -46,8 +46,7 @@ struct Photons {
   std::vector<std::uint32_t> first_of;
   std::vector<std::uint64_t> emitted_per_light;  ///< paths started
 
-  /// What is known of all photons where these are the part that one process holds; null: these are
-  /// all.
+  /// Data of all photons where these are the part that one process holds; null: these are all.
   std::shared_ptr<const PhotonsOfAll> of_all;
 
   std::size_t size() const { return position.size(); }
@@ -65,7 +64,7 @@ Photons sort_by_oriented_face(Photons photons, std::size_t oriented_face_count);
 ///   runs   in the order light, path; consumed, so that only one array exists twice
 Photons merge_runs(std::vector<Photons> runs);
 
-/// How emitted photons are shared between the lights.
+/// How emitted photons are divided between the lights.
 enum class PhotonQuota {
   balanced,  ///< half by power, half equally: dim lights stay clean when they are turned up
   power,     ///< by power: least noise at the scene's own powers

@@ -59,8 +59,8 @@ std::string_view name_of(GlossMode mode);
 inline constexpr std::array all_gloss_modes = {GlossMode::photons, GlossMode::rays,
                                                GlossMode::automatic};
 
-/// What is asked of a rendering, each setting once. What follows from them, and which stage reads
-/// which, is said in docs/settings.md; their ranges are those of the table there.
+/// The settings of a rendering, each once. docs/settings.md states what follows from them, which
+/// stage reads which, and their ranges.
 struct RenderParameters {
   std::uint64_t seed = defaults::seed;  ///< of all random numbers
   Film film = {};
@@ -104,8 +104,9 @@ PrimaryHitParameters eye_rays(const RenderParameters& parameters);
 struct RenderResult {
   LightLayers layers;
   RunStatistics statistics;
-  /// What the picture was made with: as asked, and where that leaves a choice or cannot be had,
-  /// what was found (the radius, of the first pass). Asked for these, `render` gives it again.
+  /// The settings that the picture was made with: those that were given, and where these leave a
+  /// choice or are not possible, those that were used (the radius is that of the first pass). With
+  /// these, `render` gives the same picture.
   RenderParameters used;
   /// Relative standard error of what was read from nodes that gather, all lights together; 0 where
   /// none is known.
@@ -158,7 +159,7 @@ inline constexpr std::array all_qualities = {Quality::draft, Quality::good, Qual
 /// Its position in all_qualities.
 constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t>(quality); }
 
-/// What its pictures are like.
+/// A description of its pictures.
 std::string_view description_of(Quality quality);
 
 /// Sets what the table of settings (docs/settings.md) has for the quality, and leaves all others.
@@ -173,22 +174,22 @@ std::vector<std::string_view> setting_names();
 void set_by_name(RenderParameters& parameters, std::string_view name,
                  const std::variant<std::uint64_t, double, std::string_view>& value);
 
-/// What photon maps are built from: all that depends on random numbers or takes long on the host.
+/// The input of photon maps: all that depends on random numbers or takes long on the host.
 struct TracedPhotons {
   Photons photons;
   NeighbourGroups groups;  ///< empty: found when maps are built
   double radius = 0;       ///< metres: of the maps; 0 where groups are not there
   /// The photons that came by mirrors and glass alone; where rays gather.
   std::optional<Photons> caustics = std::nullopt;
-  /// What light maps of these photons held, if they are kept. Where its settings are those of the
-  /// rendering, maps are built from the photons when an estimate is first needed.
+  /// The contents of light maps of these photons, if they are kept. Where its settings are those of
+  /// the rendering, maps are built from the photons when an estimate is first needed.
   std::optional<LightMapContents> light_maps = std::nullopt;
 
   bool has_groups() const { return radius > 0; }
 };
 using KeepPhotons = std::function<void(const TracedPhotons&)>;
 
-/// What a quick frame shows.
+/// The state of a quick frame.
 struct DrawnFrame {
   /// Cells of light maps that it shows coarser than they should be.
   std::size_t lacking = 0;
@@ -263,7 +264,7 @@ class SceneRenderer {
   /// Whether `draw` has light maps to draw from.
   bool draws() const;
 
-  /// What the light maps hold by now; none where they are not read, or cannot be kept.
+  /// The contents of the light maps so far; none where light maps are not read, or cannot be kept.
   std::optional<LightMapContents> light_maps() const;
 
   /// The part of that picture that comes by a mirror, by glass that bends or reflects it, or by a

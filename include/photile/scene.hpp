@@ -84,7 +84,8 @@ struct LuminousOpening {
   double projected_area(const glm::dvec3& direction) const;
 };
 
-/// What a photometric file says of its luminaire beside the intensities; "" and 0 = nothing.
+/// The data of a photometric file about its luminaire beside the intensities; "" and 0 = not
+/// stated.
 struct LuminaireData {
   std::string maker, article, luminaire, source;  ///< UTF-8; `source`: the lamps in it
   double watts = 0;                               ///< that the luminaire takes
@@ -160,7 +161,7 @@ inline double luminance(const glm::dvec3& rgb) {
   return 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b;
 }
 
-/// What light powers and radiances in the scene are measured in.
+/// The units of light powers and radiances in the scene.
 enum class PowerUnit {
   lumen,  ///< photometric (glTF): powers in lm, picture in cd/m2
   watt    ///< radiometric (OBJ): powers in W, picture in W/(m2 sr)
@@ -326,14 +327,13 @@ struct MeshInstance {
   glm::mat4x3 to_world{1.0f};        ///< metres; a scale along the mesh's axes, then a rotation
 };
 
-/// What a file calls a part of its geometry: a node of glTF that has a mesh, an object or group of
-/// OBJ.
+/// A named part of a file's geometry: a node of glTF that has a mesh, an object or group of OBJ.
 struct ImportedMesh {
   std::string name;
   std::uint64_t triangles = 0;  ///< that the scene took
 };
 
-/// What the import found worth telling.
+/// The messages and counts of the import.
 struct ImportReport {
   std::vector<std::string> warnings;       ///< one line each: object, what was found, what was done
   std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
@@ -378,7 +378,7 @@ struct Scene {
   /// run".
   std::vector<std::array<glm::vec4, 3>> corner_tangent;
 
-  /// What repeats, for the ray tracing structure alone: every triangle is in the arrays above.
+  /// Repeated meshes, for the ray tracing structure alone: every triangle is in the arrays above.
   /// Instances ascend by first_triangle and do not overlap.
   std::vector<SharedMesh> shared_meshes;
   std::vector<MeshInstance> instances;
@@ -437,8 +437,8 @@ BoundingSphere bounding_sphere(const Scene& scene);
 /// more, memory and time grow with the lights that reach a hit, not with all.
 inline constexpr std::uint32_t max_dense_lights = 8;
 
-/// What later stages must provide for; whatever is false costs nothing anywhere. From it follow the
-/// records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
+/// The features that later stages must support; those that are false cost nothing. From them follow
+/// the records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
 /// compiled with, and what shadow rays look at (docs/kernels.md, "Records").
 struct SceneNeeds {
   bool glossy = false;       ///< some opaque material has a specular lobe or a normal map

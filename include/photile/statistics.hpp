@@ -1,4 +1,4 @@
-// What each stage cost: a record of time, memory and figures.
+// The cost of each stage: a record of time, memory and figures.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ struct StageStatistics {
 /// The stages of a run, in order.
 using RunStatistics = std::vector<StageStatistics>;
 
-/// What something took.
+/// The time that some work took.
 struct TimeTaken {
   double seconds = 0;            ///< wall clock
   double processor_seconds = 0;  ///< of all threads of the process

@@ -29,7 +29,7 @@ struct PartBounds {
   }
 };
 
-/// What the area of a disc clipped to the surface needs to know of a scene.
+/// The data of a scene that the area of a disc clipped to the surface follows from.
 ///
 /// A *component* is a set of oriented faces that connect over edges which fold by no more than the
 /// angle of the neighbour groups; coplanar pieces that touch connect, too. Light reaches a

@@ -159,10 +159,10 @@ void check_lights(const DaylightOptions& options) {
 /// The sky's lights are needed only to find the windows.
 Scene scene_under_sky(const std::string& file, SceneLoadOptions load, const Progress& progress) {
   load.sky = Sky{SkyKind::patches, 0, 0, 0, weather::patch_counts[0]};
-  load.ground = defaults::ground_reflectance;  // the year's is part of its hours
+  load.ground = defaults::ground_reflectance;  // the year's ground is part of its hours
   load.situation.weather.clear();
   load.situation.site.reset();
-  load.portals = {"off"};  // those of the grids are searched
+  load.portals = {"off"};  // those of the grids' rooms are searched later
   return loading::load_scene(file, load, progress);
 }
 

@@ -43,7 +43,7 @@ void take_signals(const sigset_t& signals) {
 }  // namespace
 
 void handle_signals() {
-  // For threads that were started earlier: those of MPI.
+  // For signals that reach threads which were started earlier: those of MPI.
   struct sigaction action {};
   action.sa_handler = request_stop;
   action.sa_flags = SA_RESETHAND | SA_RESTART;

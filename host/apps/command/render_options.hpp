@@ -27,7 +27,7 @@ class App;
 
 namespace photile::app {
 
-/// What estimates the light that reaches a surface.
+/// The method that computes the light that reaches a surface.
 enum class Integrator { photon_map, path };
 
 /// The options as typed; each value is within its range.

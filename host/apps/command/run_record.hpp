@@ -1,5 +1,5 @@
-// What a run was asked for, what it used and what it cost: for the picture's attributes, the
-// summary and --stats.
+// The request, the settings and the cost of a run: for the picture's attributes, the summary and
+// --stats.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a scene holds, as text and as JSON.
+// The contents of a scene, as text and as JSON.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -30,7 +30,7 @@ std::vector<std::string> option_names(const Setting& setting) {
   return names;
 }
 
-/// What stands for a value in the help: "N", "X", "naive|triangle|patch|auto".
+/// The placeholder of a value in the help: "N", "X", "naive|triangle|patch|auto".
 std::string type_name(const ValueRange& range) {
   if (const auto* words = std::get_if<Words>(&range)) {
     return fmt::format("{}", fmt::join(words->words, "|"));
@@ -131,7 +131,7 @@ std::string name_in(const std::string& assignment) {
   return assignment.substr(0, assignment.find('='));
 }
 
-/// What each sets, a row for each.
+/// The values that each quality sets, a row for each.
 std::string quality_table() {
   std::string text = "| `--quality` |", rule = "|---|";
   for (const Setting& setting : settings()) {

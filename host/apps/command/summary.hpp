@@ -18,7 +18,7 @@ namespace photile::app {
 /// A line for the device.
 void tell_device(const DeviceInfo& device, Progress& progress);
 
-/// What the scene holds, sky_lines, and the first of its warnings.
+/// The contents of the scene, sky_lines, and the first of its warnings.
 ///   load   what it was loaded with
 void tell_scene(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load,
                 Progress& progress);

@@ -28,7 +28,7 @@ void print_line(const std::string& line);
 /// environment variable NO_COLOR is set.
 void print_error(const std::string& message);
 
-/// How far a stage is.
+/// The progress of a stage.
 struct StageProgress {
   std::string stage;
   std::uint64_t done = 0;

@@ -244,7 +244,7 @@ class Walk {
     return picture->root();
   }
 
-  /// Appends the layers that it refers to to `layers`.
+  /// Stores the layers that it refers to in `layers`.
   std::unique_ptr<LayeredPicture> picture_of(int frame, LightLayers& layers) {
     const Camera camera = camera_at(frame);
     QuietProgress quiet(progress_);

@@ -31,7 +31,7 @@ enum class Verdict {
   too_noisy  ///< the noise leaves it open
 };
 
-/// What one method read.
+/// The reading of one method.
 struct Measured {
   double value = 0;  ///< mean over seeds
   double error = 0;  ///< relative to what was expected

@@ -23,7 +23,7 @@ namespace photile::view {
 
 struct InspectablePhotons;  // photon_map.hpp
 
-/// What the noise of an estimate depends on.
+/// The numbers that the noise of an estimate depends on.
 struct EstimateNoise {
   /// Photons of one estimate, as many as equal weights would need for its noise; 0 = not known.
   double photons = 0;

@@ -77,7 +77,7 @@ class FrameWorker {
  private:
   class Interruption;
 
-  /// What the next frame is made of.
+  /// The input of the next frame.
   struct Task {
     FrameRequest request;
     std::shared_ptr<MapGeneration> maps;

@@ -30,7 +30,7 @@ class LuminaireEditor {
 
   /// An earlier or later list; the positions of its lamps are known when it is loaded.
   void restore(loading::LuminaireList list);
-  /// What loading a list found.
+  /// The result of loading a list.
   void loaded(const std::string& text, std::vector<loading::PlacedLuminaires> placed);
 
   bool unsaved() const { return list_ != saved_; }

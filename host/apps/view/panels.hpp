@@ -20,12 +20,12 @@ namespace photile::view {
 /// Of the panel that is docked beside the picture, in the units of the screen.
 inline constexpr int panel_width = 300;
 
-/// What a click on the picture asked for.
+/// The request of a click on the picture.
 struct Probe {
   double x = 0, y = 0;  ///< in the picture, as shares of its width and height
 };
 
-/// What values at clicked points are multiplied by and held against.
+/// The factor on values at clicked points, and the value that they are compared with.
 struct PointSettings {
   double maintenance = defaults::maintenance_factor;
   std::string target_name = "none";
@@ -50,7 +50,7 @@ struct PanelState {
   bool closing = false;  ///< the window is asked to close, and there are unsaved changes
 };
 
-/// What they show alone.
+/// What they only show.
 struct PanelReadings {
   const Frame* frame = nullptr;
   WorkProgress work;

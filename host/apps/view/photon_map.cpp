@@ -20,8 +20,8 @@ std::array<glm::dvec3, 3> corners_of(const Scene& scene, std::uint32_t oriented_
   return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
 }
 
-/// Whether the boxes of two triangles are at most `radius` apart: cheap, and never false where they
-/// are.
+/// Whether the boxes of two triangles are at most `radius` apart: cheap, and true wherever the
+/// triangles are.
 bool boxes_within(const std::array<glm::dvec3, 3>& a, const std::array<glm::dvec3, 3>& b,
                   double radius) {
   const glm::dvec3 gap =
@@ -97,7 +97,7 @@ namespace {
 using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour red{230, 60, 40}, blue{60, 120, 255}, green{60, 190, 90}, yellow{255, 230, 0},
     cyan{0, 255, 255};
-/// How much of a tint is its colour.
+/// The fraction of a tint that is its colour.
 constexpr double tint_fraction = 0.4;
 /// A photon is hidden by surface that is nearer by this fraction of its distance: pixels see their
 /// middles only.

@@ -173,7 +173,7 @@ class Viewer {
     frames_.use(std::move(maps), request(was_moving_));
   }
 
-  /// What is not saved is asked about first.
+  /// Unsaved changes are asked about first.
   bool closed() {
     if (!window_.should_close()) return false;
     if (!luminaires_ || luminaires_->may_close()) return true;

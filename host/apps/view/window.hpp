@@ -46,7 +46,8 @@ class Window {
   int picture_width() const;
   int picture_height() const;
 
-  /// What fills that from the next frame on: sRGB texels, row 0 at the top; stretched.
+  /// The picture that fills that area from the next frame on: sRGB texels, row 0 at the top;
+  /// stretched.
   void set_picture(int width, int height, std::span<const std::uint8_t> rgb);
 
   /// All that the window is about to show, between draw_frame and show_frame: sRGB texels of

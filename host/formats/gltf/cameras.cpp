@@ -39,7 +39,7 @@ Camera camera_at(const glm::dmat4& world, double field_of_view, const std::strin
   return camera;
 }
 
-/// What a visited node's camera is called: as the node, or by its own name where that has none.
+/// The name of a visited node's camera: that of the node, or its own where the node has none.
 std::string name_of_camera(const tinygltf::Model& model, const NodeVisit& visit,
                            const tinygltf::Camera& camera) {
   const bool unnamed = visit.source->name.empty() && !camera.name.empty();

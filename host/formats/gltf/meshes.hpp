@@ -27,7 +27,7 @@ bool is_usable(const tinygltf::Primitive& primitive, const std::string& use,
 /// The accessor of an attribute, or -1.
 int attribute(const tinygltf::Primitive& primitive, const std::string& name);
 
-/// What messages call a mesh.
+/// The name of a mesh in messages.
 std::string name_of_mesh(const tinygltf::Model& model, int mesh);
 
 /// All usable primitives of a mesh, in its own space. Errors: InputError.

@@ -122,7 +122,7 @@ class MtlReader {
     if (lists(ignored_maps, keyword)) {
       return warn_of_material(fmt::format("texture {} is ignored; its factor is used", spelled));
     }
-    // What follows a # on a line of numbers is a comment, too.
+    // Text after a # on a line of numbers is a comment, too.
     const Words words = words_of(rest.substr(0, rest.find('#')));
     if (const auto* color = statement_of(color_statements, keyword)) {
       materials_.back().*color->color = color_of(words, color->range);

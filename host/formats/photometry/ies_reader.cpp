@@ -18,7 +18,7 @@ namespace {
 
 enum class Photometry { type_c = 1, type_b = 2, type_a = 3 };
 
-/// What the TILT= line says; `next` is the line after it.
+/// The content of the TILT= line; `next` is the line after it.
 struct Tilt {
   std::string value;  ///< in lower case
   std::size_t next;
@@ -34,8 +34,8 @@ Tilt find_tilt(const std::vector<std::string_view>& lines) {
   throw files::ResourceError("no line starts with TILT=: this is no LM-63 file");
 }
 
-/// What the keywords before the TILT= line say. [MORE] goes on with the one before it; colours have
-/// no keyword of the standard, so makers write their own, or name the lamp by them.
+/// The content of the keywords before the TILT= line. [MORE] continues the one before it; colours
+/// have no keyword of the standard, so makers write their own, or name the lamp by them.
 LuminaireData data_of(const std::vector<std::string_view>& lines, std::size_t end) {
   std::map<std::string, std::string> values;
   std::string keyword;

@@ -27,12 +27,12 @@ struct LightSource {
   std::uint32_t material = none;  ///< of a surface: into Scene::materials, and the glTF file's
   std::string lamp = {};          ///< what the file has once for all instances; "" = just this one
 
-  /// What instances of one lamp have in common, and no other lights.
+  /// A key that instances of one lamp have in common, and no other lights.
   using LampKey = std::tuple<Kind, std::uint32_t, std::string>;
   LampKey lamp_key() const { return {kind, material, lamp}; }
 };
 
-/// What a file says of the lights of an object beside their emission.
+/// The data of a file about the lights of an object beside their emission.
 struct LightTraits {
   std::string group;      ///< "" = none
   double lumens = 0;      ///< of the object's lights together; 0 = not given
@@ -61,7 +61,7 @@ class AreaLights {
                             std::uint32_t material, const Emission& emission,
                             const LightTraits& traits = {});
 
-  /// What find_or_add was given for a light.
+  /// The arguments of find_or_add for a light.
   struct Origin {
     std::uint64_t object;
     std::uint32_t material;

@@ -45,7 +45,7 @@ std::map<reading::LightSource::LampKey, std::set<std::uint32_t>> layers_of_lamps
   return layers;
 }
 
-/// What the mix makes of each light.
+/// Each light as the mix sets it.
 std::vector<LightSetting> settings_of(const loading::SourcedScene& sourced,
                                       const SceneLoadOptions& options, const LightMix& mix,
                                       std::vector<std::string>& left_out) {

@@ -116,7 +116,7 @@ struct Level {
 constexpr std::array<Level, 3> levels{
     {{"high", 750, 500}, {"medium", 500, 300}, {"minimum", 300, 100}}};
 
-/// What a share of the values reach or exceed.
+/// The value that a fraction of the values reaches or exceeds.
 double reached_by(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   const auto count =

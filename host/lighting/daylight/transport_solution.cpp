@@ -154,7 +154,7 @@ std::vector<double> of_batch(const LightTransport& transport, std::uint32_t batc
   return sensors;
 }
 
-/// What a channel counts in the luminance; all of it where channels are alike.
+/// The weight of a channel in the luminance; 1 where channels are alike.
 double channel_fraction(const LightTransport& transport, int channel) {
   if (!transport.coloured) return 1;
   glm::dvec3 one(0.0);

@@ -15,7 +15,7 @@
 
 namespace photile::glare {
 
-/// What is seen of a luminaire, through panes of thin glass too.
+/// The visible part of a luminaire, also through panes of thin glass.
 struct VisibleLuminaire {
   std::string name;
   double luminance = 0;       ///< cd/m2, mean over what is seen

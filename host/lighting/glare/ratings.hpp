@@ -37,8 +37,8 @@ double ggr(double ugr, double direct, double indirect, double coverage);
 ///   illuminance   E_v, lux at the eye
 double dgp(std::span<const Source> sources, double illuminance);
 
-/// What that is multiplied by where it is dark: e^(0.024 E_v - 4) / (1 + e^(0.024 E_v - 4))
-/// (Wienold 2012); 1 from 1000 lux on.
+/// The factor on that where it is dark: e^(0.024 E_v - 4) / (1 + e^(0.024 E_v - 4)) (Wienold 2012);
+/// 1 from 1000 lux on.
 double low_light_correction(double illuminance);
 
 /// Daylight glare index (Hopkinson 1972; the solid angle weighed by the position index):

@@ -145,10 +145,10 @@ glm::dvec3 displayed(glm::dvec3 rgb, DisplayView view) {
 
 double largest_of(const glm::dvec3& rgb) { return std::max({rgb.r, rgb.g, rgb.b}); }
 
-/// What a pixel of an image shows in [0,1]. On the border of a lamp or a window, where one sample
-/// of many makes a pixel white and borders would be staircases, the two sides are mixed as they are
-/// displayed: in the parts of which the pixel's light is the mix, taken from the brightest and the
-/// darkest of the pixels around.
+/// The displayed values of a pixel of an image, in [0,1]. On the border of a lamp or a window,
+/// where one sample of many makes a pixel white and borders would be staircases, the two sides are
+/// mixed as they are displayed: in the parts of which the pixel's light is the mix, taken from the
+/// brightest and the darkest of the pixels around.
 ///   light   (x, y) of pixels in multiples of white
 template <class Light>
 glm::dvec3 shown(const Light& light, int width, int height, int x, int y, DisplayView view) {

@@ -1,4 +1,4 @@
-// What a LightChange asks for, once its value is understood.
+// A LightChange with its value parsed.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -70,7 +70,7 @@ void take_attributes(const Imf::Header& header, PictureHeader& image) {
   }
 }
 
-/// What keeps a file from being read as a picture, or "".
+/// Why a file cannot be read as a picture, or "".
 std::string unreadable(const fs::path& file) {
   if (const std::string reason = why_no_regular_file(file); !reason.empty()) return reason;
   std::error_code error;

@@ -51,7 +51,7 @@ void scale(std::vector<float>& values, float factor) {
   }
 }
 
-/// What a layer's channels are multiplied with.
+/// The factors on a layer's channels.
 struct Factors {
   std::array<float, 3> rgb{1, 1, 1};
   float illuminance = 1.0f;

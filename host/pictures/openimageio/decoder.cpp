@@ -77,7 +77,8 @@ image::Sample sample_of(OIIO::TypeDesc stored) {
   return stored.size() == 1 ? image::Sample::byte : image::Sample::word;
 }
 
-/// What the reader says first: the lines behind it say the same again, or name its options.
+/// The first line of the reader's message: the following lines repeat it, or name options of the
+/// reader.
 std::string reason_of(const OIIO::ImageInput& input) {
   std::string reason = input.geterror();
   reason.erase(std::find(reason.begin(), reason.end(), '\n'), reason.end());

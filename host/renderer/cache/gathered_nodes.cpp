@@ -49,8 +49,8 @@ PointLinks links_between(const PointLinks& all, std::span<const std::uint32_t> c
   return links;
 }
 
-/// What two points differ by, layer by layer, and the light of the brighter one; luminance of all
-/// layers at their powers.
+/// The difference of two points, layer by layer, and the light of the brighter one; luminance of
+/// all layers at their powers.
 struct Contrast {
   double difference = 0, light = 0;
 

@@ -45,9 +45,9 @@ double similarity_of_errors(const Total& a, const Total& b, const NoiseTolerance
   return part * part;
 }
 
-/// What multiplies the weights of a point and of those around it, so that the mean of points that
-/// are all alike is that of a plane through them, at the point. Where they lie around it evenly
-/// that is 1. Their similarity does not count here: beyond an edge there is surface, too.
+/// The factor on the weights of a point and of those around it, so that the mean of points that are
+/// all alike is that of a plane through them, at the point. Where they lie around it evenly that is
+/// 1. Their similarity does not count here: beyond an edge there is surface, too.
 class PlaneThroughPoints {
  public:
   /// References are kept.

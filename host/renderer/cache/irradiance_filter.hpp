@@ -20,7 +20,7 @@
 
 namespace photile::cache {
 
-/// What may be noise.
+/// The differences that count as noise.
 struct NoiseTolerance {
   /// At differences of this many standard errors the weight falls to 1 / e.
   double errors = defaults::tolerated_errors;
@@ -83,9 +83,9 @@ class KnownLight {
   std::vector<std::uint16_t> lit_;
 };
 
-/// How alike the layers of two points are, in [0, 1]. One light's border is no reason to part the
-/// others: a layer whose own difference exceeds its noise is judged by itself; all others together,
-/// for what many lights show is surer than what one does.
+/// The similarity of the layers of two points, in [0, 1]. One light's border is no reason to
+/// separate the others: a layer whose own difference exceeds its noise is judged by itself; all
+/// others together, for what many lights show is surer than what one does.
 class Similarity {
  public:
   explicit Similarity(std::span<const double> layer_powers)

@@ -39,7 +39,7 @@ int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 /// (docs/density.md).
 double caustic_relative_variance(int neighbours) { return 1.5 / neighbours; }
 
-/// What the sums of a run of points are made of.
+/// The data that the sums of a run of points are made from.
 struct RunLight {
   const RayScene& rays;
   const trace::LightSampler& light_sampler;
@@ -105,7 +105,7 @@ struct RunLight {
       thread_local trace::SelectionProbabilities probabilities;
       thread_local trace::ShadowRays first, more;
       light_sampler.weigh(where.position, where.normal, probabilities);
-      // What rays that meet lights count is weighed by the light samples of most points.
+      // Rays that meet lights are weighted by the number of light samples that most points have.
       const auto rays_per_light_sample =
           static_cast<float>(rays_per_batch) / static_cast<float>(light_samples_per_batch);
       const auto found_by = [&](int begin, int end, trace::ShadowRays& light_samples) {

@@ -103,7 +103,7 @@ class IrradianceGather {
   std::uint64_t bytes() const { return secondary_.bytes(); }
   void forget() { secondary_.forget(); }
 
-  /// What all calls took so far.
+  /// The costs of all calls so far.
   struct Costs {
     double ray_seconds = 0;       ///< tracing rays to surfaces
     double estimate_seconds = 0;  ///< photons, at ray hits and at points

@@ -48,7 +48,7 @@ class LightMapFrames {
                   const Progress& progress, LightMapFrames* coarser = nullptr);
 
  private:
-  /// What a frame needs of a triangle, close together.
+  /// The data of a triangle that a frame needs, close together.
   struct Surface {
     std::uint32_t chart[2];  ///< of its sides
     glm::vec3 reflects;      ///< radiance per irradiance, where it is plain

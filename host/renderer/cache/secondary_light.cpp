@@ -18,7 +18,7 @@
 namespace photile::cache {
 namespace {
 
-/// What is known of the cells of the light maps.
+/// The known visibility of the cells of the light maps.
 constexpr std::uint8_t unknown_cell = 0, open_cell = 1, crossed_cell = 2;
 
 /// Large enough to make a task's cost vanish, small enough to share work.

@@ -24,7 +24,7 @@ struct SecondaryEstimates {
   LightTable estimates;  ///< a row for each hit
 };
 
-/// What the rays of a run of points meet, and what counts there.
+/// The hits of the rays of a run of points, and the light that counts there.
 struct IndirectLight {
   trace::HemisphereRays rays;
   std::vector<std::uint32_t> own_of;   ///< of each hit, or none where light maps are read
@@ -94,7 +94,7 @@ class SecondaryLight {
   std::uint64_t bytes() const;
   void forget() { maps_.reset(); }
 
-  /// What all calls took so far.
+  /// The costs of all calls so far.
   struct Costs {
     std::uint64_t rays = 0;  ///< traced; those along mirrors and glass included
     std::uint64_t hits = 0;
@@ -115,7 +115,7 @@ class SecondaryLight {
   const RayScene& rays_;
   light::LightAtPoints& photons_;
   ValuedBy nodes_;
-  /// What nodes of a cell must differ by to be looked at where something stands in it.
+  /// The contrast of the nodes of a cell from which on their visibility is tested.
   static constexpr double any_contrast = 0;
 
   struct Maps {

@@ -1,4 +1,4 @@
-// What quick frames show at nodes: light without steps between cells of different sizes.
+// The light that quick frames show at nodes, without steps between cells of different sizes.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ class ShownNodes {
   /// The same nodes, with the weights that they have by what each counts. They sum to 1.
   BilinearWeights weighted(BilinearWeights bilinear) const;
 
-  /// What the nodes hold.
+  /// The light of the nodes.
   const NodeMix& held() const { return held_; }
 
  private:

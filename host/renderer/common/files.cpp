@@ -67,7 +67,7 @@ void sync_folder(const fs::path& folder) {
   ::close(descriptor);
 }
 
-/// What names of temporary files begin with. 16 random hexadecimal digits follow: process numbers
+/// The prefix of the names of temporary files. 16 random hexadecimal digits follow: process numbers
 /// are the same in two containers, and a name of the longest length has no room for more.
 constexpr std::string_view prefix = ".photile.";
 

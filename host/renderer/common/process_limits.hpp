@@ -19,7 +19,7 @@ int core_count();
 /// Errors: Error where the system does not let the process have as many threads more.
 void require_threads(int count);
 
-/// What the compiler of a device takes, and the host beside its buffers, by far.
+/// A generous bound for the memory of a device's compiler, and of the host beside its buffers.
 inline constexpr std::uint64_t reserved_address_bytes = std::uint64_t{1} << 30;
 
 /// Bytes of addresses that the process may have beyond those it has (ulimit -v).

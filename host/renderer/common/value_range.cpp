@@ -12,7 +12,7 @@
 namespace photile {
 namespace {
 
-/// What floats hold with all their digits.
+/// The range of floats that have all of their digits.
 constexpr double least_positive = std::numeric_limits<float>::min(),
                  most_positive = std::numeric_limits<float>::max();
 

@@ -62,7 +62,7 @@ DenoisingGuides denoising_guides(const RayScene& rays, const Camera& camera, con
   return guides;
 }
 
-// What the library's C interface (oidn.h of version 2) declares of what is used here.
+// The declarations of the library's C interface (oidn.h of version 2) that are used here.
 struct OidnDevice;
 struct OidnFilter;
 

@@ -30,7 +30,7 @@ std::string folder_problem(const std::filesystem::path& folder);
 /// Writes "photile: warning: <line>" to the standard error stream.
 void warn(const std::string& line);
 
-/// What DeviceInfo::test_result says of a device that has passed.
+/// The value of DeviceInfo::test_result for a device that has passed.
 inline constexpr const char* passed = "passed";
 
 /// The result of the last test of this device with this driver and these kernels; "" where none is

@@ -1,5 +1,6 @@
-// What host/renderer/maps and host/renderer/estimate use of OpenCL. No OpenCL header is included
-// here: handles are opaque, so that host/renderer/device stays the only folder that knows OpenCL.
+// The interface to OpenCL for host/renderer/maps and host/renderer/estimate. No OpenCL header is
+// included here: handles are opaque, so that host/renderer/device stays the only folder that uses
+// OpenCL.
 #pragma once
 
 #include <atomic>

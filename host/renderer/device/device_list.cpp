@@ -33,7 +33,7 @@ DeviceType type_of(cl_device_type type) {
   return DeviceType::other;
 }
 
-/// What NVIDIA's and AMD's devices say of their warps or wavefronts; 0 of others.
+/// The width of the warps of NVIDIA's and the wavefronts of AMD's devices; 0 of others.
 std::uint32_t lanes_of(cl_device_id device) {
   for (const cl_device_info name : {CL_DEVICE_WARP_SIZE_NV, CL_DEVICE_WAVEFRONT_WIDTH_AMD}) {
     cl_uint lanes = 0;
@@ -155,7 +155,7 @@ void bound_pocl_threads() {
   static_cast<void>(enough);
 }
 
-/// What the loader of libraries says of each runtime that is registered and cannot be loaded.
+/// The dynamic linker's message for each runtime that is registered and cannot be loaded.
 std::vector<std::string> unloadable_runtimes() {
   const char* const given = std::getenv("OCL_ICD_VENDORS");
   const std::filesystem::path folder = given ? given : "/etc/OpenCL/vendors";

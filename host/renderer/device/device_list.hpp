@@ -20,7 +20,7 @@ struct ListedDevice {
 
 struct DeviceList {
   std::vector<ListedDevice> usable;
-  /// What was found and left out, with the reason: "Clover: not supported".
+  /// Devices that were found and left out, with the reason: "Clover: not supported".
   std::vector<std::string> left_out;
 };
 

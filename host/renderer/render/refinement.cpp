@@ -33,7 +33,7 @@ constexpr double planned_part = 0.9;
 /// seven times as long as `good`.
 constexpr double power_of_nodes = 0.5;
 
-/// What the photons of a part take beside its rays.
+/// The time of the photons of a part over that of its rays.
 constexpr double time_of_photons = 0.5;
 
 /// Stops a picture when the time is over.

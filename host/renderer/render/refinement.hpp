@@ -8,7 +8,7 @@
 
 namespace photile {
 
-/// What ends the growing of light maps whose nodes gather; at least one of them is given.
+/// The goals that end the growing of light maps whose nodes gather; at least one of them is given.
 struct RefinementGoal {
   double error = 0;    ///< relative standard error that a picture states, at most; 0 = none
   double seconds = 0;  ///< that all pictures may take, wall clock; 0 = none
@@ -16,7 +16,7 @@ struct RefinementGoal {
   bool is_given() const { return error > 0 || seconds > 0; }
 };
 
-/// What refine requests and reports.
+/// The callbacks of refine.
 struct RefinementSteps {
   /// Adds this many parts of work to those before, and makes the picture of all. Errors:
   /// Interrupted, when `progress` says so.

@@ -49,7 +49,7 @@ class RenderSession {
   PassLight& light() { return *passes_.front(); }
   /// Quick pictures, where light maps are read.
   cache::LightMapFrames& frames() { return *frames_; }
-  /// What the light maps hold; none where they are not read, or not yet.
+  /// The contents of the light maps; none where they are not read, or not yet.
   std::optional<LightMapContents> light_map_contents() const;
 
  private:

@@ -21,7 +21,8 @@ struct Setting {
   std::string_view group = {};   ///< of options: Picture, Photons or Estimate
   std::string_view reader = {};  ///< the stage that reads it
   std::string_view help = {};
-  /// What holds where it is not given: then it is 0. "" = it always has a value in its range.
+  /// What applies where it is not given, which the value 0 stands for. "" = it always has a value
+  /// in its range.
   std::string_view otherwise = {};
   ValueRange range = {};
   /// The value for each of all_qualities, where they set it.

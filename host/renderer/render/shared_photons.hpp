@@ -35,12 +35,12 @@ class MapOwners {
   std::vector<std::uint32_t> of_pair_, of_triangle_;
 };
 
-/// What stages ask of the photons of all processes. Collective.
+/// The data of the photons of all processes that stages need. Collective.
 ///   own   those of this process's paths, which follow those of the ranks before, sorted by
 ///         oriented face
 std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, const Photons& own);
 
-/// How many photons went where.
+/// The numbers of photons that were sent and kept.
 struct PhotonsMoved {
   std::uint64_t sent = 0;   ///< to other processes
   std::uint64_t bytes = 0;  ///< of these

@@ -50,8 +50,8 @@ void set_metallic_roughness(const MetallicRoughness& model, Material& material);
 /// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.
 bool conserve_energy(Material& material);
 
-/// What any of these materials asks for, whether or not a triangle has it: importers must choose
-/// what to read of a mesh before the first triangle. light_count stays 0.
+/// The needs of these materials, whether or not a triangle has them: importers must choose what to
+/// read of a mesh before the first triangle. light_count stays 0.
 SceneNeeds needs_of_materials(std::span<const Material> materials);
 
 /// Removes shading normals where none is needed: all are those of their triangles, or lie on what

@@ -90,7 +90,7 @@ class BoundaryEdges {
     return static_cast<std::size_t>((axis * cells_across + u) * cells_across + v);
   }
 
-  /// What they share is less than run_along asks for.
+  /// They share less than run_along requires.
   bool is_too_short(std::uint32_t i) const {
     return headings_[i].length < 1.99f * static_cast<float>(tolerance_);
   }

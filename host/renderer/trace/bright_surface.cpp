@@ -17,7 +17,7 @@
 namespace photile::trace {
 namespace {
 
-/// What surface reflects in a cell.
+/// The light that surface reflects in a cell.
 struct Cell {
   double reflected = 0;  ///< luminous flux
   /// Sums of positions, relative to the middle of the scene, and of their squares, by this flux.

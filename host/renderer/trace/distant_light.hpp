@@ -44,7 +44,7 @@ class EnvironmentSampler {
   std::vector<double> texel_up_to_;  ///< luminance of the texels of a row up to and with this one
 };
 
-/// What rays see of a light beyond the scene.
+/// A light beyond the scene as rays see it.
 class DistantLight {
  public:
   /// References are kept.

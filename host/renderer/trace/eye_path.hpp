@@ -20,7 +20,7 @@
 
 namespace photile::trace {
 
-/// What PrimaryHits keeps of each hit.
+/// The data of each hit that PrimaryHits keeps.
 struct EyeHit {
   glm::vec3 position;
   std::uint32_t oriented_face;
@@ -52,7 +52,7 @@ struct DirectRays {
   int count;  ///< light samples per hit
 };
 
-/// How light is found that lobes reflect, where it is not left to the photons.
+/// How the light that lobes reflect is found where it is not left to the photons.
 struct LobeRays {
   const RayScene& rays;
   const LightSampler& light_sampler;
@@ -95,7 +95,7 @@ struct EyeRay {
   float fraction = 1.0f;       ///< of its sample, where glass split it
   const BesideHotSpots* beside = nullptr;  ///< null where no rays are aimed
 
-  /// What radiance that the ray meets counts at its start.
+  /// The factor from radiance that the ray meets to its start.
   glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
 };
 

@@ -28,7 +28,7 @@ struct TaskHits {
   std::vector<glm::vec3> direction;                              ///< of each ray
 };
 
-/// What the rays of a run share.
+/// What the rays of a run have in common.
 struct RunSetup {
   const RayScene& rays;
   const HemisphereParameters& parameters;

@@ -59,7 +59,7 @@ struct HemisphereRays {
   }
 };
 
-/// What the surface of a hit reflects towards its ray of light that is the same from everywhere.
+/// The reflection of a hit's surface towards its ray under light that is the same from everywhere.
 struct HitReflection {
   glm::vec3 reflectance;
   bool strong_lobe;  ///< its lobe reflects so much that it asks where light comes from

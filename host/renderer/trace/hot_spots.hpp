@@ -100,12 +100,12 @@ class HotSpotAim {
   ///   u   in [0, 1)^2: points that fill it evenly give points that do
   std::optional<Target> sample(glm::dvec2 u) const;
 
-  /// What the light of a target counts, over what it would if all rays had the density `other`.
+  /// The weight of the light of a target, over its weight if all rays had the density `other`.
   double weight(double other, const Target& target) const {
     return other / ((1 - fraction()) * other + fraction() * target.density);
   }
-  /// What rays that are not aimed count of the light of surface that they meet at once, or through
-  /// panes; of all other light they count all.
+  /// The weight of rays that are not aimed for the light of surface that they meet directly or
+  /// through panes; for all other light it is 1.
   ///   other   density of the direction
   double weight_beside(double other, const SurfacePoint& met) const {
     const double unaimed = (1 - fraction()) * other;

@@ -127,7 +127,7 @@ class OpaqueBsdf {
     bool mapped = false;  ///< there is a normal map
     glm::vec3 smooth_normal{0.0f};
   };
-  /// What a normal map multiplies f by at a direction in the frame of the lobe.
+  /// The factor of a normal map on f at a direction in the frame of the lobe.
   float bump_at(const glm::vec3& out) const;
   Lobe lobe_of(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction) const;
 

@@ -281,7 +281,7 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   return emitters;
 }
 
-/// What leads paths to where photons are needed; by default nothing.
+/// Data that leads paths to where photons are needed; by default none.
 struct Guidance {
   const trace::WeightWindows* windows = nullptr;
   std::uint64_t paths_per_photon = 1;        ///< that windows trace for each asked for

@@ -23,8 +23,8 @@ inline constexpr std::size_t most_search_points = 8;
 /// are more than limits::max_portals.
 std::vector<Portal> portals_of_materials(const Scene& scene, std::span<const std::string> globs);
 
-/// What SceneLoadOptions::portals asks for. Errors: those above; UsageError where "auto" or "off"
-/// stand beside others.
+/// The portals that SceneLoadOptions::portals requests. Errors: those above; UsageError where
+/// "auto" or "off" stand beside others.
 std::vector<Portal> portals_asked_for(const Scene& scene, std::span<const std::string> asked,
                                       std::span<const glm::dvec3> points = {});
 

@@ -23,7 +23,7 @@ class Portals {
 
   bool empty() const { return portals_.empty(); }
 
-  /// What all portals together show to light that travels in a unit direction, square metres.
+  /// The projected area of all portals for light that travels in a unit direction, square metres.
   double area_facing(const glm::dvec3& travel) const;
 
   /// How many portals a line enters by.

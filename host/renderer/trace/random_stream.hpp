@@ -27,7 +27,7 @@ constexpr PhiloxCounter philox4x32_10(PhiloxCounter counter, PhiloxKey key) {
   return counter;
 }
 
-/// What a number is for. Part of the counter, so that two uses never share numbers.
+/// The purpose of a number: part of the counter, so that two uses never share numbers.
 enum class Purpose : std::uint32_t {
   emission,
   photon_scattering,

@@ -54,12 +54,12 @@ struct LineOfSight {
 void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
               std::span<std::uint8_t> hidden);
 
-/// What one surface lets through without a bend, per channel.
+/// The transmittance of one surface without a change of direction, per channel.
 ///   direction   of the ray that meets it there, unit
 glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction);
 
-/// What the straight line between two points lets through, per channel: black behind a surface that
-/// bends or stops light, the product of their transmittances behind panes of thin glass and
+/// The transmittance of the straight line between two points, per channel: black behind a surface
+/// that bends or stops light, the product of their transmittances behind panes of thin glass and
 /// surfaces with cutouts.
 glm::vec3 transmittance(const RayScene& rays, const RayOrigin& from, const glm::vec3& to);
 

@@ -65,7 +65,7 @@ struct RayScene::Impl {
   void release();
 };
 
-/// What host/renderer/trace needs of a scene.
+/// The data of a scene that host/renderer/trace needs.
 const RayScene::Impl& impl_of(const RayScene& scene);
 
 namespace trace {

@@ -13,11 +13,11 @@ namespace photile::trace {
 struct Scattered {
   glm::vec3 direction;  ///< unit
   glm::vec3 weight;     ///< multiplies the photon's flux or the eye ray's throughput
-  /// What multiplies the throughput of a ray from the eye as well: radiance over the squared index
-  /// of refraction is what a boundary keeps, so that radiance seen through one is that beyond it
-  /// times (index here / index beyond)^2. The flux that photons carry has no such factor (Veach,
-  /// "Robust Monte Carlo methods for light transport simulation", 1997, section 5.2). In double
-  /// precision: into a glass and out again it is 1 to the last bit of a float.
+  /// A further factor on the throughput of a ray from the eye: a boundary preserves radiance over
+  /// the squared index of refraction, so that radiance seen through one is that beyond it times
+  /// (index here / index beyond)^2. The flux that photons carry has no such factor (Veach, "Robust
+  /// Monte Carlo methods for light transport simulation", 1997, section 5.2). In double precision:
+  /// into a glass and out again it is 1 to the last bit of a float.
   double radiance_factor = 1;
 };
 

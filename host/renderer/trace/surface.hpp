@@ -108,12 +108,14 @@ inline bool emits(const Scene& scene, const SurfacePoint& point) {
 /// Texel of the emission of the point's light; white where it has no texture.
 glm::vec3 emission_texel(const Scene& scene, const SurfacePoint& point);
 
-/// What the point's light emits in a unit direction away from it, over its mean radiance: its texel
-/// times, where the light has a distribution, the intensity there over that of an even surface.
+/// The radiance of the point's light in a unit direction away from it, over its mean radiance: its
+/// texel times, where the light has a distribution, the intensity there over that of an even
+/// surface.
 glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
                            const glm::vec3& direction);
 
-/// What an opaque surface reflects there, textured. Without a specular lobe F0 and F90 are 0.
+/// The reflectance parameters of an opaque surface there, textured. Without a specular lobe F0 and
+/// F90 are 0.
 scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
 
 /// Fraction of the surface that is there, in [0, 1]; 1 where its material has no cutouts.

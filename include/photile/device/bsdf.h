@@ -162,7 +162,7 @@ static inline PHOTILE_REAL photile_diffuse(float part0, float part1, float part2
   return diffuse > 0.0f ? diffuse : zero;
 }
 
-/// What a normal map multiplies f by: the cosine of i to the mapped normal over that to the smooth
+/// The factor of a normal map on f: the cosine of i to the mapped normal over that to the smooth
 /// one, at most `most`; 1 where the normals are the same. So the eye sees light by its cosine to
 /// the mapped normal while photons count by area of the true surface, and nothing reflects more
 /// light than the unmapped material would. f is no longer reciprocal (Veach, "Robust Monte Carlo
