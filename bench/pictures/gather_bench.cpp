@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cache/irradiance_gather.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/load_scene.hpp"
 #include "render/path_estimate.hpp"
@@ -227,7 +226,7 @@ bool run(BenchOptions& options, const std::vector<std::string>& files, Sizes siz
   const auto measure_scene = [&](const std::string& name, const Scene& scene) {
     const RayScene rays(scene);
     const PrimaryHits points = visible_points(rays, sizes.points);
-    const Truth truth = by_paths(rays, points, estimate::layer_powers(scene), sizes.paths);
+    const Truth truth = by_paths(rays, points, light::layer_powers(scene), sizes.paths);
     measure_gathering(name, rays, device, points, truth, sizes, record);
     measure_photons(name, rays, device, points, truth, sizes, record);
   };

@@ -15,8 +15,8 @@
 #include "cache/light_map_frames.hpp"
 #include "cache/node_mix.hpp"
 #include "cache/surface_cache.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "estimate/photon_estimate.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/image.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
@@ -116,11 +116,12 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   const auto surface = std::make_shared<const SurfaceIndex>(
       index_surface(scene, photons, radius, defaults::group_angle_degrees));
   const EstimateParameters estimate{.neighbours = settings.neighbours, .surface = surface};
-  const std::vector<double> powers = estimate::layer_powers(scene);
+  const std::vector<double> powers = light::layer_powers(scene);
   std::vector<PhotonMaps> maps;
   maps.emplace_back(device, scene, photons, groups, PhotonMapParameters{.radius = radius});
-  estimate::PhotonEstimate light(std::span(&device, 1), scene, {std::move(maps), {estimate}},
-                                 powers);
+  estimate::PhotonEstimate light(
+      std::span(&device, 1), scene,
+      {std::make_shared<const std::vector<PhotonMaps>>(std::move(maps)), estimate});
   cache::ValuedBy by_photons(light);
   LightMapParameters light_maps =
       cache::light_map_parameters(scene, photons, settings.neighbours, radius,

@@ -41,7 +41,6 @@ QUALITIES = ("draft", "good", "final")
 PHOTONS = (62_500, 250_000, 1_000_000)
 PASSES = (1, 2, 4)
 PHOTONS_PER_PASS = 500_000
-LEAST_NEIGHBOURS = "12"
 PATHS = (1, 4, 16, 64, 128)  # of a pixel
 FEW_PATHS = (4, 16, 64)  # in large pictures, and of the tools with less to show
 MOST_PATHS_OF_FRAMES = 16  # beyond, a further frame takes what the first takes
@@ -152,8 +151,7 @@ def rival(script, scene, size, folder, options):
 def photon_settings(photons, passes=1):
     """Options of passes of so many photons, which are estimated at each hit."""
     return ["--quality", "draft", "--set", "light_maps=off", "--photons", str(photons * passes),
-            "--set", f"passes={passes}", "-k", str(neighbours(photons)),
-            "--set", f"least_neighbours={LEAST_NEIGHBOURS}"]
+            "--set", f"passes={passes}", "-k", str(neighbours(photons))]
 
 
 def path_settings(paths):

@@ -58,15 +58,13 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
 /// for Statistics and Data Analysis", 1986; Jensen, "Global Illumination using Photon Maps", 1996).
 /// The estimate divides by the integral of the kernel over the area; see docs/density.md.
 enum class DensityKernel {
-  constant,     ///< 1: least noise
-  cone,         ///< 1 - d / r: least blur
-  epanechnikov  ///< 1 - (d / r)^2: between the two
+  constant,  ///< 1: less noise
+  cone       ///< 1 - d / r: less blur
 };
 
-/// "constant", "cone", "epanechnikov".
+/// "constant", "cone".
 std::string_view name_of(DensityKernel kernel);
-inline constexpr std::array all_density_kernels = {DensityKernel::constant, DensityKernel::cone,
-                                                   DensityKernel::epanechnikov};
+inline constexpr std::array all_density_kernels = {DensityKernel::constant, DensityKernel::cone};
 
 /// The kernel in use with k neighbours: one photon alone lies at r, where the others are 0.
 inline DensityKernel kernel_used(DensityKernel kernel, int neighbours) {

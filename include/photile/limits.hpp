@@ -12,7 +12,7 @@ inline constexpr std::uint64_t min_photons = 1;
 /// Photon indices on the device are 32 bits wide, and the largest one marks "none".
 inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
 inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
-inline constexpr std::uint32_t max_shards = 1'000'000;  ///< parts of all paths, or of a walk
+inline constexpr std::uint32_t max_shards = 1'000'000;  ///< processes that share the paths
 /// Each traces a sample of every pixel at least.
 inline constexpr int max_passes = 65'536;
 inline constexpr int max_specular_depth = 1'000'000;  ///< mirrors and glass that a ray follows

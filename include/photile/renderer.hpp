@@ -75,9 +75,6 @@ struct RenderParameters {
   double radius = 0;  ///< metres; 0 = automatic_radius
   double angle_degrees = defaults::group_angle_degrees;
   int neighbours = defaults::neighbours;
-  /// > 0: each hit has its own number of neighbours, from about this to `neighbours`: as many as
-  /// its estimate can have before bias shows above the noise. 0 = all have `neighbours`.
-  int least_neighbours = 0;
   float photons_per_cell = defaults::photons_per_cell;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
   DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts

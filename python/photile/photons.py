@@ -332,7 +332,7 @@ class PhotonMaps:
         ----------
         points, normals, k, radius
             As for `nearest`.
-        kernel : {"constant", "cone", "epanechnikov"}
+        kernel : {"constant", "cone"}
             What each photon counts, by its distance.
 
         Returns

@@ -57,7 +57,7 @@ DensityKernel kernel_named(const std::string& name) {
   for (const DensityKernel kernel : all_density_kernels) {
     if (name_of(kernel) == name) return kernel;
   }
-  throw UsageError("kernel: '" + name + "' is not one of constant, cone, epanechnikov");
+  throw UsageError("kernel: '" + name + "' is not one of constant, cone");
 }
 
 /// Arrays that may be empty: a span of nothing.

@@ -27,7 +27,7 @@ TEST_CASE("gathering: rays are aimed at a bright plate, and find its light in cl
   builder.add(point_light("lamp", {0, 0, 1}));
   const double candela = 1 / (2 * pi * trace::SpotFalloff(spot).integral());
   GatheringScene room(builder.build(), looked_up(400'000));
-  const std::vector<double> powers = estimate::layer_powers(room.scene);
+  const std::vector<double> powers = light::layer_powers(room.scene);
   REQUIRE_FALSE(trace::bright_surface(room.rays, powers, 1).empty());
 
   const std::vector<Sensor> sensors =

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "cache/surface_cache.hpp"
-#include "estimate/neighbour_choice.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
@@ -83,7 +83,7 @@ TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at
 TEST_CASE("Nodes are as far apart as the radius asks, and no closer than half the photons are") {
   const Scene scene = test::furnished_room(2);
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 2'000}).photons;
-  const std::vector<double> powers = estimate::layer_powers(scene);
+  const std::vector<double> powers = light::layer_powers(scene);
   const auto spacing = [&](double radius) {
     return cache::light_map_parameters(scene, photons, 100, radius, 60, 0, 0, powers).spacing;
   };

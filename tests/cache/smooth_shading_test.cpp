@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimate/neighbour_choice.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/light_maps.hpp"
@@ -75,7 +75,7 @@ LightLayers by_nodes(const Scene& scene, const std::vector<Sensor>& sensors) {
 
 /// Luminance of all lights at their powers, per sensor.
 std::vector<double> radiance_of(const Scene& scene, const LightLayers& layers) {
-  const std::vector<double> powers = estimate::layer_powers(scene);
+  const std::vector<double> powers = light::layer_powers(scene);
   std::vector<double> radiance(layers.layers.front().radiance.size(), 0.0);
   for (std::size_t layer = 0; layer < powers.size(); ++layer) {
     for (std::size_t i = 0; i < radiance.size(); ++i) {
@@ -137,7 +137,7 @@ TEST_CASE(
   const std::vector<SmoothMesh::TestPoint> test_points = sphere.test_points();
   const LightLayers layers = by_nodes(scene, sensors_of(test_points));
   const std::vector<double> of_all = radiance_of(scene, layers),
-                            powers = estimate::layer_powers(scene);
+                            powers = light::layer_powers(scene);
   REQUIRE(layers.layers.size() == to_sun.size());
   std::vector<double> lit(to_sun.size(), 0.0), ratios = lit;
   for (std::size_t i = 0; i < test_points.size(); ++i) {

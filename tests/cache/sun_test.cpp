@@ -47,7 +47,7 @@ double seen_of_sun(double y) {
 
 TEST_CASE("gathering: the border of a sun's light is its closed form without noise") {
   GatheringScene place(floor_half_in_shadow(), looked_up(50'000));
-  const std::vector<double> powers = estimate::layer_powers(place.scene);
+  const std::vector<double> powers = light::layer_powers(place.scene);
   std::vector<Sensor> sensors;
   for (int i = -20; i <= 20; ++i) sensors.push_back({{0.1, 0.0005 * i, 0}, {0, 0, 1}});
   const cache::GatheredParts light = place.gather({}).gather(
@@ -90,7 +90,7 @@ TEST_CASE("gathering: lamps of many are chosen by chance, a sun among them, and 
   }
   GatheringScene place(builder.build(), looked_up(50'000));
   CHECK(trace::LightSampler(place.scene).sampled_apart().empty());
-  const std::vector<double> powers = estimate::layer_powers(place.scene);
+  const std::vector<double> powers = light::layer_powers(place.scene);
   const LightTable light = place.at({{{0.1, 0.2, 0}, {0, 0, 1}}});
   const LightTable::Total total = light.total(0, powers);
   CHECK(total.luminance == Approx(lux).margin(5 * total.error + 1e-3 * lux));

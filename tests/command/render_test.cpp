@@ -90,7 +90,6 @@ TEST_CASE("an EXR tells how it was made") {
   CHECK(attribute("photile.neighbours") == "30");
   CHECK(attribute("photile.radius") == "0.25 m");
   CHECK(attribute("photile.angle_degrees") == "45 degrees");
-  CHECK(attribute("photile.least_neighbours") == "0");
   CHECK(attribute("photile.area") == "clipped");
   CHECK(attribute("photile.kernel") == "constant");
   CHECK(attribute("photile.maps") == "auto");

@@ -340,17 +340,6 @@ TEST_CASE("nodes gather in pictures unless another method is asked for") {
   CHECK((used["light_map_rays"] > 0) == gather);
 }
 
-TEST_CASE("settings that go with no other are refused by the names of their options") {
-  const FileFolder folder;
-  const auto refusal = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments =
-        typed("render", write_box(folder), "-o", folder / "out.exr", more);
-    return only_error(run_photile(arguments), usage);
-  };
-  CHECK_THAT(refusal({"--set", "least_neighbours=60", "-k", "50"}),
-             Contains("least_neighbours") && Contains("60") && Contains("50"));
-}
-
 // Counts and sizes as typed.
 
 TEST_CASE("counts are read with exponents and suffixes") {

@@ -81,7 +81,7 @@ std::vector<device::Defines> with_queries(const device::Defines& defines) {
   std::vector<device::Defines> all;
   for (const auto& [clipped, kernel] :
        {std::pair{false, DensityKernel::constant}, std::pair{true, DensityKernel::constant},
-        std::pair{true, DensityKernel::cone}, std::pair{false, DensityKernel::epanechnikov}}) {
+        std::pair{true, DensityKernel::cone}, std::pair{false, DensityKernel::cone}}) {
     device::Defines one = defines;
     estimate::set_density_defines(one, clipped, kernel);
     if (clipped) one.set("NORMALS");

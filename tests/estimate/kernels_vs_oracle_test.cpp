@@ -1,4 +1,4 @@
-// The kernels of the density estimate over whole discs against brute force in double precision, for
+// The cone of the density estimate over whole discs against brute force in double precision, for
 // every structure and strategy, few lights and many, diffuse and glossy.
 #include <catch2/catch.hpp>
 
@@ -12,7 +12,7 @@ namespace photile::test {
 namespace {
 
 constexpr double radius = 0.3;
-constexpr std::array weighting{DensityKernel::cone, DensityKernel::epanechnikov};
+constexpr DensityKernel kernel = DensityKernel::cone;
 
 struct Subject {
   Scene scene;
@@ -26,7 +26,7 @@ struct Subject {
     hits = test::uniform_hits(scene, 200, 54);
   }
 
-  LightTable estimate(DensityKernel kernel, int k, std::string_view structure = "uniform-grid",
+  LightTable estimate(int k, std::string_view structure = "uniform-grid",
                       const std::optional<EstimateTuning>& tuning = std::nullopt) const {
     const PhotonMaps maps =
         structures::build(structures::named(structure), test::device(), scene, photons,
@@ -39,8 +39,7 @@ struct Subject {
 
 /// Largest difference from the truth over what the photons would read at a weight of 1: a weight is
 /// right to a few units of 2^-24, however small it is.
-double worst_difference(const Subject& subject, const LightTable& estimates, DensityKernel kernel,
-                        int k) {
+double worst_difference(const Subject& subject, const LightTable& estimates, int k) {
   const reference::DensityOracle oracle(subject.scene, subject.photons,
                                         reference::PhotonFilter::grouped, 60);
   const auto truth = test::expected_irradiance(oracle, subject.hits, k, radius, kernel);
@@ -64,39 +63,35 @@ double tolerance(int k) { return 3 * test::estimate_tolerance(k); }
 
 TEST_CASE("weighted irradiance equals the oracle's for every structure and strategy") {
   const Subject subject(3);
-  const DensityKernel kernel = GENERATE(from_range(weighting));
   constexpr int k = 50;
-  CAPTURE(name_of(kernel));
   for (const structures::Structure& structure : structures::all()) {
     CAPTURE(structure.name);
-    const LightTable estimates = subject.estimate(kernel, k, structure.name);
-    CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
+    const LightTable estimates = subject.estimate(k, structure.name);
+    CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
   }
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
     CAPTURE(name_of(tuning.strategy));
-    const LightTable estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
-    CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
+    const LightTable estimates = subject.estimate(k, "uniform-grid", tuning);
+    CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
   }
 }
 
 TEST_CASE("weighted irradiance equals the oracle's for one light and for many, for any k") {
   const std::size_t lights = GENERATE(1u, 40u);
-  const DensityKernel kernel = GENERATE(from_range(weighting));
   const Subject subject(lights);
   for (const int k : {1, 2, 16, 400}) {
-    CAPTURE(lights, name_of(kernel), k);
-    CHECK(worst_difference(subject, subject.estimate(kernel, k), kernel, k) <= tolerance(k));
+    CAPTURE(lights, k);
+    CHECK(worst_difference(subject, subject.estimate(k), k) <= tolerance(k));
   }
 }
 
 TEST_CASE("with fewer than k photons within the radius weights go by the full radius") {
   const Subject subject(1, 400);
-  const DensityKernel kernel = GENERATE(from_range(weighting));
   constexpr int k = 50;
   for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
-    CAPTURE(name_of(kernel), name_of(tuning.strategy));
-    const LightTable estimates = subject.estimate(kernel, k, "uniform-grid", tuning);
-    CHECK(worst_difference(subject, estimates, kernel, k) <= tolerance(k));
+    CAPTURE(name_of(tuning.strategy));
+    const LightTable estimates = subject.estimate(k, "uniform-grid", tuning);
+    CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
   }
 }
 
@@ -109,7 +104,6 @@ TEST_CASE("weighted glossy radiance equals the BSDF summed over the oracle's nei
   PrimaryHits hits = test::uniform_hits(scene, 100, 60);
   test::add_lobes(hits, scene, 61);
   constexpr int k = 50;
-  const DensityKernel kernel = GENERATE(from_range(weighting));
   const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
   const LightTable estimates =
@@ -117,7 +111,6 @@ TEST_CASE("weighted glossy radiance equals the BSDF summed over the oracle's nei
           .estimate(hits);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius, kernel);
-  CAPTURE(name_of(kernel));
   CHECK(test::worst_difference(estimates.radiance, expected) <= 3 * test::glossy_tolerance(k));
 }
 

@@ -11,7 +11,7 @@
 #include <iostream>
 #include <iterator>
 
-#include "estimate/neighbour_choice.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "source_folder.hpp"
@@ -78,7 +78,7 @@ Pixels picture_of(const Scene& scene, Method method, std::uint64_t seed) {
       (method == Method::paths ? trace_paths(scene, camera, eye_rays(parameters)).layers
                                : render(scene, camera, test::device(), parameters).layers)
           .dense();
-  const std::vector<double> powers = estimate::layer_powers(scene);
+  const std::vector<double> powers = light::layer_powers(scene);
   Pixels pixels(static_cast<std::size_t>(width * height), glm::dvec4(0));
   for (std::size_t layer = 0; layer < powers.size(); ++layer) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {

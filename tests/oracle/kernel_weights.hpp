@@ -8,14 +8,12 @@ namespace photile::reference {
 /// What a photon counts at `distance`, over the radius, in [0, 1].
 inline double weight_at(DensityKernel kernel, double distance) {
   if (kernel == DensityKernel::cone) return 1 - distance;
-  if (kernel == DensityKernel::epanechnikov) return 1 - distance * distance;
   return 1;
 }
 
 /// The mean of the weights over the whole disc.
 inline double mean_weight(DensityKernel kernel) {
   if (kernel == DensityKernel::cone) return 1.0 / 3;
-  if (kernel == DensityKernel::epanechnikov) return 1.0 / 2;
   return 1;
 }
 

@@ -16,14 +16,12 @@ namespace {
 /// Most that a setting may be in a command that takes no time.
 const std::map<std::string_view, std::uint64_t>& cheap_counts() {
   static const std::map<std::string_view, std::uint64_t> most{
-      {"samples_per_pixel", 4}, {"photons_emitted", 2'000}, {"passes", 2},
-      {"neighbours", 60},       {"least_neighbours", 40},   {"direct_rays", 3},
-      {"light_map_rays", 4},    {"seed", 1'000'000}};
+      {"samples_per_pixel", 4}, {"photons_emitted", 2'000}, {"passes", 2},      {"neighbours", 60},
+      {"direct_rays", 3},       {"light_map_rays", 4},      {"seed", 1'000'000}};
   return most;
 }
 
-constexpr std::array<std::string_view, 5> compiled{"neighbours", "least_neighbours", "area",
-                                                   "kernel", "maps"};
+constexpr std::array<std::string_view, 4> compiled{"neighbours", "area", "kernel", "maps"};
 
 bool changes_kernels(std::string_view setting) {
   return std::find(compiled.begin(), compiled.end(), setting) != compiled.end();

@@ -2,7 +2,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "estimate/neighbour_choice.hpp"
+#include "light/light_at_points.hpp"
 #include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "source_folder.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 /// Mean luminance of all lights at their powers.
 double mean_of(const LightLayers& picture, const Scene& scene) {
-  const std::vector<double> powers = estimate::layer_powers(scene);
+  const std::vector<double> powers = light::layer_powers(scene);
   const LightLayers dense = picture.dense();
   double sum = 0;
   for (std::size_t layer = 0; layer < powers.size(); ++layer) {

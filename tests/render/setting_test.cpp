@@ -89,10 +89,6 @@ TEST_CASE("counts below zero, and settings that go with no other, are refused as
     parameters.passes = -1;
     CHECK_THROWS_WITH(check(parameters), Contains("passes: '-1'"));
   }
-  SECTION("least neighbours") {
-    parameters.least_neighbours = 60;
-    CHECK_THROWS_WITH(check(parameters), Contains("least_neighbours: 60") && Contains("50"));
-  }
 }
 
 TEST_CASE("saved photons tell all that they depend on, and nothing else") {
@@ -125,8 +121,7 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
   asked.neighbours = 80;
   const auto plan = [&] { return RenderPlan(asked, rays, HitsAsk::pictures, Progress::none()); };
   CHECK(plan().passes() == 1);
-  CHECK(plan().estimates(0, DensityKernel::constant, nullptr).size() == 1);
-  CHECK(plan().estimates(0, DensityKernel::constant, nullptr)[0].neighbours == 80);
+  CHECK(plan().estimate(0, DensityKernel::constant, nullptr).neighbours == 80);
   CHECK(plan().tracing(0, {}).store_direct);
   CHECK_FALSE(plan().tracing(0, {}).keep_caustics);
   CHECK(plan().clips_areas());
@@ -139,12 +134,6 @@ TEST_CASE("a plan draws from what is asked what follows from it") {
   asked.maps = MapMode::naive;
   CHECK_FALSE(plan().clips_areas());
   CHECK(plan().used().area == AreaMode::disc);
-
-  asked.least_neighbours = 5;
-  std::vector<int> levels;
-  for (const auto& level : plan().estimates(0, DensityKernel::constant, nullptr))
-    levels.push_back(level.neighbours);
-  CHECK(levels == std::vector{5, 20, 80});
 
   asked.passes = 7;
   CHECK(plan().hits({16, 12, 9}, 7).samples_per_pixel == 14);
@@ -160,10 +149,7 @@ TEST_CASE("asked for what a picture was made with, render gives it again, bit fo
   const Scene scene = furnished_room();
   RenderParameters asked = small();
   SECTION("an automatic radius") {}
-  SECTION("passes") {
-    asked.passes = 3;
-    asked.least_neighbours = 10;
-  }
+  SECTION("passes") { asked.passes = 3; }
   SECTION("rays that gather") { asked.light_map_rays = 2; }
   SECTION("naive maps") { asked.maps = MapMode::naive; }
   const RenderResult first = render(scene, room_camera(), device(), asked);

@@ -17,10 +17,9 @@ import tempfile
 BUNDLED = ("living-room/living-room.gltf", "cornell-box/cornell-box-specular.gltf",
            "gallery/glass-sphere.gltf")
 SHARED = ("classroom/classroom.gltf", "kitchen/kitchen.gltf")
-# Light maps; an estimate at each hit; a map for each triangle; a k for each hit; groups by area.
+# Light maps; an estimate at each hit; a map for each triangle; groups by area.
 WAYS = ((), ("--set", "light_maps=off"),
         ("--set", "light_maps=off", "--set", "maps=triangle", "--set", "direct_rays=1"),
-        ("--set", "light_maps=off", "--set", "least_neighbours=20"),
         ("--set", "light_maps=off", "--set", "maps=naive", "--set", "passes=3"))
 
 

@@ -135,11 +135,9 @@ void print_fingerprint(std::span<Device> devices, const Case& test, const Sizes&
   const NeighbourLists lists = estimator.nearest(hits);
   print_hash(test, "neighbours", std::span(lists.photons));
   print_hash(test, "squared_radius", std::span(lists.squared_radius));
-  const std::vector<double> powers(needs_of(test.scene).light_count, 1.0);
   estimate::PhotonEstimate light(
       devices, test.scene,
-      {std::make_shared<const std::vector<PhotonMaps>>(std::move(all_maps)), {test.parameters()}},
-      powers);
+      {std::make_shared<const std::vector<PhotonMaps>>(std::move(all_maps)), test.parameters()});
   const LightTable estimates = light.at(hits, Progress::none());
   print_hash(test, "irradiance", estimates.irradiance);
   if (needs_of(test.scene).glossy) print_hash(test, "radiance", estimates.radiance);
@@ -158,7 +156,7 @@ std::vector<Case> cases(bool every_kernel) {
                     torus_and_plate(lights, glossy), "uniform-grid", 50, std::nullopt, kernel});
   };
   add_weighted(DensityKernel::cone, 1, false);
-  add_weighted(DensityKernel::epanechnikov, 3, false);
+  add_weighted(DensityKernel::cone, 3, false);
   if (!every_kernel) return list;
   add_weighted(DensityKernel::cone, 20, true);
   list.push_back({"glossy", torus_and_plate(1, true)});
@@ -190,7 +188,7 @@ std::vector<Case> cases_of_lanes() {
     add("glossy-many-lights", 20, true, 50);
     // More candidates than a group keeps.
     add("k-1000", 1, false, 1000);
-    add("epanechnikov", 1, false, 50, DensityKernel::epanechnikov);
+    add("cone", 1, false, 50, DensityKernel::cone);
   }
   return list;
 }

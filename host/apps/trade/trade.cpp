@@ -62,8 +62,6 @@ std::vector<TradeSettings> settings_around(const RenderParameters& parameters) {
       set_by_name(pair, "neighbours", of("neighbours", neighbours));
       all.push_back({"photons and neighbours", pair});
     }
-    set_by_name(pair, "least_neighbours", of("neighbours", 1. / 16));
-    all.push_back({"least_neighbours", pair});
   }
   RenderParameters good = parameters;
   set_quality(good, Quality::good);
@@ -81,7 +79,7 @@ std::vector<TradeSettings> settings_around(const RenderParameters& parameters) {
   vary("angle_degrees", {30., 90.});
   vary("photons_per_cell", {of("photons_per_cell", 0.25), of("photons_per_cell", 4)});
   vary("area", {"disc"});
-  vary("kernel", {"constant", "cone", "epanechnikov"});
+  vary("kernel", {"constant", "cone"});
   vary("direct_rays", {std::uint64_t{1}, std::uint64_t{4}});
   vary("maps", {"naive", "triangle", "patch"});
   return all;

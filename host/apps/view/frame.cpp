@@ -19,26 +19,13 @@ namespace {
 
 /// Mean square over squared mean of a kernel's weights on its disc: the factor by which it raises
 /// the variance of an estimate.
-double spread_of(DensityKernel kernel) {
-  switch (kernel) {
-    case DensityKernel::constant:
-      return 1;
-    case DensityKernel::cone:
-      return 3.0 / 2;
-    case DensityKernel::epanechnikov:
-      return 4.0 / 3;
-  }
-  return 1;
-}
+double spread_of(DensityKernel kernel) { return kernel == DensityKernel::cone ? 3.0 / 2 : 1; }
 
 }  // namespace
 
 EstimateNoise EstimateNoise::of(const Scene& scene, const RenderParameters& parameters) {
-  const int fewest = parameters.least_neighbours > 0
-                         ? std::min(parameters.least_neighbours, parameters.neighbours)
-                         : parameters.neighbours;
   // The area is that to the k-th photon: the variance of its inverse is 1 / (k - 2).
-  EstimateNoise noise{std::max(1, fewest - 2) / spread_of(parameters.kernel), {}};
+  EstimateNoise noise{std::max(1, parameters.neighbours - 2) / spread_of(parameters.kernel), {}};
   const LightGroups groups = light_groups_of(scene);
   noise.paths.resize(groups.groups.size());
   const auto paths =

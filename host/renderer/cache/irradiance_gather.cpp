@@ -11,7 +11,6 @@
 
 #include "common/byte_stream.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/errors.hpp"
@@ -307,7 +306,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, light::LightAtPoints& p
       parameters_(parameters),
       light_sampler_(rays.scene()),
       emitted_(emitted_radiance_at_unit_power(rays.scene())),
-      layer_powers_(estimate::layer_powers(rays.scene())),
+      layer_powers_(light::layer_powers(rays.scene())),
       bright_(parameters.rays > 0 ? trace::bright_surface(rays, layer_powers_, parameters.seed)
                                   : trace::Targets({})),
       secondary_(rays, photons, of_nodes, secondary) {

@@ -192,8 +192,6 @@ NeighbourLists Estimator::nearest(const PrimaryHits& hits, ListOrder list_order)
   return result;
 }
 
-std::string_view name_of(DensityKernel kernel) {
-  return name_in({"constant", "cone", "epanechnikov"}, kernel);
-}
+std::string_view name_of(DensityKernel kernel) { return name_in({"constant", "cone"}, kernel); }
 
 }  // namespace photile

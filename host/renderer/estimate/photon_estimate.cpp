@@ -7,7 +7,6 @@
 
 #include "estimate/load_balance.hpp"
 #include "estimate/map_order.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile::estimate {
@@ -38,63 +37,46 @@ std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scen
   return maps;
 }
 
-PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts,
-                               std::span<const double> layer_powers)
+PhotonEstimate::PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts)
     : devices_(devices),
-      layer_powers_(layer_powers),
       maps_(std::move(parts.maps)),
+      neighbours_(static_cast<std::size_t>(parts.parameters.neighbours)),
+      balance_(devices.size()),
       seen_(std::move(parts.seen)) {
-  for (const EstimateParameters& parameters : parts.levels) {
-    Level& level =
-        levels_.emplace_back(Level{parameters.neighbours, {}, LoadBalance(devices.size())});
-    for (const PhotonMaps& maps : *maps_) level.estimators.emplace_back(maps, scene, parameters);
-  }
+  for (const PhotonMaps& maps : *maps_) estimators_.emplace_back(maps, scene, parts.parameters);
 }
 
 LightTable PhotonEstimate::at(const PrimaryHits& points, const Progress&) {
-  std::vector<LightTable> by_level;
-  std::vector<int> neighbours;
-  for (Level& level : levels_) {
-    by_level.push_back(estimate(level, points));
-    neighbours.push_back(level.neighbours);
-  }
-  return by_level.size() == 1
-             ? std::move(by_level.front())
-             : estimates_of_least_error(std::move(by_level), neighbours, layer_powers_);
-}
-
-LightTable PhotonEstimate::estimate(Level& level, const PrimaryHits& points) {
   LightTable result;
   std::vector<double> seconds(devices_.size());
   std::vector<LightTable> parts(devices_.size());
   for (std::size_t first = 0; first < points.size();) {
-    const std::size_t count = level.balance.round(points.size() - first);
-    const std::vector<std::size_t> cuts = level.balance.cuts(count);
+    const std::size_t count = balance_.round(points.size() - first);
+    const std::vector<std::size_t> cuts = balance_.cuts(count);
     for_each_device(devices_, Progress::none(), [&](std::size_t i, Progress&) {
       const Stopwatch stopwatch;
-      parts[i] = level.estimators[i].estimate(points, first + cuts[i], cuts[i + 1] - cuts[i]);
+      parts[i] = estimators_[i].estimate(points, first + cuts[i], cuts[i + 1] - cuts[i]);
       seconds[i] = stopwatch.seconds();
     });
     for (std::size_t i = 0; i < devices_.size(); ++i) {
       result.append(std::move(parts[i]));
-      level.balance.record(i, cuts[i + 1] - cuts[i], seconds[i]);
+      balance_.record(i, cuts[i + 1] - cuts[i], seconds[i]);
     }
-    level.balance.end_round();
+    balance_.end_round();
     first += count;
   }
-  if (seen_) leave_out_hidden(level, points, result);
+  if (seen_) leave_out_hidden(points, result);
   return result;
 }
 
-void PhotonEstimate::leave_out_hidden(Level& level, const PrimaryHits& points, LightTable& result) {
+void PhotonEstimate::leave_out_hidden(const PrimaryHits& points, LightTable& result) {
   const std::vector<std::uint32_t> beside =
       seen_->beside_something(points, result, maps_->front().parameters().radius);
-  const std::size_t lists =
-      std::max<std::size_t>(1, listed_at_a_time / static_cast<std::size_t>(level.neighbours));
+  const std::size_t lists = std::max<std::size_t>(1, listed_at_a_time / neighbours_);
   for (std::size_t first = 0; first < beside.size(); first += lists) {
     const std::span<const std::uint32_t> chosen =
         std::span(beside).subspan(first, std::min(lists, beside.size() - first));
-    const NeighbourLists near = level.estimators.front().nearest(reordered(points, 0, chosen));
+    const NeighbourLists near = estimators_.front().nearest(reordered(points, 0, chosen));
     seen_->leave_out_hidden(points, chosen, near, result);
   }
 }

@@ -30,16 +30,14 @@ class PhotonEstimate : public light::LightAtPoints {
  public:
   struct Parts {
     std::shared_ptr<const std::vector<PhotonMaps>> maps;  ///< the same on each device
-    std::vector<EstimateParameters> levels;  ///< ascending in k: points choose one, each its own
+    EstimateParameters parameters;
     /// Tells which photons of these maps are visible from a point: hidden ones do not count. Null:
     /// all count.
     std::shared_ptr<const VisiblePhotons> seen = nullptr;
   };
   /// References are kept.
-  ///   layer_powers   by which points choose their own k
   /// Errors: as Estimator.
-  PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts,
-                 std::span<const double> layer_powers);
+  PhotonEstimate(std::span<Device> devices, const Scene& scene, Parts parts);
 
   LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
@@ -47,25 +45,17 @@ class PhotonEstimate : public light::LightAtPoints {
   std::span<const std::uint32_t> map_of() const { return maps_->front().map_of(); }
 
   /// Each device's part of all points so far.
-  std::vector<double> fractions() const { return levels_.back().balance.fractions(); }
+  std::vector<double> fractions() const { return balance_.fractions(); }
 
  private:
-  /// Estimators of one k, one for each device.
-  struct Level {
-    int neighbours;
-    std::vector<Estimator> estimators;
-    LoadBalance balance;
-  };
-
-  /// The light at points by the k of a level.
-  LightTable estimate(Level& level, const PrimaryHits& points);
   /// Takes photons that their points do not see out of the estimates.
-  void leave_out_hidden(Level& level, const PrimaryHits& points, LightTable& result);
+  void leave_out_hidden(const PrimaryHits& points, LightTable& result);
 
   std::span<Device> devices_;
-  std::span<const double> layer_powers_;
   std::shared_ptr<const std::vector<PhotonMaps>> maps_;  ///< on each device
-  std::vector<Level> levels_;                            ///< ascending in k
+  std::vector<Estimator> estimators_;                    ///< one for each device
+  std::size_t neighbours_;
+  LoadBalance balance_;
   std::shared_ptr<const VisiblePhotons> seen_;
 };
 

@@ -58,10 +58,8 @@ std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParame
 /// Sets CLIPPED and DENSITY_KERNEL.
 inline void set_density_defines(device::Defines& defines, bool clipped, DensityKernel kernel) {
   if (clipped) defines.set("CLIPPED");
-  long long symbol = PHOTILE_CONSTANT_KERNEL;
-  if (kernel == DensityKernel::cone) symbol = PHOTILE_CONE_KERNEL;
-  if (kernel == DensityKernel::epanechnikov) symbol = PHOTILE_EPANECHNIKOV_KERNEL;
-  if (symbol != PHOTILE_CONSTANT_KERNEL) defines.set("DENSITY_KERNEL", symbol);
+  constexpr long long cone = PHOTILE_CONE_KERNEL;
+  if (kernel == DensityKernel::cone) defines.set("DENSITY_KERNEL", cone);
 }
 
 /// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,

@@ -155,8 +155,7 @@ bool VisiblePhotons::is_before_cavity(const trace::SurfaceLocation& here, float 
 }
 
 double VisiblePhotons::weight(double relative_squared) const {
-  if (kernel_ == DensityKernel::constant) return 1;
-  return 1 - (kernel_ == DensityKernel::cone ? std::sqrt(relative_squared) : relative_squared);
+  return kernel_ == DensityKernel::constant ? 1 : 1 - std::sqrt(relative_squared);
 }
 
 trace::SurfaceLocation VisiblePhotons::location_of(std::uint32_t photon) const {

@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
+#include <vector>
 
 #include "photile/light_table.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
+#include "photile/scene.hpp"
 
 namespace photile::light {
 
@@ -31,5 +33,8 @@ inline glm::vec3 reflected_radiance(const PrimaryHits& points, std::size_t point
              ? points.diffuse_albedo[point] * glm::one_over_pi<float>() * light.irradiance[entry]
              : light.radiance[entry];
 }
+
+/// The powers of a scene's layers; all 1 where every light is off.
+std::vector<double> layer_powers(const Scene& scene);
 
 }  // namespace photile::light

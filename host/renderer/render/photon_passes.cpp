@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "device/context.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "maps/map_page.hpp"
 #include "photile/limits.hpp"
 #include "render/exchange.hpp"
@@ -55,7 +54,7 @@ PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons p
     : rays_(rays),
       plan_(plan),
       photons_(std::move(photons)),
-      layer_powers_(estimate::layer_powers(rays.scene())),
+      layer_powers_(light::layer_powers(rays.scene())),
       is_shared_(plan.used().processes != nullptr) {
   if (!plan.reads_light_maps()) return;
   if (plan.gathers_at_nodes()) {
@@ -101,7 +100,7 @@ PhotonPasses::PhotonPasses(const RayScene& rays, std::span<Device> devices, cons
       devices_(devices),
       plan_(plan),
       costs_(costs),
-      layer_powers_(estimate::layer_powers(scene_)),
+      layer_powers_(light::layer_powers(scene_)),
       paths_before_(scene_.lights.size()) {}
 
 std::string PhotonPasses::light_map_settings() const {
@@ -182,18 +181,17 @@ PassPhotons PhotonPasses::facts(const Photons& photons) {
 }
 
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
-    const Built& built, std::vector<EstimateParameters> levels) const {
+    const Built& built, const EstimateParameters& parameters) const {
   return std::make_shared<estimate::PhotonEstimate>(
-      devices_, scene_, estimate::PhotonEstimate::Parts{built.maps, std::move(levels), built.seen},
-      layer_powers_);
+      devices_, scene_, estimate::PhotonEstimate::Parts{built.maps, parameters, built.seen});
 }
 
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(const Built& built) const {
-  return estimate_of(built, plan_.estimates(pass_, built.kernel, surface_));
+  return estimate_of(built, plan_.estimate(pass_, built.kernel, surface_));
 }
 
 std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_at_ends(const Built& built) const {
-  return estimate_of(built, {plan_.estimate_at_ends(built.kernel, surface_)});
+  return estimate_of(built, plan_.estimate_at_ends(built.kernel, surface_));
 }
 
 PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estimate) {

@@ -140,8 +140,8 @@ class PhotonPasses {
   Maps trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   Built build(Photons photons, const PhotonMapParameters& parameters, DensityKernel kernel,
               bool leaves_out_hidden, Progress& progress);
-  std::shared_ptr<estimate::PhotonEstimate> estimate_of(
-      const Built& built, std::vector<EstimateParameters> levels) const;
+  std::shared_ptr<estimate::PhotonEstimate> estimate_of(const Built& built,
+                                                        const EstimateParameters& parameters) const;
   /// By the k that was asked for.
   std::shared_ptr<estimate::PhotonEstimate> estimate_of(const Built& built) const;
   std::shared_ptr<estimate::PhotonEstimate> estimate_at_ends(const Built& built) const;

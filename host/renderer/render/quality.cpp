@@ -108,7 +108,6 @@ RenderParameters first_picture_parameters(const RenderParameters& asked) {
       std::min(asked.photons.emitted_photons, defaults::view_first_photons);
   first.passes = 1;
   first.radius = 0;
-  first.least_neighbours = 0;
   first.light_maps = LightMapMode::on;
   first.counts_hidden_photons = true;
   if (nodes_gather(asked)) {

@@ -8,7 +8,6 @@
 
 #include "cache/surface_cache.hpp"
 #include "common/ascii_text.hpp"
-#include "estimate/neighbour_choice.hpp"
 #include "geometry/radius_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -172,19 +171,13 @@ PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
           .large_pages = !reads_light_maps()};  // whose nodes are few
 }
 
-std::vector<EstimateParameters> RenderPlan::estimates(
-    int pass, DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const {
-  const int most = estimate_of_pass(pass, {0, used_.neighbours}).neighbours;
-  const int least = used_.least_neighbours > 0 ? std::min(used_.least_neighbours, most) : most;
-  std::vector<EstimateParameters> levels;
-  for (const int neighbours : estimate::neighbour_levels(least, most)) {
-    levels.push_back({.neighbours = neighbours,
-                      .compiled_neighbours = used_.neighbours,
-                      .area = used_.area,
-                      .kernel = kernel,
-                      .surface = surface});
-  }
-  return levels;
+EstimateParameters RenderPlan::estimate(int pass, DensityKernel kernel,
+                                        const std::shared_ptr<const SurfaceIndex>& surface) const {
+  return {.neighbours = estimate_of_pass(pass, {0, used_.neighbours}).neighbours,
+          .compiled_neighbours = used_.neighbours,
+          .area = used_.area,
+          .kernel = kernel,
+          .surface = surface};
 }
 
 /// The light at ray ends may be noisy, because a node adds up many of them, but it must not be

@@ -64,11 +64,9 @@ class RenderPlan {
   NeighbourGroupParameters groups(double first_radius) const;
   PhotonMapParameters maps(int pass, double first_radius) const;
 
-  /// The parameters of each k that hits choose from, ascending; just one unless hits are to have
-  /// their own.
   ///   surface   where areas are clipped, else null
-  std::vector<EstimateParameters> estimates(
-      int pass, DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const;
+  EstimateParameters estimate(int pass, DensityKernel kernel,
+                              const std::shared_ptr<const SurfaceIndex>& surface) const;
 
   /// Where gathering rays end.
   EstimateParameters estimate_at_ends(DensityKernel kernel,

@@ -179,10 +179,6 @@ std::vector<Setting> estimate_rows() {
                                                WholeNumbers{1, limits::max_neighbours},
                                                "photons of an estimate", kept_for_radius)),
                  25, 100, 100),
-      row<&P::least_neighbours>(
-          "least_neighbours", estimate, WholeNumbers{1, limits::max_neighbours},
-          "each hit has its own number of neighbours, from this one up, as its bias allows",
-          not_kept, "all hits have the same"),
       of_groups(row<&P::radius>("radius", groups, PositiveNumbers{},
                                 "photons farther away do not count", kept_if_given,
                                 "twice the median distance to the k-th photon", "m")),
@@ -194,7 +190,7 @@ std::vector<Setting> estimate_rows() {
                     "one of naive maps",
                     not_kept),
       row<&P::kernel>("kernel", estimate, words_of(all_density_kernels),
-                      "weights of photons; cone, epanechnikov: less blur, more noise", not_kept),
+                      "weights of photons; cone: less blur, more noise", not_kept),
       of_groups(row<&P::maps>("maps", groups, words_of(all_map_modes),
                               "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
       row<&P::photons_per_cell>("photons_per_cell", build, PositiveNumbers{},
@@ -297,12 +293,7 @@ void check_setting(std::string_view name, const SettingValue& value) {
 
 void check(const RenderParameters& parameters) {
   for (const Setting& setting : settings()) {
-    if (!setting.is_given(parameters)) continue;
-    check_setting(setting.name, setting.value(parameters));
-    if (setting.name == "least_neighbours" && parameters.least_neighbours > parameters.neighbours) {
-      throw SettingError(setting, fmt::format("{} is more than the {} neighbours",
-                                              parameters.least_neighbours, parameters.neighbours));
-    }
+    if (setting.is_given(parameters)) check_setting(setting.name, setting.value(parameters));
   }
 }
 

@@ -46,6 +46,5 @@
    kernels/shared/density_kernel.clh explains. */
 #define PHOTILE_CONSTANT_KERNEL 0
 #define PHOTILE_CONE_KERNEL 1
-#define PHOTILE_EPANECHNIKOV_KERNEL 2
 
 #endif
