@@ -149,7 +149,7 @@ def errors():
                 ([*render, "--save-maps", folder / "maps"], 2, "--save-maps"),
                 ([*render, "--target-error", "5"], 2, "--target-error"),
                 (["bake", BOX, "-o", folder / "baked"], 2, "photile bake"),
-                (["trace", BOX, "-o", folder / "photons"], 2, "--shard"),
+                (["trace", BOX, "-o", folder / "photons"], 2, "photile trace"),
                 (["render", folder / "none.gltf", "-o", picture], 3, "none.gltf")]:
             done = run(3, arguments)
             lines = error_lines(done)

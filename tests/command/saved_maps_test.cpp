@@ -1,4 +1,4 @@
-// Photons between runs and between processes.
+// Photons between runs, and frames of several processes.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -76,8 +76,7 @@ TEST_CASE("photons of other settings or scenes, and broken files, are refused by
   CHECK_FALSE(std::filesystem::exists(folder / "b.exr"));
 }
 
-// Work that several processes share: `photile trace --shard`, `photile merge`, and shares of a
-// walk.
+// `photile trace`, and frames that several processes share.
 
 /// `photile trace` of the box, to a file of the folder.
 std::vector<std::string> trace(const FileFolder& folder, const std::string& file,
@@ -85,25 +84,9 @@ std::vector<std::string> trace(const FileFolder& folder, const std::string& file
   return typed("trace", write_box(folder), "-o", folder / file, "--photons 20k -q", more);
 }
 
-std::vector<std::string> merge(const FileFolder& folder, const std::vector<std::string>& files,
-                               const std::string& output) {
-  std::vector<std::string> arguments{"merge", "-o", folder / output};
-  for (const std::string& file : files) arguments.push_back(folder / file);
-  return arguments;
-}
-
-TEST_CASE("merged shards are the file of one process, byte for byte, and render its picture") {
+TEST_CASE("traced photons render the picture of their scene, with any settings of groups") {
   const FileFolder folder;
-  succeed(trace(folder, "whole.photons"));
-  for (const int count : {2, 7}) {
-    std::vector<std::string> shards;
-    for (int i = count; i >= 1; --i) {  // in any order
-      shards.push_back(fmt::format("{}of{}.photons", i, count));
-      succeed(trace(folder, shards.back(), {"--shard", fmt::format("{}/{}", i, count)}));
-    }
-    succeed(merge(folder, shards, "all.photons"));
-    CHECK(folder.read("all.photons") == folder.read("whole.photons"));
-  }
+  succeed(trace(folder, "all.photons"));
   const auto render = [&](const std::string& picture, const std::vector<std::string>& more) {
     return typed("render", write_box(folder), "-o", folder / picture,
                  "--photons 20k -q --size 24x16 --samples 1", more);
@@ -111,50 +94,10 @@ TEST_CASE("merged shards are the file of one process, byte for byte, and render 
   succeed(render("own.exr", {}));
   succeed(render("loaded.exr", {"--load-maps", folder / "all.photons"}));
   CHECK(read_image(folder / "own.exr").channels == read_image(folder / "loaded.exr").channels);
-  // Photons alone fit any settings of groups.
   succeed(render("wide.exr", {"--set", "radius=0.3", "--load-maps", folder / "all.photons"}));
   const std::string other = only_error(
       run_photile(render("seed.exr", {"--seed", "5", "--load-maps", folder / "all.photons"})), 3);
   CHECK_THAT(other, Contains("seed 1") && Contains("seed 5"));
-}
-
-TEST_CASE("shards that are missing, doubled or foreign are named, and nothing is written") {
-  const FileFolder folder;
-  for (const char* i : {"1", "2", "3"}) {
-    succeed(trace(folder, fmt::format("{}.photons", i), {"--shard", fmt::format("{}/3", i)}));
-  }
-  succeed(trace(folder, "whole.photons"));
-  succeed(trace(folder, "seed.photons", {"--shard", "3/3", "--seed", "2"}));
-  succeed(trace(folder, "half.photons", {"--shard", "2/2"}));
-  folder.write("damaged.photons", folder.read("3.photons").substr(0, 2000));
-  const auto [files, words] = GENERATE(table<std::vector<std::string>, std::string>({
-      {{"1.photons", "3.photons"}, "shards 2 of 3 are missing"},
-      {{"1.photons", "2.photons", "1.photons"}, "1.photons: holds shard 1 of 3"},
-      {{"1.photons", "2.photons", "seed.photons"}, "seed.photons: was traced with"},
-      {{"1.photons", "half.photons"}, "half.photons: is one of 2 shards"},
-      {{"whole.photons"}, "whole.photons: holds all photons"},
-      {{"1.photons", "2.photons", "damaged.photons"}, "damaged.photons: is truncated"},
-  }));
-  CHECK_THAT(only_error(run_photile(merge(folder, files, "all.photons")), 3), Contains(words));
-  CHECK_FALSE(std::filesystem::exists(folder / "all.photons"));
-}
-
-TEST_CASE("a shard is no whole, and no file overwrites a shard that it is made of") {
-  const FileFolder folder;
-  succeed(trace(folder, "1.photons", {"--shard", "1/2"}));
-  const std::string before = folder.read("1.photons");
-  CHECK_THAT(
-      only_error(run_photile({"render", write_box(folder), "-o", folder / "a.exr", "--photons",
-                              "20k", "-q", "--load-maps", folder / "1.photons"}),
-                 3),
-      Contains("shard 1 of 2") && Contains("photile merge"));
-  CHECK_THAT(only_error(run_photile(merge(folder, {"1.photons"}, "1.photons")), 2),
-             Contains("1.photons"));
-  CHECK(folder.read("1.photons") == before);
-  for (const char* shard : {"0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2"}) {
-    CHECK_THAT(only_error(run_photile(trace(folder, "b.photons", {"--shard", shard})), 2),
-               Contains("--shard") && Contains("I/N"));
-  }
 }
 
 TEST_CASE("frames that several processes make are those of one, with its exposure") {
@@ -170,10 +113,10 @@ TEST_CASE("frames that several processes make are those of one, with its exposur
   succeed(walk(several, {"--frames", "2-4x2"}));
   CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
   CHECK_FALSE(std::filesystem::exists(several / "f.03.png"));
-  CHECK_THAT(succeed(walk(several, {"--shard", "2/2"})).errors,
+  CHECK_THAT(succeed(walk(several, {"--frames", "3-5"})).errors,
              Contains("1 of 3 frames are finished"));  // 3, 4 and 5
   CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
-  succeed(walk(several, {"--shard", "1/2"}));
+  succeed(walk(several, {"--frames", "1-2"}));
   for (int frame = 1; frame <= 5; ++frame) {
     CAPTURE(frame);
     const std::string name = fmt::format("f.{:02}", frame);
@@ -184,10 +127,11 @@ TEST_CASE("frames that several processes make are those of one, with its exposur
   CHECK_THAT(last_error(run_photile(walk(several, {"--frames", "7-9"})), 2),
              Contains("--frames") && Contains("1 to 5"));
   CHECK_THAT(only_error(run_photile(walk(several, {"--frames", "4-2"})), 2), Contains("A-BxS"));
-  CHECK_THAT(only_error(run_photile(walk(
-                            several, {"--shard", "1/2", "--contact-sheet", several / "sheet.png"})),
-                        2),
-             Contains("--contact-sheet"));
+  CHECK_THAT(
+      only_error(
+          run_photile(walk(several, {"--frames", "1-2", "--contact-sheet", several / "sheet.png"})),
+          2),
+      Contains("--contact-sheet"));
 }
 
 }  // namespace

@@ -62,16 +62,8 @@ def commands_of(page):
         line = re.split(r" {3,}(?!#|-)", line)[0]  # a synopsis: what it does stands in a column beside it
         match = re.match(r"(?:\$ )?(?:[\w]+=\S+ )*(?:build/release/)?(photile [a-z-].*)", line)
         if match:
-            found += on_all_machines(match[1])
+            found.append(re.sub(r"\$SLURM_\w+", "1", match[1]))
     return found
-
-
-def on_all_machines(command):
-    """What `command  # on four machines` stands for: photile trace ... --shard 1/4 -o 1.photons, 2/4, ..."""
-    command = re.sub(r"\$SLURM_\w+", "1", command)
-    shard = re.search(r"--shard 1/(\d+) -o 1\.", command)
-    return [command.replace("--shard 1/", f"--shard {i}/").replace("-o 1.", f"-o {i}.")
-            for i in range(1, int(shard[1]) + 1)] if shard else [command]
 
 
 def words_of(command):

@@ -101,7 +101,8 @@ void check_occupancy(const std::string& hours, const std::string& days) {
 void parse_option(unsigned char option, const std::string& text) {
   const auto finite = [](double value) { require(std::isfinite(value), "no number"); };
   SceneLoadOptions options;
-  // The last bytes are those of options that came later, so that older inputs keep their meaning.
+  // The last bytes are those of options that came later, and 19 that of one that is gone, so that
+  // older inputs keep their meaning.
   constexpr int last_options = 253;
   switch (option < last_options ? option % 23 : option) {
     case 0:
@@ -182,9 +183,6 @@ void parse_option(unsigned char option, const std::string& text) {
       for (const double value : {asked.mean, asked.uniformity, asked.glare}) finite(value);
       break;
     }
-    case 19:
-      validate(app::shard_of_some(), text);
-      break;
     case 20:
       validate(app::frame_range(), text);
       break;

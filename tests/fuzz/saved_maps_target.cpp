@@ -22,7 +22,7 @@ struct Head {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;
   ContentHash::Digest scene;
-  std::uint32_t shard, shards;
+  std::array<std::uint32_t, 2> whole;
   std::uint64_t photon_bytes;
   ContentHash::Digest photons;
   std::uint64_t light_map_bytes;
@@ -94,8 +94,6 @@ void use_light_maps(LightMapContents contents) {
 
 bool fuzz_saved_maps(Bytes bytes) {
   const auto file = file_of("room.maps", sealed(bytes));
-  // Alone it is all shards, or one of several, and refused.
-  accepts([&] { saved_maps::merge(std::span(&file, 1), file.parent_path() / "merged.maps"); });
   return accepts([&] {
     TracedPhotons photons = saved_maps::load(file, floor_scene(), words);
     require(photons.photons.first_of.size() == 2 * floor_scene().triangle_count() + 1,

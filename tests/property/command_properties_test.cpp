@@ -206,15 +206,6 @@ std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
   return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
 }
 
-/// Runs the commands that write what a command reads.
-void run_before(const RandomCommand& command) {
-  for (const std::vector<std::string>& arguments : command.before) {
-    const CommandRun run = run_command(arguments);
-    CAPTURE(text_of(arguments), run.errors);
-    Trial::check_end(run);
-  }
-}
-
 /// Waiting for a disk takes longer than most commands do.
 void keep_files_in_memory() {
   if (fs::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 1);
@@ -293,7 +284,6 @@ TEST_CASE("commands at random keep what every command promises") {
     Dice same = dice;
     const RandomCommand command = random_command(place, dice);
     CAPTURE(seed, text_of(command.arguments));
-    run_before(command);
     const Trial trial(command);
     const CommandRun run = run_command(command.arguments);
     trial.check(run);
@@ -312,7 +302,6 @@ TEST_CASE("commands at random keep what every command promises") {
     place.folder = again.path;
     RandomCommand second = random_command(place, same);
     load_maps_of(command, second);
-    run_before(second);
     const CommandRun once_more = run_command(second.arguments);
     CAPTURE(text_of(second.arguments), once_more.errors);
     CHECK(once_more.exit_code == 0);
@@ -327,7 +316,7 @@ TEST_CASE("commands at random keep what every command promises") {
   CHECK(codes[2] > 0);
   CHECK(codes[3] > 0);
   for (const char* command :
-       {"render", "relight", "measure", "walk", "compare", "ies", "merge", "glare"}) {
+       {"render", "relight", "measure", "walk", "compare", "ies", "trace", "glare"}) {
     CAPTURE(command);
     CHECK(successes[command] > 0);
   }

@@ -28,7 +28,7 @@ class Generator : CommandBuilder {
         {0.40, &Generator::render}, {0.14, &Generator::relight}, {0.09, &Generator::measure},
         {0.07, &Generator::walk},   {0.07, &Generator::info},    {0.05, &Generator::compare},
         {0.03, &Generator::bake},   {0.07, &Generator::glare},   {0.02, &Generator::daylight},
-        {0.03, &Generator::ies},    {1.00, &Generator::shards}};  // all that are left
+        {0.03, &Generator::ies},    {1.00, &Generator::trace}};  // all that are left
     double left = dice_.unit();
     for (const auto& [share, make] : kinds) {
       left -= share;
@@ -123,13 +123,11 @@ class Generator : CommandBuilder {
     }
   }
 
-  /// All two frames of a walk, or one of them by number or as a shard.
+  /// All two frames of a walk, or one of them by number.
   std::vector<int> frames_of(int first) {
     const int one = dice_.whole(0, 1);
     if (dice_.chance(0.1)) {
       add({"--frames", std::to_string(first + one)});
-    } else if (dice_.chance(0.1)) {
-      add({"--shard", fmt::format("{}/2", one + 1)});
     } else {
       maybe(0.05, {"--frames", dice_.one_of({"9", "2-1", "1-2x0", "x"})});
       return {first, first + 1};
@@ -259,9 +257,7 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.7)) output("-o", dice_.one_of({"ugr.csv", "ugr.json"}));
   }
 
-  /// One of two processes that trace photons, or what brings them together.
-  void shards() {
-    const bool together = dice_.chance(0.7);
+  void trace() {
     add({"trace"});
     scene();
     lights();
@@ -272,24 +268,6 @@ class Generator : CommandBuilder {
       }
     }
     settings(others);
-    if (!together) {
-      maybe(0.8, {"--shard", dice_.one_of({"1/2", "2/2", "1/1", "3/2", "0/1", "7/1000000"})});
-      output("-o", "photons.maps");
-      return;
-    }
-    std::vector<std::string> merge{"merge"};
-    for (const char* shard : {"1/2", "2/2"}) {
-      const auto file = place_.folder / fmt::format("shard{}.maps", shard[0]);
-      command_.before.push_back(command_.arguments);
-      for (const std::string& argument :
-           {std::string("--shard"), std::string(shard), std::string("-o"), file.string()}) {
-        command_.before.back().push_back(argument);
-      }
-      command_.inputs.push_back(file);
-      if (!dice_.chance(0.05)) merge.push_back(file.string());
-      if (dice_.chance(0.05)) merge.push_back(file.string());
-    }
-    command_.arguments = merge;
     output("-o", "photons.maps");
   }
 };

@@ -13,9 +13,7 @@ struct RandomCommand {
   std::vector<std::string> arguments;          ///< without the program's name
   std::vector<std::filesystem::path> inputs;   ///< files that it may read
   std::vector<std::filesystem::path> outputs;  ///< files, or folders, that it is to write
-  /// Commands that run before, to write what it reads.
-  std::vector<std::vector<std::string>> before = {};
-  bool timed = false;  ///< what comes out depends on the time it takes
+  bool timed = false;                          ///< what comes out depends on the time it takes
 };
 
 /// What commands work on.

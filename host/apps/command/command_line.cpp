@@ -46,18 +46,14 @@ void define(CLI::App& photile) {
   add_validate_command(photile);
   add_walk_command(photile);
   add_trace_command(photile);
-  add_merge_command(photile);
   add_view_command(photile);
   add_bake_command(photile);
   add_publish_command(photile);
   for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
     const std::string name = command->get_name();
     if (name == "render" || name == "measure" || name == "walk") continue;
-    command->preparse_callback([name](std::size_t) {
-      refuse_several("photile " + name, name == "trace"
-                                            ? "give each process its --shard, without mpirun"
-                                            : "start it without mpirun");
-    });
+    command->preparse_callback(
+        [name](std::size_t) { refuse_several("photile " + name, "start it without mpirun"); });
   }
 }
 

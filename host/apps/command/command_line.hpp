@@ -46,7 +46,6 @@ void add_devices_command(CLI::App& photile);
 void add_info_command(CLI::App& photile);
 void add_validate_command(CLI::App& photile);
 void add_trace_command(CLI::App& photile);
-void add_merge_command(CLI::App& photile);
 void add_walk_command(CLI::App& photile);
 void add_view_command(CLI::App& photile);
 void add_bake_command(CLI::App& photile);

@@ -109,14 +109,11 @@ int launched_with_mpi() {
   return std::getenv("PMIX_RANK") != nullptr ? 1 : 0;
 }
 
-/// Whether each process has a separate part, so that several do not write the same file.
-bool names_its_part(std::span<const char* const> arguments) {
-  for (const char* argument : arguments) {
-    for (const std::string_view option : {"--shard", "--frames"}) {
-      if (std::string_view(argument).starts_with(option)) return true;
-    }
-  }
-  return false;
+/// Whether each process has separate frames, so that several do not write the same file.
+bool names_its_frames(std::span<const char* const> arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [](const char* argument) {
+    return std::string_view(argument).starts_with("--frames");
+  });
 }
 
 }  // namespace
@@ -126,10 +123,10 @@ void join_processes(std::span<const char* const> arguments) {
   const int launched = launched_with_mpi();
   if (launched == 0) {
     const int tasks = std::getenv("SLURM_STEP_ID") ? number_in("SLURM_STEP_NUM_TASKS") : 0;
-    if (tasks > 1 && !names_its_part(arguments)) {
+    if (tasks > 1 && !names_its_frames(arguments)) {
       throw UsageError(fmt::format(
           "srun has started {} tasks without MPI; use srun --mpi=pmix or mpirun, or give each task "
-          "its --shard",
+          "its --frames",
           tasks));
     }
     return;

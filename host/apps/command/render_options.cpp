@@ -126,14 +126,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
              file_ending_in({".png"}));
 }
 
-void add_shard_option(const OptionGroup& group, Shard& shard, const std::string& of_what) {
-  group.call(
-      "--shard", [&shard](const std::string& text) { shard = *parse_shard(text); }, "I/N",
-      fmt::format("the I-th of N equal parts {}, from 1; several processes share the work",
-                  of_what),
-      shard_of_some());
-}
-
 void add_saved_maps_options(CLI::App& command, RenderOptions& options) {
   const OptionGroup photons(command, "Photons");
   CLI::Option* save =

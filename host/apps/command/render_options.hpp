@@ -77,10 +77,6 @@ void add_picture_settings(CLI::App& command, RenderOptions& options,
 /// Adds --threads and --quiet.
 void add_run_group(CLI::App& command, RenderOptions& options);
 
-/// Adds --shard I/N.
-///   of_what   "of the paths"
-void add_shard_option(const OptionGroup& group, Shard& shard, const std::string& of_what);
-
 /// Adds --save-maps and --load-maps.
 void add_saved_maps_options(CLI::App& command, RenderOptions& options);
 

@@ -20,7 +20,6 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "loading/load_scene.hpp"
-#include "photile/limits.hpp"
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "render/render_plan.hpp"
@@ -32,7 +31,6 @@ namespace {
 struct TraceOptions {
   RenderOptions render;
   std::string output;
-  Shard shard;
 };
 
 void run_trace(TraceOptions& options) {
@@ -49,30 +47,14 @@ void run_trace(TraceOptions& options) {
 
   const RayScene rays(scene);
   const RenderPlan plan(render.parameters, rays, HitsAsk::pictures, progress);
-  PhotonTracerParameters tracing = plan.tracing(0, {});
-  tracing.shard = options.shard;
-  PhotonTracerResult traced = trace_photons(rays, tracing, progress);
+  PhotonTracerResult traced = trace_photons(rays, plan.tracing(0, {}), progress);
   TracedPhotons photons;
   photons.photons = std::move(traced.photons);
   if (plan.keeps_caustics()) photons.caustics = std::move(traced.caustics);
   progress.begin("save photons", 0, "");
-  saved_maps::save(options.output, scene, saved_settings(render.parameters), photons,
-                   options.shard);
+  saved_maps::save(options.output, scene, saved_settings(render.parameters), photons);
   progress.end();
   progress.note(fmt::format("{}: {} photons", options.output, photons.photons.size()));
-}
-
-struct MergeOptions {
-  std::vector<std::string> files;
-  std::string output;
-};
-
-void run_merge(const MergeOptions& options) {
-  handle_signals();
-  for (const std::string& file : options.files) note_input(file);
-  check_outputs(std::vector<std::filesystem::path>{options.output});
-  saved_maps::merge(std::vector<std::filesystem::path>(options.files.begin(), options.files.end()),
-                    options.output);
 }
 
 }  // namespace
@@ -80,8 +62,7 @@ void run_merge(const MergeOptions& options) {
 void add_trace_command(CLI::App& photile) {
   auto options = std::make_shared<TraceOptions>();
   RenderOptions& render = options->render;
-  CLI::App* command = photile.add_subcommand(
-      "trace", "Trace photons, or a part of them, to a file for --load-maps");
+  CLI::App* command = photile.add_subcommand("trace", "Trace photons to a file for --load-maps");
   OptionGroup(*command, "Output")
       .add("-o,--output", options->output, "FILE", "file of photons")
       ->required();
@@ -97,25 +78,10 @@ void add_trace_command(CLI::App& photile) {
     return std::find(kept.begin(), kept.end(), setting.name) == kept.end();
   });
   add_set_option(*command, {of_photons, scene_settings(render.load)});
-  add_shard_option(OptionGroup(*command, "Photons"), options->shard, "of the paths");
   add_scene_options(*command, render.load);
   add_light_options(*command, render.load);
   add_run_group(*command, render);
   command->callback([options] { run_trace(*options); });
-}
-
-void add_merge_command(CLI::App& photile) {
-  auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = photile.add_subcommand(
-      "merge", "Bring the shards of photile trace together, as one process would have traced them");
-  command->add_option("FILE", options->files, "all shards, in any order")
-      ->required()
-      ->expected(1, static_cast<int>(limits::max_shards))
-      ->type_name("");
-  OptionGroup(*command, "Output")
-      .add("-o,--output", options->output, "FILE", "file of all photons, for --load-maps")
-      ->required();
-  command->callback([options] { run_merge(*options); });
 }
 
 }  // namespace photile::app

@@ -74,17 +74,6 @@ std::optional<PixelSize> parse_size(std::string_view text) {
   return PixelSize{*width, *height};
 }
 
-std::optional<Shard> parse_shard(std::string_view text) {
-  const auto separator = text.find('/');
-  if (separator == std::string_view::npos) return std::nullopt;
-  const auto index = parse_number<std::uint32_t>(text.substr(0, separator));
-  const auto count = parse_number<std::uint32_t>(text.substr(separator + 1));
-  if (!index || !count || *index < 1 || *index > *count || *count > limits::max_shards) {
-    return std::nullopt;
-  }
-  return Shard{*index - 1, *count};
-}
-
 CLI::Validator count_between(std::uint64_t lowest, std::uint64_t highest) {
   return within(WholeNumbers{lowest, highest});
 }
@@ -149,15 +138,6 @@ CLI::Validator picture_size() {
                          limits::max_image_side);
     }
     return {};
-  };
-  return {check, ""};
-}
-
-CLI::Validator shard_of_some() {
-  const auto check = [](std::string& text) -> std::string {
-    if (parse_shard(text)) return {};
-    return fmt::format("'{}' is not I/N, such as 2/8, with I from 1 to N and N up to {}", text,
-                       limits::max_shards);
   };
   return {check, ""};
 }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/value_range.hpp"
-#include "photile/communicator.hpp"
 
 namespace photile::app {
 
@@ -29,9 +28,6 @@ struct PixelSize {
 
 /// "640x480". Nothing if it is none.
 std::optional<PixelSize> parse_size(std::string_view text);
-
-/// A part of several, counted from 1: "2/8". Nothing if it is none.
-std::optional<Shard> parse_shard(std::string_view text);
 
 /// A value in the range: a whole number as `parse_count` reads it, a finite number, a word, which
 /// then is a view of `text`. Nothing if it is none.
@@ -54,9 +50,6 @@ CLI::Validator number_between(double lowest, double highest);
 
 /// A finite number greater than zero.
 CLI::Validator positive_number();
-
-/// A part as `parse_shard` reads it.
-CLI::Validator shard_of_some();
 
 /// Frames as walk::parse_frame_range reads them.
 CLI::Validator frame_range();

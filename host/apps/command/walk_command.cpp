@@ -49,7 +49,6 @@ struct WalkOptions {
   double frames_per_second = 24;
   int first_number = 1;
   std::optional<walk::FrameRange> frames;  ///< none = all
-  Shard shard;                             ///< of them
 };
 
 reading::CameraMotion motion_of(const WalkOptions& options, const Camera& camera) {
@@ -84,10 +83,7 @@ std::vector<int> frames_to_make(const WalkOptions& options, int count) {
     throw UsageError(fmt::format("--frames: the walk has frames {} to {}, and none of these",
                                  options.first_number, options.first_number + count - 1));
   }
-  const auto place = [&](std::uint64_t i) {
-    return frames.begin() + static_cast<std::ptrdiff_t>(i);
-  };
-  return {place(options.shard.begin(frames.size())), place(options.shard.end(frames.size()))};
+  return frames;
 }
 
 /// Frames of a walk, rendered or found finished.
@@ -358,7 +354,7 @@ void check_names(const WalkOptions& options) {
 }
 
 void check_share(const WalkOptions& options) {
-  if (options.sheet.empty() || (!options.frames && options.shard == Shard{})) return;
+  if (options.sheet.empty() || !options.frames) return;
   throw UsageError(
       "--contact-sheet shows all frames; leave it out here, and make it when all are finished");
 }
@@ -424,7 +420,6 @@ void add_walk_command(CLI::App& photile) {
         frames = walk::parse_frame_range(text);
       },
       "A[-B[xS]]", "frames to render, by number; every S-th", frame_range());
-  add_shard_option(motion, options->shard, "of the frames");
   set_quality(options->render.quality_options(), Quality::good);
   add_picture_settings(*command, options->render,
                        {display_view_setting(options->render.pictures.tone_mapping),

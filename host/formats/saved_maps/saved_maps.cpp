@@ -1,7 +1,6 @@
 #include "saved_maps/saved_maps.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +9,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <type_traits>
 #include <vector>
@@ -19,7 +17,6 @@
 #include "common/files.hpp"
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/scene.hpp"
 #include "scene/scene_queries.hpp"
 
@@ -30,6 +27,8 @@ namespace {
 constexpr std::array<char, 8> magic{'P', 'H', 'O', 'T', 'M', 'A', 'P', 'S'};
 constexpr std::uint32_t version = 5;
 constexpr std::uint32_t byte_order = 0x0102'0304;
+/// That of a file which holds all photons of its scene: no other is written.
+constexpr std::array<std::uint32_t, 2> all_photons{0, 1};
 
 /// A run of arrays. No padding.
 struct Part {
@@ -42,9 +41,9 @@ struct Header {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;
   ContentHash::Digest scene;
-  std::uint32_t shard, shards;
-  Part photons, light_maps;  ///< one after the other; light maps may be none
-  ContentHash::Digest head;  ///< of all before
+  std::array<std::uint32_t, 2> whole;  ///< `all_photons`
+  Part photons, light_maps;            ///< one after the other; light maps may be none
+  ContentHash::Digest head;            ///< of all before
 };
 static_assert(sizeof(Header) == 104 && std::is_trivially_copyable_v<Header>);
 static_assert(sizeof(LightMapContents::Coordinates) == 12 && sizeof(LightMapContents::Tile) == 32);
@@ -203,6 +202,7 @@ Header read_header(Reader& reader) {
                               header.version, version));
   }
   if (header.head != digest_of(header)) reader.refuse("is damaged; save it again");
+  if (header.whole != all_photons) reader.refuse("holds a part of the photons; save all of them");
   const std::uint64_t left = reader.left();
   const bool whole =
       header.photons.bytes <= left && header.light_maps.bytes <= left - header.photons.bytes;
@@ -254,8 +254,11 @@ void refuse_other_settings(const Reader& reader, const std::string& saved,
       "was saved with {}, not with {}; give the same options or save it again", saved, asked));
 }
 
-void write(const std::filesystem::path& file, Header header, const Settings& settings,
-           const TracedPhotons& prepared) {
+}  // namespace
+
+void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
+          const TracedPhotons& prepared) {
+  Header header{magic, version, byte_order, digest_of(scene), all_photons, {}, {}, {}};
   header.photons = part_of([&](const auto& put) { write_photons(prepared, settings, put); });
   header.head = digest_of(header);
   OutputFile output(file);
@@ -263,128 +266,6 @@ void write(const std::filesystem::path& file, Header header, const Settings& set
   write_photons(prepared, settings,
                 [&](const void* bytes, std::uint64_t count) { output.write(bytes, count); });
   output.commit();  // reports short writes, too
-}
-
-Header header_of(const ContentHash::Digest& scene, const Shard& shard) {
-  return {magic, version, byte_order, scene, shard.index, shard.count, {}, {}, {}};
-}
-
-/// Photons that several processes have traced, each its shard.
-class ShardCollection {
- public:
-  /// Errors: InputError where the file is damaged, or no shard that fits those before.
-  void add(const std::filesystem::path& file) {
-    Reader reader(file);
-    note_input(file);
-    const Header header = read_header(reader);
-    if (header.shards < 2 || header.shard >= header.shards) {
-      reader.refuse(
-          "holds all photons of its scene, or is no shard; give those of photile trace "
-          "--shard alone");
-    }
-    Contents contents = read_photons(reader, header);
-    if (contents.prepared.has_groups()) reader.refuse("holds photon maps; give photons alone");
-    if (shards_.empty()) {
-      scene_ = header.scene;
-      count_ = header.shards;
-      settings_ = contents.settings;
-      first_ = file;
-    }
-    if (header.scene != scene_) {
-      reader.refuse(fmt::format("was traced from another scene than {}", first_.string()));
-    }
-    if (contents.settings.photons != settings_.photons) {
-      reader.refuse(fmt::format("was traced with {}, {} with {}", contents.settings.photons,
-                                first_.string(), settings_.photons));
-    }
-    if (header.shards != count_) {
-      reader.refuse(
-          fmt::format("is one of {} shards, {} one of {}", header.shards, first_.string(), count_));
-    }
-    const auto [place, is_new] =
-        shards_.try_emplace(header.shard, Read{file, std::move(contents.prepared)});
-    if (!is_new) {
-      reader.refuse(fmt::format("holds shard {} of {}, as {} does; give each once",
-                                header.shard + 1, count_, place->second.file.string()));
-    }
-  }
-
-  /// Errors: InputError where shards are missing, or do not fit one another; OutputError.
-  void write_whole(const std::filesystem::path& output) {
-    check_complete();
-    TracedPhotons whole;
-    whole.photons = merged([](TracedPhotons& prepared) { return &prepared.photons; });
-    if (shards_.begin()->second.prepared.caustics) {
-      whole.caustics = merged([](TracedPhotons& prepared) {
-        return prepared.caustics ? &*prepared.caustics : nullptr;
-      });
-    }
-    write(output, header_of(scene_, {}), settings_, whole);
-  }
-
- private:
-  struct Read {
-    std::filesystem::path file;
-    TracedPhotons prepared;
-  };
-
-  void check_complete() const {
-    constexpr std::size_t most_named = 10;
-    std::vector<std::uint32_t> missing;
-    for (std::uint32_t i = 0; i < count_ && missing.size() < most_named; ++i) {
-      if (!shards_.contains(i)) missing.push_back(i + 1);
-    }
-    if (missing.empty()) return;
-    throw InputError(fmt::format("shards {}{} of {} are missing", fmt::join(missing, ", "),
-                                 count_ - shards_.size() > missing.size() ? ", ..." : "", count_));
-  }
-
-  template <class PhotonsOf>
-  Photons merged(const PhotonsOf& photons_of) {
-    SceneNeeds needs;  // as far as the photons show
-    std::uint64_t count = 0;
-    for (auto& [index, shard] : shards_) {
-      const Photons* photons = photons_of(shard.prepared);
-      if (!photons) refuse(shard, "lacks caustics, which another shard has");
-      needs.glossy = needs.glossy || !photons->incoming.empty();
-      if (!photons->light.empty()) needs.light_count = limits::max_lights;
-      count += photons->size();
-    }
-    if (count > limits::max_stored_photons) {
-      throw InputError(fmt::format("the shards hold {} photons, more than {}; emit fewer", count,
-                                   limits::max_stored_photons));
-    }
-    std::vector<Photons> runs;
-    for (auto& [index, shard] : shards_) {
-      Photons& photons = *photons_of(shard.prepared);
-      const std::uint64_t rows = runs.empty() ? photons.first_of.size() : runs[0].first_of.size();
-      const std::string problem =
-          rows == 0 ? "no triangles" : maps::problem_of(photons, needs, rows - 1);
-      if (!problem.empty()) refuse(shard, fmt::format("has {}; trace it again", problem));
-      if (!runs.empty() && photons.emitted_per_light != runs[0].emitted_per_light) {
-        refuse(shard, "has other numbers of paths than the first shard");
-      }
-      runs.push_back(std::move(photons));
-    }
-    return merge_runs(std::move(runs));
-  }
-
-  [[noreturn]] static void refuse(const Read& shard, const std::string& reason) {
-    throw InputError(fmt::format("{}: {}", shard.file.string(), reason));
-  }
-
-  ContentHash::Digest scene_{};
-  std::uint32_t count_ = 0;
-  Settings settings_;
-  std::filesystem::path first_;
-  std::map<std::uint32_t, Read> shards_;  ///< in the order of their paths
-};
-
-}  // namespace
-
-void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
-          const TracedPhotons& prepared, const Shard& shard) {
-  write(file, header_of(digest_of(scene), shard), settings, prepared);
 }
 
 void add_light_maps(const std::filesystem::path& file, const LightMapContents& contents) {
@@ -413,10 +294,6 @@ TracedPhotons load(const std::filesystem::path& file, const Scene& scene,
   Reader reader(file);
   note_input(file);
   const Header header = read_header(reader);
-  if (header.shards != 1) {
-    reader.refuse(fmt::format("holds shard {} of {}; bring all together by photile merge",
-                              header.shard + 1, header.shards));
-  }
   Contents contents = read_photons(reader, header);
   if (header.scene != digest_of(scene)) {
     reader.refuse(
@@ -429,12 +306,6 @@ TracedPhotons load(const std::filesystem::path& file, const Scene& scene,
   const std::string problem = problem_of(contents.prepared, scene);
   if (!problem.empty()) reader.refuse(fmt::format("has {}; save it again", problem));
   return std::move(contents.prepared);
-}
-
-void merge(std::span<const std::filesystem::path> files, const std::filesystem::path& output) {
-  ShardCollection shards;
-  for (const std::filesystem::path& file : files) shards.add(file);
-  shards.write_whole(output);
 }
 
 namespace {

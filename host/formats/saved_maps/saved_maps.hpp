@@ -1,12 +1,10 @@
-// Photons and groups in a file, so that the same scene is rendered again without tracing it, or
-// traced by several processes. The format is docs/saved-maps.md.
+// Photons and groups in a file, so that the same scene is looked at again without tracing it.
+// The format is docs/saved-maps.md.
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 
-#include "photile/communicator.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
@@ -20,10 +18,9 @@ struct Settings {
 
 /// Writes a file, through a temporary name and a rename.
 ///   prepared   without groups: the file fits any settings of groups
-///   shard      what part of all photons it holds
 /// Errors: OutputError naming the file; an existing file is kept then.
 void save(const std::filesystem::path& file, const Scene& scene, const Settings& settings,
-          const TracedPhotons& prepared, const Shard& shard = {});
+          const TracedPhotons& prepared);
 
 /// Adds light maps of these photons to a file, in place of those that it holds: through a temporary
 /// name and a rename. Errors: InputError where it is no such file; OutputError.
@@ -31,13 +28,8 @@ void add_light_maps(const std::filesystem::path& file, const LightMapContents& c
 
 /// Reads a file back, bit for bit. Errors: InputError naming the file where it is missing, no such
 /// file, of another version or byte order, truncated, longer than it says, damaged, inconsistent,
-/// or a shard; or where it was saved from another scene or with other settings, which it names.
+/// or a part; or where it was saved from another scene or with other settings, which it names.
 TracedPhotons load(const std::filesystem::path& file, const Scene& scene, const Settings& settings);
-
-/// Writes what one process that traces all paths would write, from the files of all shards, in any
-/// order. Their photons are in memory at once. Errors: InputError naming the file that is damaged,
-/// foreign or doubled, or the shards that are missing; OutputError.
-void merge(std::span<const std::filesystem::path> files, const std::filesystem::path& output);
 
 /// "" where all indices and sizes fit one another and the scene, and all numbers are finite; else
 /// what is wrong.
