@@ -96,11 +96,8 @@ step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
 step "soak" bench/tools/soak.sh "$hours"
 step "build coverage" cmake/build.sh coverage photile_fuzz
 step "coverage" bench/tools/fuzz_coverage.py --more build/soak
-# A file of results for each: what is drawn counts what is there.
-step "mutants of kernels" bench/tools/drawn_mutants.py --only kernels --seed "$seed" \
-  --results "$folder/mutants-of-kernels-$seed.json" --count "$mutants"
-step "mutants of the host" bench/tools/drawn_mutants.py --only host --seed "$seed" \
-  --results "$folder/mutants-of-the-host-$seed.json" --count "$host_mutants"
+step "mutants of kernels" bench/mutants/mutants.py --only kernels --seed "$seed" --draw "$mutants"
+step "mutants of the host" bench/mutants/mutants.py --only host --seed "$seed" --draw "$host_mutants"
 step "benches" ctest --test-dir build/release --output-on-failure --no-tests=error -R "^bench/"
 ((list)) && exit 0
 

@@ -15,10 +15,6 @@ class Mutant:
     replace: str
     tests: tuple  # (folder of tests/, specification)
 
-    @property
-    def in_kernels(self):
-        return self.file.startswith("kernels/")
-
 
 ORACLE = (("estimate", "neighbours equal the oracle's on a plate*,irradiance equals the oracle's for one*"),)
 EVEN_LIGHT = ("validation", "even light is read without bias*")

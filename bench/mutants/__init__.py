@@ -1,0 +1,1 @@
+"""Faults built into photile, which the tests have to notice."""
