@@ -65,12 +65,10 @@ PICTURES = {
     "sky": Picture(SCENES / "gallery/sun-and-sky.gltf", ("--sun", "60,40,40000", "--sky", "clear=12000",
                                                                "--set", "ground=0")),
     "cove": Picture(pathlib.Path("cove.gltf")),
-    "doors": Picture(pathlib.Path("doors.gltf")),
 }
 
 DETAILS = {
     "cove": Detail("cove", 520, 180),
-    "door-ajar": Detail("doors", 560, 150),
     "monitors": Detail("office", 560, 380),
     "chair-feet": Detail("office", 400, 570),
     "wall-by-day": Detail("day", 180, 110),

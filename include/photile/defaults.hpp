@@ -33,26 +33,9 @@ inline constexpr float largest_survival = 0.99f;
 inline constexpr double pass_alpha = 2.0 / 3.0;
 inline constexpr int least_pass_neighbours = 5;  ///< k shrinks no further: fewer are too noisy
 
-// Weight windows, for light that few photons find
-/// Paths of a pilot; pilots that use the windows of those before, each of which finds a room behind
-/// one more door; and how many times the paths of a pilot have to be asked for, so that the first
-/// one costs next to nothing.
+// A pilot, which measures how light is spread
 inline constexpr std::uint64_t pilot_paths = 10'000;
-inline constexpr std::uint32_t pilots_with_windows = 4;
-inline constexpr std::uint64_t pilots_from = 10;
-/// Paths for each that is asked for, where windows thin what they store: how many come through a
-/// door is what all light behind it depends on.
-inline constexpr std::uint64_t paths_with_windows = 4;
-/// A pilot's photons in a cell with light, on average: of the coarse cells, which are to hold
-/// photons where one path in a hundred comes, and of those that have windows.
-inline constexpr double pilot_photons_of_coarse_cell = 512, pilot_photons_of_cell = 64;
-/// A cell is dim with less than this part of the photons of an average one, and light is hidden
-/// where more than this part of the cells with light are dim and closed. It is 18% and 34% in the
-/// rooms of bench/pictures/hard_rooms.py that few paths find, and 1.5 to 3% in the bundled rooms, a
-/// classroom and a kitchen, which have cupboards and undersides.
-inline constexpr double dim_part = 1.0 / 32, hidden_part = 0.1;
-/// The bound on splitting: surface behind several doors may receive no photon.
-inline constexpr double least_window = 0x1p-14;
+inline constexpr double pilot_photons_of_cell = 64;  ///< on average, in cells with light
 
 // Bright surface that rays are aimed at
 /// Rays are aimed at the brightest `bright_part` of the lit surface where more than `bright_light`

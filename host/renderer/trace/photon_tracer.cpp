@@ -24,7 +24,6 @@
 #include "trace/sampling.hpp"
 #include "trace/scatter.hpp"
 #include "trace/surface.hpp"
-#include "trace/weight_windows.hpp"
 
 namespace photile::trace {
 
@@ -58,11 +57,6 @@ glm::vec3 play_roulette(const PathSetup& setup, int bounce, const glm::vec3& bef
   const float survival = std::min(most, largest(after) / largest(before));
   return u < survival ? after / survival : glm::vec3(0.0f);
 }
-
-/// The most walks that one is split into at a surface, and of a whole path: more would add little
-/// information.
-constexpr int most_copies = 16;
-constexpr std::uint32_t most_branches = 4096;
 
 /// Light on its way.
 struct Walk {
@@ -101,34 +95,6 @@ std::optional<Walk> scattered(const PathSetup& setup, const SurfacePoint& point,
   return walk;
 }
 
-enum WindowWord { store_word = 0, copies_word = 1, survival_word = 2 };
-
-/// The weight of a photon that has landed, and that which it is to have there.
-struct Weighed {
-  float weight, window;
-};
-
-std::optional<Weighed> weighed(const PathSetup& setup, const SurfacePoint& point,
-                               const glm::vec3& flux) {
-  const std::optional<float> window = setup.windows->at(point.position, point.normal);
-  if (!window) return std::nullopt;
-  return Weighed{static_cast<float>(double{largest(flux)} / setup.unit_flux), *window};
-}
-
-/// Flux that is stored: one that is lighter than the window by chance, with the window's weight.
-glm::vec3 thinned(const glm::vec3& flux, const Weighed& landed, float u) {
-  if (landed.weight >= landed.window) return flux;
-  return u * landed.window < landed.weight ? flux * (landed.window / landed.weight)
-                                           : glm::vec3(0.0f);
-}
-
-/// Walks that go on from a walk twice as heavy as they are to be, or heavier: as many as have that
-/// weight together.
-int copies_of(float weight, float aim, float u) {
-  if (weight <= 2 * aim) return 1;
-  return static_cast<int>(std::min(weight / aim, static_cast<float>(most_copies - 1)) + u);
-}
-
 }  // namespace
 
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record) {
@@ -141,34 +107,20 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
                      : setup.emitter->emit(random);
   const glm::vec3 flux(glm::dvec3(emitted.color) / static_cast<double>(setup.paths));
   if (!(largest(flux) > 0.0f)) return;
-  std::vector<Walk> others;  // of this path, where windows split it
-  std::uint32_t branches = 0;
 
-  for (std::optional<Walk> walk = Walk{random, emitted.origin, emitted.direction, flux};;) {
-    if (!walk) {
-      if (others.empty()) return;
-      walk = others.back();
-      others.pop_back();
-    }
+  for (std::optional<Walk> walk = Walk{random, emitted.origin, emitted.direction, flux}; walk;) {
     const auto hit = setup.rays->intersect(walk->origin, walk->direction);
     if (!hit) {
       record.escaped += luminance_of(walk->flux);
-      walk.reset();
-      continue;
+      return;
     }
     const SurfacePoint point = surface_hit(scene, *hit, walk->direction);
     const bool opaque = material_of(scene, point).interaction == Interaction::opaque;
-    std::optional<Weighed> landed;
-    if (setup.windows && opaque) landed = weighed(setup, point, walk->flux);
-    const RandomBlock numbers =
-        landed ? walk->random.block(Purpose::photon_window, walk->bounce) : RandomBlock({});
-    const glm::vec3 stored =
-        landed ? thinned(walk->flux, *landed, numbers.uniform(store_word)) : walk->flux;
     // In cutouts as well: the density is that of light on the whole triangle, by whose area the
     // estimate divides, and does not fall where a cutout is near.
-    if (opaque && largest(stored) > 0.0f && !behind_cutout(scene, point)) {
-      if (!walk->unscattered || stores_direct(setup, point))
-        store(setup, point, walk->direction, stored, record.photons);
+    if (opaque && !behind_cutout(scene, point) &&
+        (!walk->unscattered || stores_direct(setup, point))) {
+      store(setup, point, walk->direction, walk->flux, record.photons);
     }
     if (passes_cutout(scene, point, walk->random, Purpose::photon_cutouts, walk->cutouts)) {
       walk->origin = point.origin_towards(walk->direction);
@@ -176,33 +128,7 @@ void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& r
     }
     if ((opaque && setup.caustics) || walk->bounce >= setup.parameters->max_path_length) {
       record.absorbed += luminance_of(walk->flux);
-      walk.reset();
-      continue;
-    }
-    if (landed) {
-      // Where photons are heavier than paths where these start, paths stay as light.
-      const float aim = std::min(landed->window, setup.path_weight);
-      const int copies = branches < most_branches
-                             ? copies_of(landed->weight, aim, numbers.uniform(copies_word))
-                             : 1;
-      if (2 * landed->weight < aim) {
-        const glm::vec3 left =
-            thinned(walk->flux, {landed->weight, aim}, numbers.uniform(survival_word));
-        record.absorbed += luminance_of(walk->flux) - luminance_of(left);
-        walk->flux = left;
-        if (!(largest(left) > 0.0f)) {
-          walk.reset();
-          continue;
-        }
-      } else if (copies > 1) {
-        walk->flux /= static_cast<float>(copies);
-        for (int copy = 1; copy < copies; ++copy) {
-          Walk branch = *walk;
-          branch.random = random.branch(++branches);
-          if (const auto next = scattered(setup, point, opaque, branch, record))
-            others.push_back(*next);
-        }
-      }
+      return;
     }
     walk = scattered(setup, point, opaque, *walk, record);
   }
@@ -281,12 +207,10 @@ std::vector<trace::LightEmitter> emitters_of(const Scene& scene) {
   return emitters;
 }
 
-/// Data that leads paths to where photons are needed; by default none.
-struct Guidance {
-  const trace::WeightWindows* windows = nullptr;
-  std::uint64_t paths_per_photon = 1;        ///< that windows trace for each asked for
+/// What is stored of the light; by default all.
+struct Kept {
   const trace::Targets* caustics = nullptr;  ///< of paths of caustics alone
-  bool stores_hot_spots = true;
+  bool hot_spots = true;
 };
 
 /// The parameters of paths that are aimed at mirrors and glass: a separate seed, and more paths in
@@ -304,7 +228,7 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                      const std::vector<Chunk>& chunks,
                                      const std::vector<std::uint64_t>& paths_per_light,
                                      const std::vector<double>& fractions, bool keep_incoming,
-                                     const Guidance& guidance, Progress& progress) {
+                                     const Kept& kept, Progress& progress) {
   std::vector<PathRecord> records(chunks.size());
   std::atomic<std::uint64_t> stored{0};
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
@@ -317,14 +241,10 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
                                  chunk.light,
                                  paths_per_light[chunk.light],
                                  keep_incoming,
-                                 guidance.caustics,
+                                 kept.caustics,
                                  trace::RandomStream(parameters.seed, 0, chunk.light)
                                      .block(trace::Purpose::emission, aim_block),
-                                 guidance.windows,
-                                 static_cast<double>(guidance.paths_per_photon) /
-                                     static_cast<double>(paths_per_light[chunk.light]),
-                                 1.0f / static_cast<float>(guidance.paths_per_photon),
-                                 guidance.stores_hot_spots};
+                                 kept.hot_spots};
     const std::uint64_t before =
         parameters.paths_before.empty() ? 0 : parameters.paths_before[chunk.light];
     for (std::uint64_t path = chunk.first_path; path < chunk.last_path; ++path)
@@ -341,51 +261,6 @@ std::vector<PathRecord> trace_chunks(const RayScene& scene,
     progress.advance(chunk.last_path - chunk.first_path);
   });
   return records;
-}
-
-/// Windows from pilots of few paths; none where light falls evenly enough, or where the pilots
-/// would be more than a small part of the work.
-std::optional<trace::WeightWindows> windows_of(const RayScene& ray_scene,
-                                               const PhotonTracerParameters& parameters,
-                                               const std::vector<trace::LightEmitter>& emitters,
-                                               Progress& progress) {
-  if (parameters.emitted_photons < defaults::pilots_from * defaults::pilot_paths) return {};
-  const Scene& scene = ray_scene.scene();
-  const std::vector<std::uint64_t> paths_per_light =
-      photons_per_light(scene, defaults::pilot_paths, parameters.quota);
-  const std::vector<Chunk> chunks = chunks_of(paths_per_light, {});
-  const std::vector<double> fractions(scene.lights.size(), 1.0);
-  PhotonTracerParameters pilot = parameters;
-  pilot.paths_before = {};
-  pilot.store_direct = true;
-  pilot.keep_caustics = false;
-  QuietProgress quiet(progress);
-  std::optional<trace::WeightWindows> map;
-  for (std::uint32_t round = 0; round <= defaults::pilots_with_windows; ++round) {
-    // Separate paths, so that windows do not depend on the paths that they are used for.
-    const trace::RandomBlock seed =
-        trace::RandomStream(parameters.seed, 0, 0).block(trace::Purpose::photon_window, round);
-    pilot.seed = std::uint64_t{seed.word(1)} << 32 | seed.word(0);
-    const std::vector<PathRecord> records =
-        trace_chunks(ray_scene, pilot, emitters, chunks, paths_per_light, fractions, false,
-                     {.windows = map ? &*map : nullptr}, quiet);
-    std::vector<trace::PilotPhoton> photons;
-    for (std::size_t c = 0; c < chunks.size(); ++c) {
-      const trace::PhotonRun& run = records[c].photons;
-      const auto paths = static_cast<float>(paths_per_light[chunks[c].light]);
-      for (std::size_t i = 0; i < run.size(); ++i)
-        photons.push_back({run.position[i], glm::vec3(face_normal(scene, run.oriented_face[i])),
-                           trace::largest(run.flux[i]) * paths});
-    }
-    if (map) {
-      map->add(photons);
-    } else {
-      const BoundingSphere bounds = bounding_sphere(scene);
-      if (!trace::hides_light(photons, impl_of(ray_scene), bounds)) return {};
-      map.emplace(photons, bounds);
-    }
-  }
-  return map;
 }
 
 /// The photons of all records.
@@ -410,22 +285,15 @@ PhotonTracerResult traced(const RayScene& ray_scene, const PhotonTracerParameter
 
   PhotonTracerResult result;
   const std::vector<trace::LightEmitter> emitters = emitters_of(scene);
-  const std::vector<std::uint64_t> asked_per_light =
-      photons_per_light(scene, parameters.emitted_photons, parameters.quota);
-  const std::optional<trace::WeightWindows> windows =
-      windows_of(ray_scene, parameters, emitters, progress);
-  Guidance guidance;
-  if (windows) guidance = {&*windows, defaults::paths_with_windows};
-  guidance.stores_hot_spots = hot_spots;
   const std::vector<std::uint64_t> paths_per_light =
-      times(asked_per_light, guidance.paths_per_photon);
+      photons_per_light(scene, parameters.emitted_photons, parameters.quota);
   const std::vector<Chunk> chunks = chunks_of(paths_per_light, parameters.shard);
 
   progress.begin("trace photons", paths_in(chunks), "paths");
   const LightGroups groups = light_groups_of(scene);
   std::vector<PathRecord> records =
       trace_chunks(ray_scene, parameters, emitters, chunks, paths_per_light, groups.fraction,
-                   needs.glossy, guidance, progress);
+                   needs.glossy, {.hot_spots = hot_spots}, progress);
 
   result.stored_per_light.assign(light_count, 0);
   result.escaped_flux_per_light.assign(light_count, 0.0);
@@ -447,7 +315,7 @@ PhotonTracerResult traced(const RayScene& ray_scene, const PhotonTracerParameter
       const trace::Targets targets = trace::specular_targets(scene);
       const PhotonTracerParameters aimed = aimed_at_targets(parameters);
       const std::vector<std::uint64_t> aimed_per_light =
-          times(asked_per_light, defaults::aimed_paths);
+          times(paths_per_light, defaults::aimed_paths);
       const std::vector<Chunk> aimed_chunks = chunks_of(aimed_per_light, aimed.shard);
       progress.begin("trace caustics", paths_in(aimed_chunks), "paths");
       records = trace_chunks(ray_scene, aimed, emitters, aimed_chunks, aimed_per_light,

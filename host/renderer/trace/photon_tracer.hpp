@@ -11,7 +11,6 @@
 #include "photile/photons.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/ray_scene.hpp"
-#include "trace/weight_windows.hpp"
 
 namespace photile::trace {
 
@@ -42,17 +41,14 @@ struct PathSetup {
   bool keep_incoming;
   /// Where paths of caustics alone are aimed; null: all light.
   const Targets* caustics;
-  RandomBlock scramble;                    ///< of the points by which paths are aimed
-  const WeightWindows* windows = nullptr;  ///< null: photons keep the weight that they have
-  double unit_flux = 1;                    ///< of a photon of weight 1; with windows
-  float path_weight = 1;                   ///< of a path where it starts; with windows
+  RandomBlock scramble;  ///< of the points by which paths are aimed
   bool stores_hot_spots = true;
 };
 
 /// Traces path number `path` and appends what it leaves to `record`: photons of all light, or those
 /// that came by mirrors and glass alone. Emitted luminance equals
 /// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
-/// absorption. With windows a path may have branches, each with separate random numbers.
+/// absorption.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
 
 /// trace_photons, without photons that come straight from a light to its hot spot (hot_spots.hpp):

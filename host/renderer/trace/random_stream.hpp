@@ -43,9 +43,7 @@ enum class Purpose : std::uint32_t {
   direct_light,
   gather_direction,
   hemisphere_direction,
-  repeat,
-  photon_window,
-  photon_branch
+  repeat
 };
 
 /// Four independent random words.
@@ -93,14 +91,6 @@ class RandomStream {
   RandomBlock block(Purpose purpose, std::uint32_t index) const {
     return RandomBlock(philox4x32_10(
         {path_low_, path_high_and_stream_, index, static_cast<std::uint32_t>(purpose)}, key_));
-  }
-
-  /// The random numbers of a branch of this path; each branch needs a different `number`.
-  RandomStream branch(std::uint32_t number) const {
-    const RandomBlock words = block(Purpose::photon_branch, number);
-    RandomStream stream = *this;
-    stream.key_ = {words.word(0), words.word(1)};
-    return stream;
   }
 
  private:

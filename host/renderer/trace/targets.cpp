@@ -20,11 +20,11 @@ constexpr double worth_splitting = 0.8;
 /// radius.
 constexpr double margin = 1e-3;
 
-struct Box {
+struct SurfaceBox {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 
-  void add(const Box& other) {
+  void add(const SurfaceBox& other) {
     low = glm::min(low, other.low);
     high = glm::max(high, other.high);
   }
@@ -32,30 +32,30 @@ struct Box {
   double squared_radius() const { return 0.25 * glm::dot(high - low, high - low); }
 };
 
-Box box_of(std::span<const Box> boxes) {
-  Box all;
-  for (const Box& box : boxes) all.add(box);
+SurfaceBox box_of(std::span<const SurfaceBox> boxes) {
+  SurfaceBox all;
+  for (const SurfaceBox& box : boxes) all.add(box);
   return all;
 }
 
 /// Neighbours of one sphere, and where they are best parted.
 struct Part {
-  std::span<Box> boxes;
-  Box box;
+  std::span<SurfaceBox> boxes;
+  SurfaceBox box;
   std::size_t cut = 0;
   double gain = 0;  ///< of the squared radius
 };
 
 /// Sorts the boxes along the longest side of all, and finds the cut with the smallest spheres.
-Part part_of(std::span<Box> boxes) {
+Part part_of(std::span<SurfaceBox> boxes) {
   Part part{boxes, box_of(boxes)};
   const glm::dvec3 sides = part.box.high - part.box.low;
   const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
-  std::stable_sort(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+  std::stable_sort(boxes.begin(), boxes.end(), [&](const SurfaceBox& a, const SurfaceBox& b) {
     return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis];
   });
   std::vector<double> above(boxes.size());
-  Box upper, lower;
+  SurfaceBox upper, lower;
   for (std::size_t i = boxes.size(); i-- > 1;) {
     upper.add(boxes[i]);
     above[i] = upper.squared_radius();
@@ -103,7 +103,7 @@ Targets::Targets(std::vector<Sphere> spheres) : spheres_(std::move(spheres)) {
 }
 
 Targets specular_targets(const Scene& scene) {
-  std::vector<Box> boxes;
+  std::vector<SurfaceBox> boxes;
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
     if (scene.materials[scene.triangle_material[t]].interaction == Interaction::opaque) continue;
     const auto [a, b, c] = scene.corners(t);
