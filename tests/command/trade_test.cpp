@@ -291,7 +291,7 @@ TEST_CASE("a page and a scene for other programs are written with the same light
   CHECK_THAT(only_error(run_photile(publish({"-o", folder / "a.png"})), 2), Contains(".html"));
 }
 
-TEST_CASE("pages are made for a time, the first from a quarter of the rays") {
+TEST_CASE("pages are made for a time, the first from a quarter of the rays", "[slow]") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
   const auto publish = [&](const std::vector<std::string>& more) {

@@ -109,7 +109,7 @@ Scene box(const glm::vec3& size, int cells) {
 
 TEST_CASE("a uniformly lit plate reads 1 over all of it, borders and corners, for any triangles",
           "[long]") {
-  for (const int cells : {1, 3, 40}) {
+  for (const int cells : {1, 40}) {
     const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
     CAPTURE(cells);
     CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards}), 1.0, 0.01));

@@ -54,9 +54,8 @@ namespace {
 /// Whether the light of matt surfaces is read from nodes.
 ///   passes   of photons; 0 = not known yet
 bool reads_nodes(const RenderParameters& asked, int passes) {
-  return asked.light_maps == LightMapMode::on ||
-         (asked.light_maps == LightMapMode::automatic && asked.maps != MapMode::naive &&
-          passes <= 1);
+  return asked.light_maps == LightMapMode::on || (asked.light_maps == LightMapMode::automatic &&
+                                                  asked.maps != MapMode::naive && passes <= 1);
 }
 
 }  // namespace
