@@ -48,8 +48,8 @@ struct PartBounds {
 /// joints. Its triangles count with the fraction of their area that lies open, except for hits on
 /// that component.
 ///
-/// *Unlit regions* of lit triangles count as holes in them, except for hits that lie in an unlit
-/// region: those hits are dark.
+/// *Unlit regions* of triangles count as holes in them wherever the triangles count, except for
+/// hits that lie in an unlit region: those hits are dark.
 struct SurfaceIndex {
   double radius = 0;         ///< metres: no disc is larger
   double angle_degrees = 0;  ///< largest angle between the normals of neighbours
@@ -69,7 +69,7 @@ struct SurfaceIndex {
   static constexpr std::uint32_t bounded_together = 4;
   std::vector<PartBounds> unlit_bounds;
 
-  /// The component of a hit: of its triangle, or `components`, which stands for all unlit regions.
+  /// The component of a hit: of its triangle, or PHOTILE_UNLIT_REGION.
   std::uint32_t component_at(std::uint32_t oriented_face, const glm::vec3& position) const;
 
   /// Border edges of regions, and triangles near other regions of similar normal, in a tree whose
@@ -98,8 +98,7 @@ SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double ra
 /// Photons on each oriented face, those of other processes among them (Photons::of_all).
 std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons);
 
-/// Per component: 1 where a photon landed that is not one of the few on dark triangles, else 0; and
-/// 1 for the unlit regions.
+/// Per component: 1 where a photon landed that is not one of the few on dark triangles, else 0.
 ///   landed   per oriented face: photons that landed there
 std::vector<std::uint8_t> lit_components(const SurfaceIndex& surface,
                                          const std::vector<std::uint32_t>& landed);

@@ -12,6 +12,7 @@
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
+#include "test_tunings.hpp"
 
 namespace photile::test {
 namespace {
@@ -184,6 +185,79 @@ TEST_CASE("slits of 1 to 20 mm between boxes read no more than what falls into t
     CAPTURE(slit, mean.without);
     CHECK(mean.with_dark >= mean.without * 0.99);
     CHECK(mean.with_dark < 1.1);
+  }
+}
+
+TEST_CASE("a panel reads 1 above surface that does not count and has parts where others do") {
+  // A floor ends in the dark: first with triangles on which photons are missing, then with two that
+  // are too small for any to be expected. A tile that lies in the same place counts before them.
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({2.05f, 0.05f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 1, white);
+  builder.grid({0, 0, 0}, {2, 0, 0}, {0, 1, 0}, 2, white);
+  builder.grid({2, 0, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, 1, white);
+  builder.grid({2, 0, 0.002f}, {0.2f, 0, 0}, {0, 0.2f, 0}, 1, white);
+  builder.add(point_light("lamp", {0.5f, 0.5f, 2}));
+  const Scene scene = builder.build();
+  const auto upper_side_at = [&](const glm::vec3& p) {
+    for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+      const auto [a, b, c] = scene.corners(t);
+      if (a.z != p.z) continue;
+      const auto turn = [&](const glm::vec3& from, const glm::vec3& to) {
+        return (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x);
+      };
+      const float least = std::min({turn(a, b), turn(b, c), turn(c, a)});
+      const float most = std::max({turn(a, b), turn(b, c), turn(c, a)});
+      if (least >= 0 || most <= 0)
+        return oriented(t, face_normal(scene, oriented(t, 0)).z > 0 ? 0 : 1);
+    }
+    throw std::logic_error("no triangle there");
+  };
+  // On the panel 1 lm/m2.
+  constexpr int on_floor = 200, on_panel = 2000;
+  constexpr double radius = 0.03;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<float> place(0.0f, 1.0f);
+  const auto point_of_panel = [&] {
+    const float x = place(random), y = place(random);
+    return glm::vec3(2 + 0.2f * x, 0.2f * y, 0.002f);
+  };
+  Photons photons;
+  for (int i = 0; i < on_floor; ++i) {
+    const float x = place(random), y = place(random);
+    add_photon(photons, scene, {x, y, 0}, upper_side_at({x, y, 0}), random);
+  }
+  for (int i = 0; i < on_panel; ++i) {
+    const glm::vec3 p = point_of_panel();
+    add_photon(photons, scene, p, upper_side_at(p), random);
+  }
+  photons.flux.assign(photons.size(), glm::vec3(0.04f / on_panel));
+  photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
+
+  const auto surface =
+      std::make_shared<const SurfaceIndex>(index_surface(scene, photons, radius, 60));
+  const std::vector<std::uint8_t> lit = lit_components(*surface, landed_on(scene, photons));
+  REQUIRE(std::any_of(
+      surface->unlit_regions.begin(), surface->unlit_regions.end(),
+      [&](const DarkPart& part) { return lit[surface->component[part.oriented_face]] == 0; }));
+  PrimaryHits hits;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::vec3 p = point_of_panel();
+    hits.position.push_back(p);
+    hits.oriented_face.push_back(upper_side_at(p));
+    hits.diffuse_albedo.emplace_back(0.5f);
+  }
+  const PhotonMaps maps(device(), scene, photons,
+                        find_map_groups(scene, photons, MapMode::automatic, {radius, 60}),
+                        {.radius = radius});
+  for (const EstimateTuning& tuning : tunings_of(device().info())) {
+    EstimateParameters parameters{.neighbours = 50, .surface = surface};
+    parameters.tuning = tuning;
+    const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
+    double sum = 0;
+    for (const glm::vec3& irradiance : estimates.irradiance) sum += irradiance.g;
+    CAPTURE(name_of(tuning.strategy));
+    CHECK(sum / static_cast<double>(hits.size()) == Approx(1.0).margin(0.03));
   }
 }
 

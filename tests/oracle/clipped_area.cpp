@@ -77,14 +77,13 @@ ClippedArea::ClippedArea(const Scene& scene, const Photons& photons, const Surfa
     : scene_(scene),
       surface_(surface),
       cos_angle_(std::cos(glm::radians(angle_degrees))),
-      lit_(surface.components + 1, false) {
+      lit_(surface.components, false) {
   for (const std::uint32_t s : photons.oriented_face) {
     if (surface.dark[s] == 0) lit_[surface.component[s]] = true;
   }
   for (std::uint32_t s = 0; s < 2 * scene.triangle_count(); ++s) {
     normals_.push_back(face_normal(scene, s));
   }
-  lit_.back() = true;
 }
 
 bool ClippedArea::is_in_unlit_region(const glm::dvec3& hit, std::uint32_t own) const {
@@ -105,12 +104,15 @@ double ClippedArea::area(const glm::dvec3& hit, std::uint32_t own, double radius
                          DensityKernel kernel) const {
   const glm::dvec3& n = normals_[own];
   const bool in_the_dark = is_in_unlit_region(hit, surface_.original[own]);
-  const std::uint32_t own_component = in_the_dark ? surface_.components : surface_.component[own];
+  const std::uint32_t own_component = in_the_dark ? none : surface_.component[own];
+  const auto counts = [&](std::uint32_t component) {
+    return lit_[component] || component == own_component;
+  };
   double sum = 0, projected = 0;
   for (std::uint32_t s = 0; s < normals_.size(); ++s) {
     const std::uint32_t component = surface_.component[s];
     if (surface_.original[s] != s) continue;
-    if (!lit_[component] && component != own_component) continue;
+    if (!counts(component)) continue;
     if (!normals_agree(normals_[s], n, cos_angle_)) continue;
     const double exposure =
         component == own_component ? 1.0 : static_cast<double>(surface_.open_fraction[s]);
@@ -121,7 +123,8 @@ double ClippedArea::area(const glm::dvec3& hit, std::uint32_t own, double radius
   }
   for (const DarkPart& dark : surface_.unlit_regions) {
     const glm::dvec3& normal = normals_[dark.oriented_face];
-    if (in_the_dark || !normals_agree(normal, n, cos_angle_)) continue;
+    if (in_the_dark || !counts(surface_.component[dark.oriented_face])) continue;
+    if (!normals_agree(normal, n, cos_angle_)) continue;
     const double hole = area_of_triangle(hit, n, dark.corner, radius, kernel);
     sum -= hole;
     projected -= hole * glm::dot(normal, n);

@@ -26,7 +26,7 @@ class ClippedArea {
 
   /// The integral of the kernel, square metres, over the surface within `radius` of a hit and in
   /// the slab around its plane, of agreeing normal, on components where photons landed or on the
-  /// hit's own, without the unlit regions. A hit within an unlit region counts these, too.
+  /// hit's own, without the unlit regions on these. A hit within an unlit region counts them, too.
   double area(const glm::dvec3& hit, std::uint32_t oriented_face, double radius,
               DensityKernel kernel = DensityKernel::constant) const;
 

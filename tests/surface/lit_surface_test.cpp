@@ -107,13 +107,13 @@ TEST_CASE("of hundreds of unlit regions the one is found that a hit lies in") {
     const bool expected =
         std::any_of(index.unlit_regions.begin(), index.unlit_regions.end(), holds_hit);
     CAPTURE(i);
-    CHECK((index.component_at(own, hits.position[i]) == index.components) == expected);
+    CHECK((index.component_at(own, hits.position[i]) == PHOTILE_UNLIT_REGION) == expected);
     dark += expected ? 1 : 0;
   }
   CHECK(dark >= 500);
   for (const DarkPart& part : index.unlit_regions) {
     for (const glm::vec3& corner : part.corner) {
-      CHECK(index.component_at(part.oriented_face, corner) == index.components);
+      CHECK(index.component_at(part.oriented_face, corner) == PHOTILE_UNLIT_REGION);
     }
   }
 }

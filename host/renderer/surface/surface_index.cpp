@@ -55,8 +55,7 @@ PhotileSurfaceLeaf leaf_of(const SurfaceIndex& index,
     leaf.back_open_fraction[lane] = index.open_fraction[oriented(triangle, 1)];
     if (piece.unlit_side == none) continue;
     const bool front = side_of(piece.unlit_side) == 0;
-    leaf.front_component[lane] = front ? index.components : PHOTILE_NO_COMPONENT;
-    leaf.back_component[lane] = front ? PHOTILE_NO_COMPONENT : index.components;
+    (front ? leaf.back_component : leaf.front_component)[lane] = PHOTILE_NO_COMPONENT;
     leaf.front_open_fraction[lane] = leaf.back_open_fraction[lane] = -1.0f;
   }
   return leaf;
@@ -190,7 +189,7 @@ std::uint32_t SurfaceIndex::component_at(std::uint32_t s, const glm::vec3& posit
     const std::uint32_t end_of_block = std::min(end, (block + 1) * bounded_together);
     if (!unlit_bounds[block].contain(position)) i = end_of_block;
     for (; i < end_of_block; ++i) {
-      if (lies_on(unlit_regions[i], normal[own], position)) return components;
+      if (lies_on(unlit_regions[i], normal[own], position)) return PHOTILE_UNLIT_REGION;
     }
   }
   return component[own];
@@ -211,8 +210,7 @@ std::vector<std::uint32_t> landed_on(const Scene& scene, const Photons& photons)
 
 std::vector<std::uint8_t> lit_components(const SurfaceIndex& surface,
                                          const std::vector<std::uint32_t>& landed) {
-  std::vector<std::uint8_t> lit(surface.components + 1, 0);
-  lit.back() = 1;
+  std::vector<std::uint8_t> lit(surface.components, 0);
   for (std::size_t s = 0; s < landed.size(); ++s) {
     if (landed[s] != 0 && surface.dark[s] == 0) lit[surface.component[s]] = 1;
   }

@@ -22,8 +22,9 @@ typedef struct {
 #define PHOTILE_COMPONENT_UNLIT \
   0x80000000u /* in `front_component`, `back_component`: without photons */
 #define PHOTILE_NO_COMPONENT \
-  0xFFFFFFFFu                         /* in `front_component`, `back_component`: none, and unlit */
-#define PHOTILE_NO_REGION 0xFFFFFFFFu /* in `region`: none whose border is known */
+  0xFFFFFFFFu /* in `front_component`, `back_component`: none, and unlit */
+#define PHOTILE_UNLIT_REGION 0x7FFFFFFEu /* component of a hit that lies in an unlit region */
+#define PHOTILE_NO_REGION 0xFFFFFFFFu    /* in `region`: none whose border is known */
 
 /* Eight pieces. A triangle has its corners a, b, c. A border edge runs from a to b; c is the unit
    vector in the plane of its region, perpendicular to the edge, that points into the region. Lanes
@@ -40,7 +41,8 @@ typedef struct {
   unsigned int back_component[PHOTILE_SURFACE_WIDTH];  /* of its side 1 */
   float front_open_fraction[PHOTILE_SURFACE_WIDTH]; /* that counts of its area: 1, or less where */
   float back_open_fraction[PHOTILE_SURFACE_WIDTH];  /* most of it lies under other surface; -1 of */
-                                                    /* unlit regions, which lie on others */
+                                                    /* unlit regions, which have the component of */
+                                                    /* the triangle that they lie on */
 } PhotileSurfaceLeaf;
 
 #endif
