@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <random>
 #include <sstream>
 #include <type_traits>
 
@@ -275,6 +276,25 @@ TEST_CASE("a picture that is cut anywhere is refused, or was cut behind its pixe
   }
 }
 
+TEST_CASE("bytes changed at random give a picture or an error") {
+  std::mt19937 engine(7);
+  for (const Kind& kind : kinds) {
+    CAPTURE(kind.file, kind.channels, kind.type.c_str());
+    const TemporaryFolder folder;
+    const std::string whole = bytes_of(write(folder, kind));
+    for (int trial = 0; trial < 200; ++trial) {
+      std::string bytes = whole;
+      for (int change = 0; change < 1 + trial % 4; ++change) {
+        // Half of them in the header, which decides most.
+        const std::size_t reach =
+            trial % 2 == 0 ? std::min<std::size_t>(64, bytes.size()) : bytes.size();
+        bytes[engine() % reach] = static_cast<char>(engine() % 256);
+      }
+      picture_of(kind.file, bytes);
+    }
+  }
+}
+
 TEST_CASE("what a picture decodes to is bounded by the bytes of its samples") {
   // 16,384 x 16,384 pixels of 16 bytes are 4 GiB, the limit.
   const auto check = [](int channels, image::Sample sample) {
@@ -286,6 +306,13 @@ TEST_CASE("what a picture decodes to is bounded by the bytes of its samples") {
     CHECK_NOTHROW(check(most, sample));
     CHECK_THROWS_AS(check(most + 1, sample), image::DecodeError);
   }
+}
+
+TEST_CASE("a PNG whose text ends beyond the file is refused before libpng takes its memory") {
+  using namespace std::string_literals;
+  const std::string png =
+      "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\0\0\0\0\x3a\x7e\x9b\x55\x7f\xff\xff\xfftEXt"s;
+  CHECK_THROWS_WITH(image::open_picture("a.png", span_of(png)), "the file ends too early");
 }
 
 TEST_CASE("a WebP that is wide and low is read") {

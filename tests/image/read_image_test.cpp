@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "photile/limits.hpp"
 #include "picture_support.hpp"
@@ -78,6 +79,23 @@ TEST_CASE("a picture beyond a limit is refused before it is decoded") {
   CHECK(refusal(folder / "bomb.exr").find("limit") != std::string::npos);
 }
 
+TEST_CASE("tiles that are larger than a small picture are refused before they take memory") {
+  const TemporaryFolder folder;
+  OIIO::ImageSpec spec(7, 5, 3, OIIO::TypeDesc::FLOAT);
+  spec.tile_width = spec.tile_height = 4;
+  const auto output = OIIO::ImageOutput::create("exr");
+  REQUIRE(output->open((folder / "tiles.exr").string(), spec));
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, std::vector<float>(7 * 5 * 3).data()));
+  REQUIRE(output->close());
+  CHECK(read_image(folder / "tiles.exr").pixels() == 7 * 5);
+  std::string bytes = bytes_of(folder / "tiles.exr");
+  const std::string before("tiledesc\0\x09\0\0\0", 13);
+  const std::uint32_t sides[2] = {21'764, 1'024};  // 255 MiB, beside OpenEXR's own buffers
+  std::memcpy(&bytes[bytes.find(before) + before.size()], sides, sizeof sides);
+  put(folder / "tiles.exr", bytes);
+  CHECK(refusal(folder / "tiles.exr").find("smaller ones") != std::string::npos);
+}
+
 TEST_CASE("few rows are read, however many their compression takes at a time") {
   const TemporaryFolder folder;
   // 256 rows of DWAB would be 80 MiB.
@@ -90,6 +108,35 @@ TEST_CASE("few rows are read, however many their compression takes at a time") {
   REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data()));
   REQUIRE(output->close());
   CHECK(read_image(folder / "strip.exr").channels.size() == 40);
+}
+
+TEST_CASE("an EXR whose writer ended before it wrote the table of its blocks is read") {
+  const TemporaryFolder folder;
+  // The picture is so large that bytes and pixels are compared.
+  constexpr int width = 4'200, height = 4'100;
+  static_assert(std::uint64_t{width} * height * sizeof(float) > limits::unchecked_image_bytes);
+  OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::HALF);
+  spec.channelnames = {"R"};
+  spec.attribute("compression", "none");
+  std::vector<float> pixels(std::size_t{width} * height);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<float>(1 + i % 100);
+  const auto output = OIIO::ImageOutput::create("exr");
+  REQUIRE(output->open((folder / "a.exr").string(), spec));
+  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  REQUIRE(output->close());
+  std::string bytes = bytes_of(folder / "a.exr");
+  // The table is where a number says that what lies behind as many numbers as rows is a block.
+  constexpr std::size_t table_bytes = std::size_t{height} * 8;
+  std::size_t table = 0;
+  const auto entry = [&] {
+    std::uint64_t place = 0;
+    std::memcpy(&place, &bytes[table], sizeof place);
+    return place;
+  };
+  while (entry() != table + table_bytes) ++table;
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(table), table_bytes, '\0');
+  put(folder / "a.exr", bytes);
+  CHECK(same_bits(read_image(folder / "a.exr").channels.at(0), pixels));
 }
 
 TEST_CASE("a line end in the name of a part does not get into names of channels") {

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "image/color_space.hpp"
 #include "image/decoder.hpp"
@@ -69,6 +70,70 @@ std::uint64_t rows_of_block(Imf::Compression compression) {
     default:
       return 32;
   }
+}
+
+/// Tiles along one axis, of each of its levels: each has half the pixels of the one before.
+std::vector<std::uint64_t> tiles_of_levels(std::uint64_t pixels, std::uint64_t tile,
+                                           bool rounds_up) {
+  std::vector<std::uint64_t> tiles;
+  for (;;) {
+    tiles.push_back((pixels + tile - 1) / tile);
+    if (pixels <= 1) return tiles;
+    pixels = (pixels + (rounds_up ? 1 : 0)) / 2;
+  }
+}
+
+/// Blocks of pixels that are compressed on their own: what the table of a part has entries for.
+std::uint64_t blocks_of(const Imf::Header& header) {
+  const Imath::Box2i& window = header.dataWindow();
+  const auto side = [](int from, int to) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(std::int64_t{to} - from + 1, 0));
+  };
+  const std::uint64_t width = side(window.min.x, window.max.x),
+                      height = side(window.min.y, window.max.y);
+  if (!header.hasTileDescription()) {
+    const std::uint64_t rows = rows_of_block(header.compression());
+    return (height + rows - 1) / rows;
+  }
+  const Imf::TileDescription& tile = header.tileDescription();
+  const bool rounds_up = tile.roundingMode == Imf::ROUND_UP;
+  const auto across = tiles_of_levels(width, std::max(tile.xSize, 1u), rounds_up);
+  const auto down = tiles_of_levels(height, std::max(tile.ySize, 1u), rounds_up);
+  if (tile.mode == Imf::ONE_LEVEL) return across.front() * down.front();
+  if (tile.mode == Imf::RIPMAP_LEVELS) {
+    return std::accumulate(across.begin(), across.end(), std::uint64_t{0}) *
+           std::accumulate(down.begin(), down.end(), std::uint64_t{0});
+  }
+  std::uint64_t sum = 0;
+  for (std::size_t level = 0; level < std::max(across.size(), down.size()); ++level) {
+    sum += across[std::min(level, across.size() - 1)] * down[std::min(level, down.size() - 1)];
+  }
+  return sum;
+}
+
+/// The last block of a part, or of its largest level: where the sides of its window are wrong it
+/// has other pixels than they say.
+///   entry   of its first block
+ExrBlock last_block(const Imf::Header& header, std::uint64_t entry) {
+  const Imath::Box2i& window = header.dataWindow();
+  const auto side = [](int from, int to) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(std::int64_t{to} - from + 1, 1));
+  };
+  std::uint64_t width = side(window.min.x, window.max.x), height = side(window.min.y, window.max.y);
+  std::uint64_t across = 1, rows = rows_of_block(header.compression());
+  if (header.hasTileDescription()) {
+    const Imf::TileDescription& tile = header.tileDescription();
+    across = (width - 1) / std::max(tile.xSize, 1u) + 1;
+    width -= (across - 1) * tile.xSize;
+    rows = std::max(tile.ySize, 1u);
+  }
+  const std::uint64_t down = (height - 1) / rows + 1;
+  height -= (down - 1) * rows;
+  std::uint64_t pixel_bytes = 0;
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
+    pixel_bytes += i.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return {entry + across * down - 1, width * height * pixel_bytes, header.compression()};
 }
 
 /// The attributes that scale or place pixels.
@@ -199,9 +264,13 @@ ExrInput::~ExrInput() = default;
 
 void ExrInput::find_parts(std::uint64_t bytes) {
   set_up_openexr();
-  check_exr_headers(*stream_, bytes);
+  const std::uint64_t table = check_exr_headers(*stream_, bytes);
   file_ = std::make_unique<File>(*stream_);
-  std::uint64_t decoded = 0, pixels = 0, channels = 0;
+  std::uint64_t decoded = 0, stored = 0, pixels = 0, channels = 0;
+  std::uint64_t blocks = 0;
+  bool deflated = true;
+  std::vector<bool> tiled;
+  std::vector<ExrBlock> last_blocks;
   for (int i = 0; i < file_->parts(); ++i) {
     const Part& part = parts_.emplace_back(part_of(file_->header(i)));
     const Imath::Box2i& window = file_->header(i).dataWindow();
@@ -210,18 +279,32 @@ void ExrInput::find_parts(std::uint64_t bytes) {
     const std::uint64_t shown = static_cast<std::uint64_t>(part.width) * part.height;
     pixels = std::max(pixels, own);
     channels += part.channels.size();
+    stored += own * part.channels.size() * sizeof(float);
     decoded += std::max(own, shown) * part.channels.size() * sizeof(float);
+    last_blocks.push_back(last_block(file_->header(i), blocks));
+    blocks += blocks_of(file_->header(i));
+    tiled.push_back(file_->header(i).hasTileDescription());
+    deflated &= file_->header(i).compression() <= Imf::ZIP_COMPRESSION;
   }
+  const std::uint64_t encoded = exr_pixel_bytes(*stream_, table, bytes, blocks, tiled);
+  for (std::size_t i = 0; i < last_blocks.size(); ++i) {
+    check_exr_block(*stream_, table, last_blocks[i], tiled[i]);
+  }
+  // OpenEXR reads what is missing as zeros. Deflate's longest match makes 258 bytes of 2 bits, and
+  // halves become floats.
+  constexpr std::uint64_t most_deflated = 2 * 4 * 258;
+  const bool lacks_bytes = deflated && stored / most_deflated > encoded;
   constexpr std::uint64_t bytes_of_channel = 128;  // its name, what the header says of its light
-  if (decoded <= unchecked_bytes ||
-      (pixels < bytes * limits::max_exr_pixels_per_byte &&
-       decoded / limits::max_image_expansion <= bytes + bytes_of_channel * channels)) {
+  if (!lacks_bytes &&
+      (decoded <= unchecked_bytes ||
+       (pixels < encoded * limits::max_exr_pixels_per_byte &&
+        decoded / limits::max_image_expansion <= encoded + bytes_of_channel * channels))) {
     return;
   }
   throw DecodeError(
       fmt::format("is damaged or empty: {} bytes for the {} channels of {} x {} pixels; the limit "
                   "is {} pixels a byte, and a factor of {}; scale it down",
-                  bytes, channels, parts_.front().width, parts_.front().height,
+                  encoded, channels, parts_.front().width, parts_.front().height,
                   limits::max_exr_pixels_per_byte, limits::max_image_expansion));
 }
 

@@ -1,11 +1,13 @@
 // The limits of a picture, and checks before a decoder reads it, of EXR headers among others.
 #pragma once
 
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfIO.h>
 
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "image/decoder.hpp"
 #include "photile/limits.hpp"
@@ -45,8 +47,32 @@ inline constexpr std::uint64_t unchecked_bytes = limits::unchecked_image_bytes;
 /// OpenEXR reserves what an attribute and a table of the rows are said to take, and reads
 /// attributes of types that it knows by their type, whatever their size says: its own limits would
 /// hold for the whole process. Leaves the stream at its beginning. `bytes` are those of the file.
-/// Errors: DecodeError where an attribute is not as large as its type or announces more than the
+/// Returns where the headers end.
+/// Errors: DecodeError where an attribute is not as large as it has to be, announces more than the
 /// file holds, or the picture is larger than limits.hpp.
-void check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
+std::uint64_t check_exr_headers(Imf::IStream& stream, std::uint64_t bytes);
+
+/// Bytes of the tables of a file and of the blocks of pixels that they point at, compressed as they
+/// are: without attributes, and without what lies between and behind the blocks. Leaves the stream
+/// where it was.
+///   table     where the tables begin, as check_exr_headers returns it
+///   bytes     those of the file
+///   entries   of the tables: one a block, of all parts
+///   tiled     whether a part has tiles in place of rows, per part
+/// Errors: DecodeError where a block is not within the file, or the tables have more entries.
+std::uint64_t exr_pixel_bytes(Imf::IStream& stream, std::uint64_t table, std::uint64_t bytes,
+                              std::uint64_t entries, const std::vector<bool>& tiled);
+
+/// A block of pixels, as the header of its part has it.
+struct ExrBlock {
+  std::uint64_t entry = 0;  ///< in the tables of all parts
+  std::uint64_t bytes = 0;  ///< decoded
+  Imf::Compression compression = Imf::NO_COMPRESSION;
+};
+
+/// Refuses a block that decodes to fewer bytes than its pixels take: for the others OpenEXR takes
+/// what is in its memory. Other compressions than none, RLE and ZIP it checks itself. Leaves the
+/// stream where it was. To be called after exr_pixel_bytes. Errors: DecodeError.
+void check_exr_block(Imf::IStream& stream, std::uint64_t table, const ExrBlock& block, bool tiled);
 
 }  // namespace photile::image
