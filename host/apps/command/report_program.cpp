@@ -7,8 +7,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "command/command_line.hpp"
@@ -38,11 +36,6 @@ fs::path program_folder() {
   throw OutputError((here / PHOTILE_INSTALLED_REPORT).lexically_normal().string() +
                     ": what draws reports is missing; install photile again, or write .csv or "
                     ".json");
-}
-
-std::string content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// Debian's Python, which has the packages, or the first of the path. Isolated: neither the working
@@ -100,7 +93,7 @@ void run_report(const nlohmann::ordered_json& record, const ReportOptions& optio
   if (code == 0) return;
   throw_if_stop_requested();
   // What it does not expect is a trace of calls, whose last line says what it was.
-  const std::string printed = content_of(errors);
+  const std::string printed = read_own_text(errors);
   const auto lines = lines_of(printed);
   std::string said = lines.empty() ? "" : one_line(lines.back());
   const std::string head = "photile.report: error: ";
@@ -173,7 +166,7 @@ void draw_report(const nlohmann::ordered_json& record, const ReportOptions& opti
   for (const std::string& file : drawn) {
     const std::size_t count = ends_in(file, ".svg") ? plans : 1;
     const auto from = plan_names(scratch(file), count), to = plan_names(file, count);
-    for (std::size_t i = 0; i < count; ++i) write_file(to[i], content_of(from[i]));
+    for (std::size_t i = 0; i < count; ++i) write_file(to[i], read_own_text(from[i]));
   }
 }
 

@@ -54,7 +54,7 @@ const char* unpack_draco(std::span<const unsigned char> packed,
   const draco::Mesh& found = *decoded.value();
   mesh.points = found.num_points();
   for (draco::FaceIndex face(0); face < found.num_faces(); ++face) {
-    for (const draco::PointIndex point : found.face(face)) mesh.corners.push_back(point.value());
+    for (const draco::PointIndex& point : found.face(face)) mesh.corners.push_back(point.value());
   }
   for (DracoAttribute& attribute : attributes) {
     const draco::PointAttribute* values = found.GetAttributeByUniqueId(attribute.id);

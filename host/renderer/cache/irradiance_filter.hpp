@@ -117,10 +117,7 @@ class WeightedPoints {
         shared_(!like.shared_variance.empty()),
         batches_(static_cast<std::size_t>(like.batches)),
         sums_(like.lights),
-        batch_(like.lights * batches_, 0.0) {
-    to_ = LightTable(like.lights, like.sparse());
-    to_.batches = like.batches;
-  }
+        batch_(like.lights * batches_, 0.0) {}
 
   /// Adds a point to the mean.
   ///   weight_of   of a layer, by its number
@@ -222,22 +219,19 @@ LightTable means_of(const LightTable& like, std::size_t count, std::span<const d
                     const Add& add) {
   // Large enough to make a task's cost vanish, small enough to share work.
   constexpr std::size_t per_task = 256;
-  std::vector<LightTable> parts((count + per_task - 1) / per_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+  LightTable none(like.lights, like.sparse());
+  none.batches = like.batches;
+  const auto write = [&](std::size_t first, std::size_t last, LightTable& rows) {
     // A point with 1e-40 of light is compared otherwise than one with none, and a library that the
     // program loads may have changed what threads make of such numbers.
     const trace::FlushDenormals flush_denormals;
-    MeanOfPoints mean(layer_powers, like, parts[part]);
-    const std::size_t last = std::min(count, (part + 1) * per_task);
-    for (std::size_t i = part * per_task; i < last; ++i) {
+    MeanOfPoints mean(layer_powers, like, rows);
+    for (std::size_t i = first; i < last; ++i) {
       add(i, mean);
       mean.end_point();
     }
-  });
-  LightTable all(like.lights, like.sparse());
-  all.batches = like.batches;
-  for (LightTable& part : parts) all.append(std::move(part));
-  return all;
+  };
+  return light::rows_by_tasks(count, per_task, none, write);
 }
 
 /// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to

@@ -107,9 +107,7 @@ class PointSums {
         rows_(rows),
         has_radiance_(needs.tells_radiance()),
         sums_(needs.light_count),
-        layers_(needs.light_count) {
-    rows_ = LightTable(needs);
-  }
+        layers_(needs.smooth_shading ? needs.light_count : 0) {}
 
   /// Light, or errors, that were found at the point itself.
   void add_found(const PrimaryHits& points, std::size_t point, const LightTable& found,
@@ -270,11 +268,9 @@ LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone
                               Coarse coarse_rows) const {
   const auto& [points, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
   const std::vector<std::uint32_t> slots = reading.slots();
-  std::vector<LightTable> parts((slots.size() + rows_per_task - 1) / rows_per_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    PointSums sums(scene_, needs_, parts[part]);
-    const std::size_t last = std::min(slots.size(), (part + 1) * rows_per_task);
-    for (std::size_t point = part * rows_per_task; point < last; ++point) {
+  const auto write = [&](std::size_t first, std::size_t last, LightTable& table) {
+    PointSums sums(scene_, needs_, table);
+    for (std::size_t point = first; point < last; ++point) {
       std::size_t i = slots[point];
       if (i < alone.size()) {
         sums.add_found(points, point, of_alone, i);
@@ -287,15 +283,13 @@ LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone
       }
       sums.end_point();
     }
-  });
-  LightTable all(needs_);
-  for (LightTable& part : parts) all.append(std::exchange(part, {}));
-  return all;
+  };
+  return light::rows_by_tasks(slots.size(), rows_per_task, LightTable(needs_), write);
 }
 
 /// Values what the points read, and finds it.
 SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progress& progress) {
-  Reading reading{.points = points};
+  Reading reading{points, {}, {}, {}, {}, {}};
   auto& [_, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
   for (std::uint32_t point = 0; point < points.size(); ++point) {
     const bool is_coarse = !points.coarse.empty() && points.coarse[point] != 0;

@@ -104,7 +104,8 @@ std::string escaped_xml(std::string_view text) {
 std::string csv_field(std::string_view text) {
   constexpr std::string_view begins_formula = "=+-@\t\r";
   const bool formula = !text.empty() && begins_formula.find(text.front()) != std::string_view::npos;
-  const std::string field = (formula ? "'" : "") + utf8_of(text);
+  std::string field = utf8_of(text);
+  if (formula) field.insert(field.begin(), '\'');
   if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
   std::string quoted = "\"";
   for (const char c : field) {

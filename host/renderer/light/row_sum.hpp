@@ -1,6 +1,8 @@
 // The sums of one row of a table of light.
 #pragma once
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +32,6 @@ class RowSum {
     return sums_[light];
   }
   bool has(std::size_t light) const { return is_lit_[light] != 0; }
-  std::size_t size() const { return sums_.size(); }
 
   /// The lights that were added to, in the order in which they came.
   std::span<const std::uint16_t> lit() const { return lit_; }
@@ -90,6 +91,22 @@ inline void end_row(RowSum<Reflection>& sums, LightTable& table, bool has_radian
     table.irradiance.push_back(sum.irradiance);
     if (has_radiance) table.radiance.push_back(sum.radiance);
   });
+}
+
+/// Rows that tasks write, joined in their order. Work is shared by TBB.
+///   none    a table without rows, in the form of the result
+///   write   (first, last, rows) appends the rows [first, last) to `rows`, which has none
+template <class Write>
+LightTable rows_by_tasks(std::size_t count, std::size_t rows_per_task, const LightTable& none,
+                         const Write& write) {
+  std::vector<LightTable> parts((count + rows_per_task - 1) / rows_per_task, none);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const std::size_t first = part * rows_per_task;
+    write(first, std::min(count, first + rows_per_task), parts[part]);
+  });
+  LightTable all = none;
+  for (LightTable& part : parts) all.append(std::move(part));
+  return all;
 }
 
 }  // namespace photile::light

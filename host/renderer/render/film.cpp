@@ -34,8 +34,8 @@ struct PixelLight {
 };
 using PixelSums = light::RowSum<PixelLight>;
 
-/// Appends the lights that were added to a row, and forgets them.
-void move(PixelSums& sums, LightLayers::Row& row) {
+/// Appends the pixel to a row; the next one begins.
+void end_pixel(PixelSums& sums, LightLayers::Row& row) {
   sums.take_lit([&](std::uint16_t light, const PixelLight& sum) {
     row.light.push_back(light);
     row.radiance.push_back(sum.radiance);
@@ -99,7 +99,7 @@ void add_to_sparse_film(LightLayers& layers, const PrimaryHitBatch& batch,
         const VisibleEmission& seen = batch.emission[i];
         sums.of(seen.light).add(seen.radiance, seen.illuminance);
       }
-      move(sums, row);
+      end_pixel(sums, row);
     }
     row.light.shrink_to_fit();
     row.radiance.shrink_to_fit();
@@ -248,14 +248,12 @@ constexpr std::size_t hits_per_task = 1024;
 }  // namespace
 
 LightTable pooled(const LayerMixdown& mixdown, const LightTable& light) {
-  const std::size_t layers = mixdown.layers.size(), hits = light.rows();
+  const std::size_t layers = mixdown.layers.size();
   const bool glossy = !light.radiance.empty();
-  std::vector<LightTable> parts((hits + hits_per_task - 1) / hits_per_task);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    LightTable& rows = parts[part] = LightTable(layers, layers > max_dense_lights);
+  const LightTable none(layers, layers > max_dense_lights);
+  const auto write = [&](std::size_t first, std::size_t last, LightTable& rows) {
     light::RowSum<light::Reflection> sums(layers);
-    const std::size_t last = std::min(hits, (part + 1) * hits_per_task);
-    for (std::size_t hit = part * hits_per_task; hit < last; ++hit) {
+    for (std::size_t hit = first; hit < last; ++hit) {
       light.for_each(hit, [&](std::size_t from, std::size_t i) {
         const float scale = mixdown.scale[from];
         sums.of(mixdown.layer_of[from])
@@ -263,10 +261,8 @@ LightTable pooled(const LayerMixdown& mixdown, const LightTable& light) {
       });
       light::end_row(sums, rows, glossy);
     }
-  });
-  LightTable result(layers, layers > max_dense_lights);
-  for (LightTable& part : parts) result.append(std::move(part));
-  return result;
+  };
+  return light::rows_by_tasks(light.rows(), hits_per_task, none, write);
 }
 
 void pool_emission(const LayerMixdown& mixdown, PrimaryHitBatch& batch) {

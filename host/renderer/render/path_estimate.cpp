@@ -38,7 +38,7 @@ std::vector<std::uint64_t> path_numbers(const PrimaryHits& hits, const PrimaryHi
 namespace {
 
 /// Large enough to make a task's cost vanish, small enough to share work and to stop soon.
-constexpr std::size_t hits_per_chunk = 1024;
+constexpr std::size_t hits_per_path_task = 1024;
 
 }  // namespace
 
@@ -47,16 +47,12 @@ PathEstimator::PathEstimator(const RayScene& rays, std::uint64_t seed)
 
 LightTable PathEstimator::estimate(const PrimaryHits& hits, std::span<const std::uint64_t> number,
                                    const Progress& progress) const {
-  const std::size_t chunks = (hits.size() + hits_per_chunk - 1) / hits_per_chunk;
-  std::vector<LightTable> parts(chunks);
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+  const auto write = [&](std::size_t first, std::size_t last, LightTable& rows) {
     progress.throw_if_cancelled();
     const trace::FlushDenormals flush_denormals;
-    LightTable& rows = parts[chunk] = LightTable(needs_);
     light::RowSum<light::Reflection> sums(needs_.light_count);
     std::vector<PathLight> found;
-    const std::size_t last = std::min(hits.size(), (chunk + 1) * hits_per_chunk);
-    for (std::size_t hit = chunk * hits_per_chunk; hit < last; ++hit) {
+    for (std::size_t hit = first; hit < last; ++hit) {
       const trace::SurfacePoint start = trace::point_of(rays_.scene(), hits, hit);
       const trace::RandomStream random(seed_, number[hit], 0);
       found.clear();
@@ -67,10 +63,8 @@ LightTable PathEstimator::estimate(const PrimaryHits& hits, std::span<const std:
       }
       light::end_row(sums, rows, needs_.tells_radiance());
     }
-  });
-  LightTable all(needs_);
-  for (LightTable& part : parts) all.append(std::move(part));
-  return all;
+  };
+  return light::rows_by_tasks(hits.size(), hits_per_path_task, LightTable(needs_), write);
 }
 
 namespace {
