@@ -99,7 +99,8 @@ class Generator : CommandBuilder {
       add({"--plane", fmt::format("{:g}", dice_.between(-1, 1) * s), "--spacing",
            fmt::format("{:g}", s), "--wall-band", "0"});
     }
-    add({"--rays", std::to_string(dice_.whole(1, 8)), "--repeats", dice_.one_of({"2", "3", "1"})});
+    add({"--rays", std::to_string(dice_.whole(1, 8)), "--repeats",
+         dice_.one_of({"2", "3", "2", "3", "2", "3", "2", "1"})});
     maybe(0.1, {"--maintenance", dice_.one_of({"0.8", "0", "2", "nan"})});
     maybe(0.1, {"--cylindrical"});
     if (any_grids) {

@@ -110,7 +110,7 @@ RandomScene write_obj(const std::filesystem::path& folder, Dice& dice) {
     if (dice.chance(0.2)) mtl += "map_Ke picture.png\n";
     obj += fmt::format("o {}\nusemtl glow{}\n", name, lamp);
     obj += rectangle(dice, scene.size, (0.99 - 0.01 * lamp) * scene.size, true, vertices);
-    scene.lights.push_back(name);
+    scene.lights.push_back(fmt::format("lamp_{}", lamp));  // as layers are named
   }
   for (int thing = 0; thing < things; ++thing) {
     mtl += material(dice, fmt::format("stuff{}", thing), true);
@@ -167,7 +167,7 @@ RandomScene write_gltf(const std::filesystem::path& folder, Dice& dice) {
          {"rotation", {-0.7071, 0, 0, 0.7071}},
          {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
     document["scenes"][0]["nodes"].push_back(light + 1);
-    scene.lights.push_back(name);
+    scene.lights.push_back(fmt::format("bulb_{}", light));
   }
   if (count > 0) {
     document["extensionsUsed"] = {"KHR_lights_punctual"};
