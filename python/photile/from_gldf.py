@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import re
 import sys
 import xml.etree.ElementTree as xml
@@ -22,6 +23,11 @@ __all__ = ["convert"]
 _endings = {"ldc/eulumdat": ".ldt", "ldc/ies": ".ies"}
 
 
+# A product of a few kilobytes may hold references to references, each with a copy of a file.
+_most_lights = 10_000
+_most_product, _most_files = 16 << 20, 256 << 20  # bytes
+
+
 def _by_id(product: xml.Element, path: str) -> dict[str, xml.Element]:
     return {element.get("id", ""): element for element in product.findall(path)}
 
@@ -30,40 +36,78 @@ def _text(element: xml.Element | None) -> str:
     return (element.text or "").strip() if element is not None else ""
 
 
-class _Product:
-    """What product.xml says, and the photometric files beside it."""
+def _read(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
+    member = archive.getinfo(name)
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise ValueError(f"{name} is neither stored nor deflated")  # the others unpack without bounds
+    if member.file_size > most:
+        raise ValueError(f"{name} has {member.file_size} bytes, and photile reads {most} at most")
+    return archive.read(member)
 
-    def __init__(self, gldf: Path) -> None:
-        with zipfile.ZipFile(gldf) as archive:
-            self.product = xml.fromstring(archive.read("product.xml"))
-            self.contents = {name: archive.read(name) for name in archive.namelist()
-                             if name.startswith("ldc/") and not name.endswith("/")}
-        self.files = _by_id(self.product, "GeneralDefinitions/Files/File")
-        self.photometries = _by_id(self.product, "GeneralDefinitions/Photometries/Photometry")
-        self.emitters = _by_id(self.product, "GeneralDefinitions/Emitters/Emitter")
 
-    def parts(self) -> Iterator[tuple[str, xml.Element]]:
-        """A name for each light that a variant has, and its element."""
-        for variant in self.product.findall("ProductDefinitions/Variants/Variant"):
-            emitters = dict.fromkeys(element.get("emitterId", "") for element in variant.iter())
-            for emitter in filter(None, map(self.emitters.get, emitters)):
-                for number, part in enumerate(emitter):
-                    name = f"{variant.get('id')} {emitter.get('id')} {number or ''}"
-                    yield re.sub(r"\W+", "_", name.strip()), part
+def _photometric_files(product: xml.Element) -> dict[str, tuple[str, str]]:
+    """Ending and name in the archive of the file of each photometry that has one."""
+    files = _by_id(product, "GeneralDefinitions/Files/File")
+    found = {}
+    for name, photometry in _by_id(product, "GeneralDefinitions/Photometries/Photometry").items():
+        used = photometry.find("PhotometryFileReference")
+        file = files.get(used.get("fileId", "")) if used is not None else None
+        ending = _endings.get(file.get("contentType", "")) if file is not None else None
+        if ending:
+            found[name] = (ending, "ldc/" + _text(file))
+    return found
 
-    def photometric_file(self, part: xml.Element) -> tuple[str, bytes] | None:
-        """Ending and content of a light's file, where the archive has it."""
-        reference = part.find("PhotometryReference")
-        if reference is None:
-            return None
-        photometry = self.photometries.get(reference.get("photometryId", ""))
-        used = photometry.find("PhotometryFileReference") if photometry is not None else None
-        file = self.files.get(used.get("fileId", "")) if used is not None else None
-        if file is None:
-            return None
-        ending = _endings.get(file.get("contentType", ""))
-        content = self.contents.get("ldc/" + _text(file))
-        return (ending, content) if ending and content else None
+
+def _lights(product: xml.Element) -> Iterator[tuple[str, str, str]]:
+    """A name for each light that a variant has, its photometry and its rated flux or ""."""
+    emitters: dict[str, list[tuple[str, str, str]]] = {}
+    for name, emitter in _by_id(product, "GeneralDefinitions/Emitters/Emitter").items():
+        emitters[name] = []
+        for number, light in enumerate(emitter):
+            reference = light.find("PhotometryReference")
+            if reference is not None:
+                emitters[name].append((f"{name} {number or ''}", reference.get("photometryId", ""),
+                                       _text(light.find("RatedLuminousFlux"))))
+    for variant in product.findall("ProductDefinitions/Variants/Variant"):
+        used = dict.fromkeys(element.get("emitterId", "") for element in variant.iter())
+        for emitter_id in used:
+            for name, photometry, flux in emitters.get(emitter_id, ()):
+                yield f"{variant.get('id')} {name}".strip(), photometry, flux
+
+
+def _luminaires(gldf: Path) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
+    """Entries of ``luminaires.json``, and the files that they name."""
+    entries: list[dict[str, Any]] = []
+    written: dict[str, bytes] = {}
+    contents: dict[str, bytes] = {}  # by their names in the archive
+    with zipfile.ZipFile(gldf) as archive:
+        product = xml.fromstring(_read(archive, "product.xml", _most_product))
+        files = _photometric_files(product)
+        there = {name for name in archive.namelist() if not name.endswith("/")}
+        names: set[str] = set()
+        room = _most_files
+        for number, (light, photometry, flux) in enumerate(_lights(product), 1):
+            if number > _most_lights:
+                raise ValueError(f"its variants have more than {_most_lights} lights")
+            ending, member = files.get(photometry, ("", ""))
+            if member not in there:
+                continue
+            if member not in contents:
+                contents[member] = _read(archive, member, room)
+            room -= len(contents[member])
+            if room < 0:
+                raise ValueError(f"the files of its lights have more than {_most_files} bytes")
+            name = re.sub(r"\W+", "_", light)
+            while name in names:  # of other ids that become the same word
+                name += f"_{number}"
+            names.add(name)
+            written[name + ending] = contents[member]
+            entries.append({"name": name, "file": name + ending, "position": "ceiling"})
+            if flux:
+                entries[-1]["lumens"] = float(flux)
+                if not 0 <= float(flux) < math.inf:
+                    raise ValueError(f"light '{light}' has a flux of {flux}")
+    return entries, written
 
 
 def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
@@ -74,21 +118,11 @@ def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
     in it. OSError.
     """
     try:
-        product = _Product(gldf)
-    except (zipfile.BadZipFile, KeyError, xml.ParseError) as error:
-        raise ValueError(f"{gldf}: is no GLDF file: {error}") from None
-    entries: list[dict[str, Any]] = []
-    written: dict[str, bytes] = {}
-    for name, part in product.parts():
-        file = product.photometric_file(part)
-        if file is None:
-            continue
-        ending, content = file
-        written[name + ending] = content
-        entries.append({"name": name, "file": name + ending, "position": "ceiling"})
-        flux = _text(part.find("RatedLuminousFlux"))
-        if flux:
-            entries[-1]["lumens"] = float(flux)
+        entries, written = _luminaires(gldf)
+    except OSError:
+        raise
+    except Exception as error:  # zipfile and its decompressors raise what they like on damaged files
+        raise ValueError(f"{gldf}: is no GLDF file: {error}; get it anew") from None
     if not entries:
         raise ValueError(f"{gldf}: no variant has a photometric file (EULUMDAT or IES) in it")
     folder.mkdir(parents=True, exist_ok=True)

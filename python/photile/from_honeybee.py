@@ -155,6 +155,12 @@ def _rotation(axis: Any, aim: Any) -> float:
     return math.degrees(math.atan2(c0 @ np.cross(z, x), c0 @ x))
 
 
+def _add(texts: dict[str, str], name: str, text: str) -> None:
+    if name in texts:
+        raise ValueError(f"two grids or luminaires are called '{Path(name).stem}'; rename one")
+    texts[name] = text
+
+
 def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], dict[str, str]]:
     """The list that ``--luminaires`` takes, and photometric files by name."""
     entries: list[dict[str, Any]] = []
@@ -174,7 +180,7 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
             else:
                 warnings.append(f"luminaire '{name}': its factor of {factor:g} is left out, "
                                 "since its file has a TILT")
-        files[f"{name}.ies"] = text
+        _add(files, f"{name}.ies", text)
         small = max(lamp.width_m, lamp.length_m) == 0 == min(lamp.width_m, lamp.length_m)
         for number, instance in enumerate(lamp.luminaire_zone or ()):
             entry = {"name": f"{name}_{number + 1}", "file": f"{name}.ies",
@@ -184,6 +190,35 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
                 entry["size"] = [_least_opening, _least_opening]
             entries.append(entry)
     return entries, files
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is no number")
+    return value
+
+
+def _read(file: Path, warnings: list[str]) -> Any:
+    """A model of JSON alone: Honeybee's own reader runs the programs in a file that it takes for a
+    pickle. Parts of the model that would make Honeybee read or write other files are left out."""
+    def harmless(part: dict[str, Any]) -> dict[str, Any]:
+        if part.get("type") == "BSDF":  # is written to a file that its identifier names
+            grey = {f"{channel}_reflectance": 0.5 for channel in _channels}
+            warning = (f"modifier '{part['identifier']}': left out is all: photile has no BSDF; "
+                       "it is matt grey (0.5)")
+            if warning not in warnings:
+                warnings.append(warning)
+            return {"type": "Plastic", "identifier": part["identifier"], **grey,
+                    "specularity": 0.0, "roughness": 0.0}
+        if "ies_path" in part:
+            part["ies_path"] = None  # its content is in the model
+        return part
+
+    data = json.loads(file.read_text(encoding="utf-8-sig"), object_hook=harmless,
+                      parse_float=_finite, parse_constant=_finite)
+    importlib.import_module("honeybee_radiance")  # adds what models know of light
+    return importlib.import_module("honeybee.model").Model.from_dict(data)
 
 
 def convert(file: Path, folder: Path) -> tuple[list[str], list[str]]:
@@ -201,18 +236,17 @@ def convert(file: Path, folder: Path) -> tuple[list[str], list[str]]:
     -------
     words of the command that measures, and lines about what was left out
     """
-    importlib.import_module("honeybee_radiance")  # adds what models know of light
-    model = importlib.import_module("honeybee.model").Model.from_file(str(file))
-    model.convert_to_units("Meters")
     warnings: list[str] = []
-    texts = {"scene.gltf": json.dumps(_gltf(model, warnings))}
+    model = _read(file, warnings)
+    model.convert_to_units("Meters")
+    texts = {"scene.gltf": json.dumps(_gltf(model, warnings), allow_nan=False)}
     command = ["photile", "measure", str(folder / "scene.gltf"), "--set", "up=z"]
     entries, photometry = _luminaires(model, warnings)
     if entries:
-        texts.update(photometry, **{"luminaires.json": json.dumps(entries, indent=1)})
+        texts.update(photometry, **{"luminaires.json": json.dumps(entries, indent=1, allow_nan=False)})
         command += ["--luminaires", str(folder / "luminaires.json")]
     for grid in model.properties.radiance.sensor_grids:
-        texts[f"{grid.identifier}.pts"] = grid.to_radiance() + "\n"
+        _add(texts, f"{grid.identifier}.pts", grid.to_radiance() + "\n")
         command += ["--points", str(folder / f"{grid.identifier}.pts")]
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():

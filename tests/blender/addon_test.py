@@ -52,7 +52,8 @@ def room():
     scene.camera = bpy.context.object
     scene.render.resolution_x, scene.render.resolution_y = 64, 48
     scene.render.resolution_percentage = 100
-    scene.photile.folder, scene.photile.quality = str(scratch), "draft"
+    bpy.ops.wm.save_as_mainfile(filepath=str(scratch / "room.blend"))
+    scene.photile.folder, scene.photile.quality = "//", "draft"
     scene.photile.options = "--photons 50000 --samples 1"
     return scene
 

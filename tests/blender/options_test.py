@@ -5,6 +5,7 @@ python3 options_test.py PHOTILE SOURCE-FOLDER
 """
 
 import os
+import shutil
 import stat
 import subprocess
 import sys
@@ -69,4 +70,17 @@ bpy.data.filepath = ""
 folder = operators.folder_of(SimpleNamespace(photile=SimpleNamespace(folder="//photile")))
 assert stat.S_IMODE(folder.stat().st_mode) == 0o700 and not os.listdir(folder)
 folder.rmdir()
-os.rmdir(scratch)
+
+# A scene of a file writes below the file alone.
+bpy.data.filepath = f"{scratch}/room/room.blend"
+bpy.path.abspath = lambda path: path.replace("//", f"{scratch}/room/", 1)
+os.makedirs(f"{scratch}/room")
+os.symlink(scratch, f"{scratch}/room/link")
+for name, taken in (("//photile", True), ("//", True), (f"{scratch}/room/a/b", True), (scratch, False),
+                    ("//../other", False), ("//link", False), ("/etc/photile", False)):
+    try:
+        operators.folder_of(SimpleNamespace(photile=SimpleNamespace(folder=name)))
+        assert taken, name
+    except ValueError as error:
+        assert not taken and "use //photile" in str(error), name
+shutil.rmtree(scratch)

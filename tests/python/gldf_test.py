@@ -34,10 +34,23 @@ def converted(*arguments):
                           capture_output=True, text=True)
 
 
-def archive(path, product=PRODUCT):
-    with zipfile.ZipFile(path, "w") as file:
+def archive(path, product=PRODUCT, ies=IES, method=zipfile.ZIP_DEFLATED):
+    with zipfile.ZipFile(path, "w", method) as file:
         file.writestr("product.xml", product)
-        file.writestr("ldc/down.ies", IES)
+        file.writestr("ldc/down.ies", ies)
+    return path
+
+
+def with_variants(variants):
+    begin, end = PRODUCT.index("<Variants>") + len("<Variants>"), PRODUCT.index("</Variants>")
+    return PRODUCT[:begin] + variants + PRODUCT[end:]
+
+
+def damaged(path, begin):
+    """A byte is another in what is stored after the header that begins with these bytes."""
+    data = bytearray(archive(path).read_bytes())
+    data[data.index(begin) + 60] ^= 0xFF
+    path.write_bytes(data)
     return path
 
 
@@ -53,12 +66,48 @@ def test_each_light_of_a_variant_is_a_luminaire(tmp_path):
         assert (tmp_path / "lamp" / entry["file"]).read_text() == IES
 
 
+def test_lights_whose_ids_become_one_word_keep_their_own_files(tmp_path):
+    lamps = with_variants('<Variant id="a b"><E emitterId="direct"/></Variant>'
+                          '<Variant id="a-b"><E emitterId="indirect"/></Variant>')
+    run = converted(archive(tmp_path / "lamp.gldf", lamps), tmp_path / "lamp")
+    entries = json.loads((tmp_path / "lamp/luminaires.json").read_text())
+    assert run.returncode == 0 and len({entry["file"] for entry in entries}) == 2
+    assert {entry["file"] for entry in entries} | {"luminaires.json"} == {
+        file.name for file in (tmp_path / "lamp").iterdir()}
+    twins = with_variants('<Variant id="a"><E emitterId="direct"/></Variant>' * 2)
+    assert converted(archive(tmp_path / "twins.gldf", twins), tmp_path / "twins").returncode == 0
+    assert len(list((tmp_path / "twins").iterdir())) == 3
+
+
+def test_what_a_file_unpacks_to_is_bounded(tmp_path):
+    many = '<Variant id="v"><E emitterId="direct"/></Variant>'
+    for name, product, ies in (("lights", with_variants(many * 20_000), IES),
+                               ("product", PRODUCT + " " * (1 << 26), IES),
+                               ("files", with_variants(many * 300), IES + " " * (1 << 20))):
+        bomb = archive(tmp_path / name, product, ies)
+        code = ("import resource, sys; resource.setrlimit(resource.RLIMIT_AS, (700 << 20,) * 2)\n"
+                "from photile.from_gldf import main; sys.exit(main())")
+        run = subprocess.run([sys.executable, "-c", code, str(bomb), str(tmp_path / "out")],
+                             capture_output=True, text=True, timeout=60)
+        assert run.returncode == 1 and run.stderr.count("\n") == 1, run.stderr
+        assert "more than" in run.stderr or "at most" in run.stderr, run.stderr
+        assert not (tmp_path / "out").exists()
+
+
 def test_bad_files_are_told_in_one_line(tmp_path):
     (tmp_path / "text.gldf").write_text("no zip")
     empty = PRODUCT.replace('fileId="f1"', 'fileId="f3"')
+    fluxes = [archive(tmp_path / f"flux{i}.gldf", PRODUCT.replace("1500", flux))
+              for i, flux in enumerate(("NaN", "1e999", "-1", "bright"))]
     for file, told in ((tmp_path / "text.gldf", "is no GLDF file"),
                        (archive(tmp_path / "none.gldf", empty), "no variant has a photometric file"),
                        (archive(tmp_path / "bad.gldf", "<Root>"), "is no GLDF file"),
+                       (damaged(tmp_path / "product.gldf", b"PK\x03\x04"), "is no GLDF file"),
+                       (archive(tmp_path / "bz2.gldf", method=zipfile.ZIP_BZIP2), "nor deflated"),
+                       (archive(tmp_path / "code.gldf", '<?xml version="1.0" encoding="x"?><Root/>'),
+                        "is no GLDF file"),
+                       *((file, "has a flux of") for file in fluxes[:-1]),
+                       (fluxes[-1], "bright"),
                        (tmp_path / "absent.gldf", "absent.gldf")):
         run = converted(file, tmp_path / "out")
         assert run.returncode == 1 and run.stdout == ""

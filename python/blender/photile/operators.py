@@ -19,11 +19,16 @@ def temporary_folder():
 
 
 def folder_of(scene):
-    """Where files go: "//" means beside the .blend file, and a temporary folder without one."""
-    folder = scene.photile.folder
-    if folder.startswith("//") and not bpy.data.filepath:
+    """Where files go: below the folder of the .blend file, or a temporary folder without one.
+
+    Raises ValueError for other folders: the .blend file may be anyone's, and files are overwritten.
+    """
+    if not bpy.data.filepath:
         return temporary_folder()
-    return Path(bpy.path.abspath(folder))
+    folder = Path(bpy.path.abspath(scene.photile.folder)).resolve()
+    if not folder.is_relative_to(Path(bpy.data.filepath).resolve().parent):
+        raise ValueError(f"Folder: '{folder}' is not below that of the .blend file; use //photile")
+    return folder
 
 
 def command_of(context):
@@ -149,9 +154,8 @@ class PHOTILE_OT_read_layers(bpy.types.Operator):
     bl_description = "Make the sliders of the last picture"
 
     def execute(self, context):
-        picture = folder_of(context.scene) / "picture.exr"
         try:
-            compositor.read_layers(context.scene, picture)
+            compositor.read_layers(context.scene, folder_of(context.scene) / "picture.exr")
         except (RuntimeError, ValueError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

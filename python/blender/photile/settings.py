@@ -30,7 +30,7 @@ class PhotilePreferences(bpy.types.AddonPreferences):
 class PhotileSettings(bpy.types.PropertyGroup):
     folder: StringProperty(
         name="Folder",
-        description="Where the exported scene and the picture are written",
+        description="Where the exported scene and the picture are written, below the .blend file",
         subtype="DIR_PATH",
         default="//photile",
     )
