@@ -67,7 +67,7 @@ Image image_of(const std::vector<glm::vec3>& picture, int width, int height) {
 }
 
 /// Draws the lattice over a frame whose nodes are all there: lines at the borders of cells.
-void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camera,
+void draw_nodes(const RayScene& rays, const cache::LightMaps& maps, const Camera& camera,
                 std::vector<glm::vec3>& picture, int width, int height) {
   constexpr float line = 0.07f;  // a part of a cell on each side
   const trace::FlushDenormals flush_denormals;
@@ -78,7 +78,7 @@ void draw_nodes(const RayScene& rays, const LightMaps& maps, const Camera& camer
       const auto hit = trace::intersect(rays, glm::vec3(camera.position), direction);
       if (!hit) continue;
       const trace::SurfacePoint point = trace::surface_hit(rays.scene(), *hit, direction);
-      BilinearWeights blend{};
+      cache::BilinearWeights blend{};
       if (maps.charts().chart_of()[point.oriented_face()] == none ||
           !maps.find(point.oriented_face(), point.position, blend)) {
         continue;
@@ -123,7 +123,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
       std::span(&device, 1), scene,
       {std::make_shared<const std::vector<PhotonMaps>>(std::move(maps)), estimate});
   cache::ValuedBy by_photons(light);
-  LightMapParameters light_maps =
+  cache::LightMapParameters light_maps =
       cache::light_map_parameters(scene, photons, settings.neighbours, radius,
                                   defaults::group_angle_degrees, 0, settings.detail, powers);
   if (settings.coarsest > 0) {
@@ -144,14 +144,14 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   };
   {
     cache::SurfaceCache warm(rays, light_maps, light, by_photons, nullptr);  // compiles the kernels
-    cache::LightMapFrames frames(rays, warm.maps(), warm.source());
+    cache::LightMapFrames frames(rays, warm.maps());
     draw(frames, scene.cameras.front(), 32, 32, all);
   }
   cache::SurfaceCache estimates(rays, light_maps, light, by_photons, nullptr);
-  cache::LightMapFrames frames(rays, estimates.maps(), estimates.source());
+  cache::LightMapFrames frames(rays, estimates.maps());
   const auto [width, height] = settings.sizes.front();
   const TimeTaken fill = draw(frames, scene.cameras.front(), width, height, all).first;
-  const LightMapStatistics first = estimates.maps().statistics();
+  const cache::LightMapStatistics first = estimates.maps().statistics();
   nlohmann::json row{{"scene", name},
                      {"paths", settings.paths},
                      {"stored", photons.size()},
@@ -159,7 +159,6 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
                      {"spacing", estimates.maps().charts().spacing()},
                      {"levels", light_maps.levels},
                      {"charts", first.charts},
-                     {"chart seconds", first.chart_seconds},
                      {"first view", json_of(fill)},
                      {"nodes", first.nodes},
                      {"tiles", first.tiles},

@@ -47,12 +47,8 @@ bake::BakeParameters baking(double texel = 0, int most_side = 4096) {
 
 /// Baked light and what it needs.
 struct BakedRoom {
-  BakedRoom(const Scene& scene, LightMaps& maps, NodeSource& source,
-            const bake::BakeParameters& parameters)
-      : rays(scene),
-        visibility(rays, maps),
-        baked(scene, maps, source, visibility, parameters, Progress::none()),
-        texels(baked.layer(0)) {}
+  BakedRoom(const Scene& scene, cache::LightMaps& maps, const bake::BakeParameters& parameters)
+      : baked(scene, maps, parameters, Progress::none()), texels(baked.layer(0)) {}
 
   float read(const Scene& scene, const glm::vec3& position, std::uint32_t side) const {
     const auto [a, b, c] = scene.corners(triangle_of(side));
@@ -65,8 +61,6 @@ struct BakedRoom {
                     uv[0] + u * (uv[1] - uv[0]) + v * (uv[2] - uv[0]));
   }
 
-  RayScene rays;
-  cache::NodeVisibility visibility;
   bake::BakedLight baked;
   std::vector<glm::vec3> texels;
 };
@@ -76,8 +70,9 @@ struct BakedRoom {
 TEST_CASE("Baked textures hold the irradiance of both sides at points of the surface") {
   const Scene scene = with_one_lamp(furnished_room(2));
   FormulaSource source(gentle);
-  LightMaps maps(scene, quiet_parameters());
-  const BakedRoom room(scene, maps, source, baking(0.03));
+  const RayScene rays(scene);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  const BakedRoom room(scene, maps, baking(0.03));
   REQUIRE(room.texels.size() == std::size_t{room.baked.width()} * room.baked.height());
   // Second derivatives of the light are at most 3 x 4.25 a square metre; texels and nodes of 4 cm
   // each are off by an eighth of it, both ways.
@@ -102,8 +97,9 @@ TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it"
     const bool under = p.x > 0.313f && p.x < 0.687f && p.y > 0.313f && p.y < 0.687f && p.z == 0;
     return under ? 0.0f : 10.0f;
   });
-  LightMaps maps(scene, quiet_parameters());
-  const BakedRoom room(scene, maps, source, baking(0.03));
+  const RayScene rays(scene);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  const BakedRoom room(scene, maps, baking(0.03));
   const PrimaryHits points = points_on(scene, 60);
   std::size_t beside = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -125,11 +121,11 @@ TEST_CASE("Lookups beside a plate a little above the floor take nothing of the s
     return p.x > 0.313f && p.x < 0.687f && p.y > 0.313f && p.y < 0.687f && p.z == 0;
   };
   // As gathered light: a little comes into the slit, and nodes know how near the plate is.
-  class PlateSource : public NodeSource {
+  class PlateSource : public cache::NodeSource {
    public:
     explicit PlateSource(decltype(below) below) : below_(below) {}
-    NodeValues value(const NodeBatch& batch, const Progress&) override {
-      NodeValues values{LightTable(1, false), {}, {}};
+    cache::NodeValues value(const cache::NodeBatch& batch, const Progress&) override {
+      cache::NodeValues values{LightTable(1, false), {}, {}};
       for (const glm::vec3& p : batch.points.position) {
         values.light.irradiance.emplace_back(below_(p) ? 0.5f : 10.0f);
         values.error.push_back(0.0f);
@@ -147,8 +143,9 @@ TEST_CASE("Lookups beside a plate a little above the floor take nothing of the s
   builder.box({0.313f, 0.313f, 0.002f}, {0.687f, 0.687f, 0.03f}, white, true);
   const Scene scene = with_one_lamp(std::move(builder).build());
   PlateSource source(below);
-  LightMaps maps(scene, quiet_parameters());
-  const BakedRoom room(scene, maps, source, baking(0.03));
+  const RayScene rays(scene);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  const BakedRoom room(scene, maps, baking(0.03));
   const PrimaryHits points = points_on(scene, 60);
   std::size_t beside = 0, deep = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -177,8 +174,9 @@ TEST_CASE("The brighter side of a triangle is baked, and the other where any lig
   REQUIRE(alone > scene.triangle_count() / 2);
   const auto sides_under = [&](const FormulaSource::Formula& light) {
     FormulaSource source(light);
-    LightMaps maps(scene, quiet_parameters());
-    const BakedRoom room(scene, maps, source, baking(0.1));
+    const RayScene rays(scene);
+    cache::LightMaps maps(rays, quiet_parameters(), source);
+    const BakedRoom room(scene, maps, baking(0.1));
     std::vector<std::uint32_t> sides(room.baked.sides().begin(), room.baked.sides().end());
     std::erase_if(sides, [&](std::uint32_t s) { return shared.contains(triangle_of(s)); });
     return sides;
@@ -238,12 +236,13 @@ TEST_CASE(
     "Texels become coarser until they fit, and those asked for are refused where they do not") {
   const Scene scene = with_one_lamp(furnished_room(2));
   FormulaSource source(gentle);
-  LightMaps maps(scene, quiet_parameters());
-  const BakedRoom small(scene, maps, source, baking(0, 256));
+  const RayScene rays(scene);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  const BakedRoom small(scene, maps, baking(0, 256));
   CHECK(small.baked.width() <= 256);
   CHECK(small.baked.height() <= 256);
   CHECK(small.baked.texel() > 0.02);
-  CHECK_THROWS_AS(BakedRoom(scene, maps, source, baking(0.001, 256)), UsageError);
+  CHECK_THROWS_AS(BakedRoom(scene, maps, baking(0.001, 256)), UsageError);
 }
 
 TEST_CASE("Rectangles on an atlas do not overlap") {

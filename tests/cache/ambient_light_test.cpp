@@ -13,9 +13,10 @@ namespace {
 struct LitSpace {
   explicit LitSpace(FormulaSource::Formula light)
       : scene(with_one_lamp(furnished_room(2))),
+        rays(scene),
         source(std::move(light)),
-        maps(scene, quiet_parameters(0.25, 1)) {
-    maps.fill(points_on(scene, 40), source, Progress::none());
+        maps(rays, quiet_parameters(0.25, 1), source) {
+    maps.fill(points_on(scene, 40), Progress::none());
     std::vector<glm::vec4> of_nodes;
     for (const glm::vec3& irradiance : maps.values().irradiance) {
       of_nodes.emplace_back(irradiance, 0.0f);
@@ -25,8 +26,9 @@ struct LitSpace {
   }
 
   const Scene scene;
+  const RayScene rays;
   FormulaSource source;
-  LightMaps maps;
+  cache::LightMaps maps;
   cache::AmbientLight ambient;
 };
 

@@ -29,8 +29,8 @@ struct DrawnRoom {
       : scene(with_one_lamp(furnished_room(2))),
         rays(scene),
         source(std::move(light)),
-        maps(scene, quiet_parameters()),
-        frames(rays, maps, source) {}
+        maps(rays, quiet_parameters(), source),
+        frames(rays, maps) {}
 
   std::vector<glm::vec3> draw(const Camera& camera, double seconds, float power = 1.0f,
                               int samples = 1, cache::LightMapFrames* coarser = nullptr) {
@@ -44,7 +44,7 @@ struct DrawnRoom {
   const Scene scene;
   const RayScene rays;
   FormulaSource source;
-  LightMaps maps;
+  cache::LightMaps maps;
   cache::LightMapFrames frames;
   DrawnFrame drawn;
 };
@@ -237,7 +237,7 @@ TEST_CASE("Cells that were seen least recently are forgotten, and come back to t
   DrawnRoom free, bounded;
   const Camera behind = Camera::look_at({0.5, 0.3, 1.5}, {0.4, 0.1, 2.5}, {0, 0, 1}, 0.5);
   const auto first = free.draw(in_the_room(0.5), all);
-  const LightMapStatistics one_view = free.maps.statistics();
+  const cache::LightMapStatistics one_view = free.maps.statistics();
   const auto second = free.draw(behind, all);
   const std::uint64_t both = free.maps.statistics().nodes;
   REQUIRE(both > one_view.nodes);

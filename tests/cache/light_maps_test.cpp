@@ -1,5 +1,5 @@
 // Light maps filled from formulas: what is read between nodes, and on what it depends.
-#include "photile/light_maps.hpp"
+#include "cache/light_maps.hpp"
 
 #include <tbb/global_control.h>
 
@@ -25,21 +25,23 @@ float shadow(const glm::vec3& p, std::uint32_t) {
 
 TEST_CASE("Light maps give back uniform light") {
   const Scene room = with_one_lamp(furnished_room(3));
+  const RayScene rays(room);
   FormulaSource source([](const glm::vec3&, std::uint32_t) { return 3.25f; });
-  LightMaps maps(room, quiet_parameters());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   const PrimaryHits hits = points_on(room, 9);
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   for (const float value : read_all(maps, hits)) REQUIRE(value == Approx(3.25).epsilon(1e-6));
   CHECK(source.asked == maps.statistics().nodes);
 }
 
 TEST_CASE("Light maps give back light that varies linearly over a wall") {
   const Scene room = closed_box(diffuse(glm::vec3(0.5f)), 3);
+  const RayScene rays(room);
   const auto light = [](const glm::vec3& p, std::uint32_t) { return 5.0f + p.x - 2 * p.y + p.z; };
   FormulaSource source(light);
-  LightMaps maps(room, quiet_parameters());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   const PrimaryHits hits = points_on(room, 12);
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const double expected = light(hits.position[i], 0);
     // Nodes lie a little within their triangles.
@@ -50,14 +52,15 @@ TEST_CASE("Light maps give back light that varies linearly over a wall") {
 
 TEST_CASE("Between nodes curved light is off by an eighth of its second difference") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f, 2));
+  const RayScene rays(floor);
   // Second derivatives at most 36 each: so far is a chord of 4 cm from its arc, twice.
   const auto light = [](const glm::vec3& p, std::uint32_t) {
     return 20.0f + std::sin(6 * p.x) + std::cos(6 * p.y);
   };
   FormulaSource source(light);
-  LightMaps maps(floor, quiet_parameters());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   const PrimaryHits hits = points_on(floor, 40);
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   const double bound = 2 * 36 * 0.04 * 0.04 / 8;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     REQUIRE(std::abs(read(maps, hits.position[i], hits.oriented_face[i]) -
@@ -67,10 +70,11 @@ TEST_CASE("Between nodes curved light is off by an eighth of its second differen
 
 TEST_CASE("Cells are split where light varies, down to the finest level") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 2.0f));
+  const RayScene rays(floor);
   FormulaSource source(shadow);
-  LightMaps maps(floor, quiet_parameters());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   const PrimaryHits hits = points_on(floor, 200);
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const float x = hits.position[i].x;
     const float value = read(maps, hits.position[i], hits.oriented_face[i]);
@@ -87,24 +91,25 @@ TEST_CASE("Cells are split where light varies, down to the finest level") {
 
 TEST_CASE("What is read does not depend on what was looked at before, or on threads") {
   const Scene room = with_one_lamp(furnished_room(2));
+  const RayScene rays(room);
   const auto light = [](const glm::vec3& p, std::uint32_t s) {
     return 1.0f + std::abs(std::sin(11 * p.x) + std::sin(9 * p.y) * std::cos(13 * p.z)) +
            static_cast<float>(s % 2);
   };
   const PrimaryHits hits = points_on(room, 11);
   FormulaSource source(light);
-  LightMaps at_once(room, quiet_parameters());
-  at_once.fill(hits, source, Progress::none());
+  cache::LightMaps at_once(rays, quiet_parameters(), source);
+  at_once.fill(hits, Progress::none());
   const std::vector<float> expected = read_all(at_once, hits);
   CHECK(*std::min_element(expected.begin(), expected.end()) >= 1.0f);
 
   // One hit after another, from the last on, by one thread.
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  LightMaps one_by_one(room, quiet_parameters());
+  cache::LightMaps one_by_one(rays, quiet_parameters(), source);
   for (std::size_t i = hits.size(); i-- > 0;) {
     PrimaryHits single;
     add_hit(single, hits.position[i], hits.oriented_face[i]);
-    one_by_one.fill(single, source, Progress::none());
+    one_by_one.fill(single, Progress::none());
   }
   CHECK(read_all(one_by_one, hits) == expected);
   CHECK(one_by_one.statistics().nodes == at_once.statistics().nodes);
@@ -118,6 +123,7 @@ TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
   builder.grid({0.3f, 0.3f, 0.001f}, {0.2f, 0, 0}, {0, 0.2f, 0}, 1, white);  // coincident
   builder.add(point_light("lamp", {0, 0, 1}));
   const Scene scene = builder.build();
+  const RayScene rays(scene);
   // A number of its own for each side of each plate.
   const auto light = [&](const glm::vec3&, std::uint32_t s) {
     const std::uint32_t t = triangle_of(s);
@@ -126,9 +132,9 @@ TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
     return std::exp2(static_cast<float>(2 * plate + (up ? 1 : 0)));
   };
   FormulaSource source(light);
-  LightMaps maps(scene, quiet_parameters());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   const PrimaryHits hits = points_on(scene, 7);
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   // Of faces in one place one counts.
   const scene::CoincidentFaces coincident(scene);
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -141,50 +147,56 @@ TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
 
 TEST_CASE("A failing source leaves light maps as they were") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const RayScene rays(floor);
   const PrimaryHits hits = points_on(floor, 10);
-  LightMaps maps(floor, quiet_parameters());
-  FormulaSource failing(
-      [](const glm::vec3&, std::uint32_t) -> float { throw DeviceError("gone"); });
-  CHECK_THROWS_AS(maps.fill(hits, failing, Progress::none()), DeviceError);
+  bool gone = true;
+  FormulaSource source([&](const glm::vec3& p, std::uint32_t face) {
+    if (gone) throw DeviceError("gone");
+    return shadow(p, face);
+  });
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  CHECK_THROWS_AS(maps.fill(hits, Progress::none()), DeviceError);
   CHECK(maps.statistics().nodes == 0);
-  FormulaSource source(shadow);
-  maps.fill(hits, source, Progress::none());
-  LightMaps untroubled(floor, quiet_parameters());
-  untroubled.fill(hits, source, Progress::none());
+  gone = false;
+  maps.fill(hits, Progress::none());
+  cache::LightMaps untroubled(rays, quiet_parameters(), source);
+  untroubled.fill(hits, Progress::none());
   CHECK(read_all(maps, hits) == read_all(untroubled, hits));
 }
 
 TEST_CASE("Light maps are taken in whole, and filled on as if they had never been away") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const RayScene rays(floor);
   const PrimaryHits hits = points_on(floor, 60);
   PrimaryHits some;
   for (std::size_t i = 0; i < hits.size(); i += 7) {
     if (hits.position[i].x < 0.5f) add_hit(some, hits.position[i], hits.oriented_face[i]);
   }
   FormulaSource source(shadow);
-  LightMaps before(floor, quiet_parameters());
-  before.fill(some, source, Progress::none());
-  LightMaps after(floor, quiet_parameters());
+  cache::LightMaps before(rays, quiet_parameters(), source);
+  before.fill(some, Progress::none());
+  cache::LightMaps after(rays, quiet_parameters(), source);
   after.restore(before.contents());
   CHECK(after.statistics().nodes == before.statistics().nodes);
   CHECK(after.statistics().cells == before.statistics().cells);
   CHECK(read_all(after, hits) == read_all(before, hits));
   const std::size_t asked = source.asked;
-  after.fill(some, source, Progress::none());
+  after.fill(some, Progress::none());
   CHECK(source.asked == asked);
-  after.fill(hits, source, Progress::none());
-  LightMaps fresh(floor, quiet_parameters());
-  fresh.fill(hits, source, Progress::none());
+  after.fill(hits, Progress::none());
+  cache::LightMaps fresh(rays, quiet_parameters(), source);
+  fresh.fill(hits, Progress::none());
   CHECK(read_all(after, hits) == read_all(fresh, hits));
   CHECK(after.statistics().nodes == fresh.statistics().nodes);
 }
 
 TEST_CASE("What is forgotten is valued again to the same bits, and the rest stays") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const RayScene rays(floor);
   const PrimaryHits hits = points_on(floor, 60);
   FormulaSource source(shadow);
-  LightMaps maps(floor, quiet_parameters());
-  maps.fill(hits, source, Progress::none());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  maps.fill(hits, Progress::none());
   const std::vector<float> before = read_all(maps, hits);
   const std::uint64_t nodes = maps.statistics().nodes;
   std::vector<std::uint8_t> keep(nodes, 0);
@@ -202,21 +214,22 @@ TEST_CASE("What is forgotten is valued again to the same bits, and the rest stay
   }
   CHECK(still_there > 0);
   CHECK(still_there < hits.size());
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   CHECK(read_all(maps, hits) == before);
   CHECK(maps.statistics().nodes == nodes);
 }
 
 TEST_CASE("Contents that do not fit the scene are refused") {
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const RayScene rays(floor);
   FormulaSource source(shadow);
-  LightMaps maps(floor, quiet_parameters());
-  maps.fill(points_on(floor, 30), source, Progress::none());
+  cache::LightMaps maps(rays, quiet_parameters(), source);
+  maps.fill(points_on(floor, 30), Progress::none());
   const LightMapContents whole = maps.contents();
   const auto refused = [&](const std::function<void(LightMapContents&)>& spoil) {
     LightMapContents contents = whole;
     spoil(contents);
-    LightMaps other(floor, quiet_parameters());
+    cache::LightMaps other(rays, quiet_parameters(), source);
     CHECK_THROWS_AS(other.restore(std::move(contents)), InputError);
   };
   refused([](auto& c) { c.nodes.pop_back(); });
@@ -239,12 +252,14 @@ TEST_CASE("Contents that do not fit the scene are refused") {
 }
 
 TEST_CASE("Light maps refuse what makes no lattice") {
+  FormulaSource source(shadow);
   const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const RayScene rays(floor);
   for (const double spacing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    CHECK_THROWS_AS(LightMaps(floor, quiet_parameters(spacing)), UsageError);
+    CHECK_THROWS_AS(cache::LightMaps(rays, quiet_parameters(spacing), source), UsageError);
   }
   for (const int levels : {0, 13}) {
-    CHECK_THROWS_AS(LightMaps(floor, quiet_parameters(0.04, levels)), UsageError);
+    CHECK_THROWS_AS(cache::LightMaps(rays, quiet_parameters(0.04, levels), source), UsageError);
   }
 }
 
@@ -253,16 +268,17 @@ TEST_CASE(
   SceneBuilder builder;
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
   const Scene scene = with_one_lamp(std::move(builder).build());
+  const RayScene rays(scene);
   const PrimaryHits hits = points_on(scene, 20);
   const auto light = [](const glm::vec3& p, std::uint32_t) { return p.x > 0.41f ? 10.0f : 0.0f; };
   FormulaSource fresh(light), refined(light);
-  LightMaps coarse(scene, quiet_parameters()), fine(scene, quiet_parameters());
-  coarse.fill(hits, fresh, Progress::none(), LightMaps::all_rounds, 1);
-  fine.fill(hits, refined, Progress::none());
+  cache::LightMaps coarse(rays, quiet_parameters(), fresh), fine(rays, quiet_parameters(), refined);
+  coarse.fill(hits, Progress::none(), cache::LightMaps::all_rounds, 1);
+  fine.fill(hits, Progress::none());
   CHECK(fresh.asked < refined.asked);
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const auto read_coarse = [&](const LightMaps& maps) {
-      BilinearWeights bilinear;
+    const auto read_coarse = [&](const cache::LightMaps& maps) {
+      cache::BilinearWeights bilinear;
       REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear, 1));
       float sum = 0;
       for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -279,7 +295,7 @@ class NumberedPoints : public FormulaSource {
  public:
   NumberedPoints() : FormulaSource([](const glm::vec3&, std::uint32_t) { return 1.0f; }) {}
 
-  NodeValues value(const NodeBatch& batch, const Progress& progress) override {
+  cache::NodeValues value(const cache::NodeBatch& batch, const Progress& progress) override {
     for (std::size_t i = 0; i < batch.nodes; ++i) {
       position.insert({batch.number[i], batch.points.position[i]});
       coarse += batch.coarse[i];
@@ -295,13 +311,14 @@ TEST_CASE("light maps: points keep their numbers where coarse levels are skipped
   SceneBuilder builder;
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 0.7f, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
   const Scene scene = with_one_lamp(builder.build());
+  const RayScene rays(scene);
   const PrimaryHits hits = points_on(scene, 40);
   const auto filled = [&](int levels, int skipped) {
-    LightMapParameters parameters = quiet_parameters(0.1, levels);
+    cache::LightMapParameters parameters = quiet_parameters(0.1, levels);
     parameters.skipped_levels = skipped;
-    LightMaps maps(scene, parameters);
     NumberedPoints source;
-    maps.fill(hits, source, Progress::none());
+    cache::LightMaps maps(rays, parameters, source);
+    maps.fill(hits, Progress::none());
     return source;
   };
   const NumberedPoints plain = filled(3, 0), finer = filled(4, 1), finest = filled(5, 2);

@@ -6,20 +6,20 @@
 #include <utility>
 #include <vector>
 
-#include "photile/light_maps.hpp"
+#include "cache/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 
 /// One light, whose irradiance is a function of the place; counts what it was asked.
-class FormulaSource : public NodeSource {
+class FormulaSource : public cache::NodeSource {
  public:
   using Formula = std::function<float(const glm::vec3& position, std::uint32_t oriented_face)>;
   explicit FormulaSource(Formula formula) : formula_(std::move(formula)) {}
 
-  NodeValues value(const NodeBatch& batch, const Progress&) override {
-    NodeValues values{LightTable(1, false), {}, {}};
+  cache::NodeValues value(const cache::NodeBatch& batch, const Progress&) override {
+    cache::NodeValues values{LightTable(1, false), {}, {}};
     for (std::size_t i = 0; i < batch.points.size(); ++i) {
       values.light.irradiance.emplace_back(
           formula_(batch.points.position[i], batch.points.oriented_face[i]));
@@ -42,8 +42,8 @@ inline Scene with_one_lamp(Scene scene) {
 }
 
 /// One light of power 1, noise left out.
-inline LightMapParameters quiet_parameters(double spacing = 0.04, int levels = 4) {
-  LightMapParameters parameters;
+inline cache::LightMapParameters quiet_parameters(double spacing = 0.04, int levels = 4) {
+  cache::LightMapParameters parameters;
   parameters.spacing = spacing;
   parameters.levels = levels;
   parameters.neighbours = 1e12;
@@ -76,8 +76,9 @@ inline PrimaryHits points_on(const Scene& scene, int count) {
 }
 
 /// What light maps say of a point; all of its nodes are valued.
-inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_t oriented_face) {
-  BilinearWeights bilinear;
+inline float read(const cache::LightMaps& maps, const glm::vec3& position,
+                  std::uint32_t oriented_face) {
+  cache::BilinearWeights bilinear;
   if (!maps.find(oriented_face, position, bilinear)) return -1.0f;
   float sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -86,7 +87,7 @@ inline float read(const LightMaps& maps, const glm::vec3& position, std::uint32_
   return sum;
 }
 
-inline std::vector<float> read_all(const LightMaps& maps, const PrimaryHits& hits) {
+inline std::vector<float> read_all(const cache::LightMaps& maps, const PrimaryHits& hits) {
   std::vector<float> values;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     values.push_back(read(maps, hits.position[i], hits.oriented_face[i]));

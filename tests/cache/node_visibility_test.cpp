@@ -1,9 +1,8 @@
 // Nodes under things that stand on a floor: what is read beside these.
-#include "cache/node_visibility.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "cache/light_maps.hpp"
 #include "cache/node_sources.hpp"
 #include "photile/defaults.hpp"
 #include "photile/scene_builder.hpp"
@@ -43,10 +42,10 @@ Scene plates_above_floor() {
 }
 
 /// 10 lx in the gap between the plates and beside them; knows how near these are.
-class PlateSource : public NodeSource {
+class PlateSource : public cache::NodeSource {
  public:
-  NodeValues value(const NodeBatch& batch, const Progress&) override {
-    NodeValues values{LightTable(1, false), {}, {}};
+  cache::NodeValues value(const cache::NodeBatch& batch, const Progress&) override {
+    cache::NodeValues values{LightTable(1, false), {}, {}};
     for (const glm::vec3& p : batch.points.position) {
       const bool open =
           p.y < 0.2f || p.y > 0.8f || p.x < 0.2f || p.x > 0.8f || (p.x > 0.4963f && p.x < 0.5043f);
@@ -80,8 +79,7 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
   const Scene scene = boxes_on_floor();
   const RayScene rays(scene);
   FormulaSource source(open_floor);
-  LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility visibility(rays, maps);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   PrimaryHits hits;
   for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
     for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
@@ -91,15 +89,15 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
       }
     }
   }
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   std::size_t dark = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CAPTURE(hits.position[i].x, hits.position[i].y);
     const std::uint32_t oriented_face = hits.oriented_face[i];
     if (read(maps, hits.position[i], oriented_face) < 9.0f) ++dark;
-    BilinearWeights bilinear;
+    cache::BilinearWeights bilinear;
     REQUIRE(maps.find(oriented_face, hits.position[i], bilinear));
-    REQUIRE(visibility.keep_visible(oriented_face, hits.position[i], bilinear));
+    REQUIRE(maps.keep_visible(oriented_face, hits.position[i], bilinear));
     float light = 0, weight = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
       light += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
@@ -116,19 +114,18 @@ TEST_CASE("a place in a slot sees none of the nodes under its sides") {
   const Scene scene = boxes_on_floor();
   const RayScene rays(scene);
   FormulaSource source(open_floor);
-  LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility visibility(rays, maps);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     const glm::vec3 place(0.5f * (between_from + between_to), y, 0);
     add_hit(hits, place, floor_under(scene, place));
   }
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    BilinearWeights bilinear;
+    cache::BilinearWeights bilinear;
     REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
-    const BilinearWeights before = bilinear;
-    CHECK_FALSE(visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
+    const cache::BilinearWeights before = bilinear;
+    CHECK_FALSE(maps.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
     CHECK(bilinear.weight == before.weight);
   }
 }
@@ -139,8 +136,7 @@ TEST_CASE(
   const Scene scene = plates_above_floor();
   const RayScene rays(scene);
   PlateSource source;
-  LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility visibility(rays, maps);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   PrimaryHits hits;
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
     for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
@@ -148,12 +144,12 @@ TEST_CASE(
       add_hit(hits, place, floor_under(scene, place));
     }
   }
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CAPTURE(hits.position[i].x, hits.position[i].y);
-    BilinearWeights bilinear;
+    cache::BilinearWeights bilinear;
     REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
-    CHECK(visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
+    CHECK(maps.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
     float light = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
       light += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
@@ -181,16 +177,15 @@ TEST_CASE("all nodes of open floor and of a bowl are seen") {
   const RayScene rays(scene);
   // Uneven everywhere, so that all nodes are looked at.
   FormulaSource source([](const glm::vec3& p, std::uint32_t) { return std::exp(200 * p.y); });
-  LightMaps maps(scene, quiet_parameters());
-  const cache::NodeVisibility visibility(rays, maps);
+  cache::LightMaps maps(rays, quiet_parameters(), source);
   const PrimaryHits hits = points_on(scene, 8);
-  maps.fill(hits, source, Progress::none());
+  maps.fill(hits, Progress::none());
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    BilinearWeights bilinear;
+    cache::BilinearWeights bilinear;
     REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
-    const BilinearWeights before = bilinear;
-    REQUIRE(maps.uneven(bilinear, defaults::light_map_contrast));
-    REQUIRE(visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
+    const cache::BilinearWeights before = bilinear;
+    REQUIRE(maps.uneven(bilinear));
+    REQUIRE(maps.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
     for (std::size_t corner = 0; corner < 4; ++corner) {
       CHECK(bilinear.weight[corner] == Approx(before.weight[corner]).epsilon(1e-5));
     }

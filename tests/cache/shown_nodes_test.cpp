@@ -22,8 +22,8 @@ float rising_light(const glm::vec3& p, std::uint32_t) { return std::exp(2 * p.x 
 class FloorSource : public FormulaSource {
  public:
   using FormulaSource::FormulaSource;
-  NodeValues value(const NodeBatch& batch, const Progress& progress) override {
-    NodeValues values = FormulaSource::value(batch, progress);
+  cache::NodeValues value(const cache::NodeBatch& batch, const Progress& progress) override {
+    cache::NodeValues values = FormulaSource::value(batch, progress);
     for (std::size_t node = 0; node < batch.nodes; ++node) {
       values.error.push_back(0);
       values.distance.push_back(surroundings(batch.points.position[node]));
@@ -36,8 +36,9 @@ class FloorSource : public FormulaSource {
 struct Floor {
   explicit Floor(FormulaSource::Formula light, int levels = 4)
       : scene(with_one_lamp(floor_scene())),
+        rays(scene),
         source(std::move(light)),
-        maps(scene, quiet_parameters(0.5, levels)) {}
+        maps(rays, quiet_parameters(0.5, levels), source) {}
 
   static Scene floor_scene() {
     Scene scene = plate(diffuse(glm::vec3(0.5f)), floor_side);
@@ -52,7 +53,7 @@ struct Floor {
     for_points([&](float x, float y) {
       if (x >= from && x <= to) add_hit(hits, {x, y, 0}, oriented(0, 0));
     });
-    maps.fill(hits, source, Progress::none(), levels);
+    maps.fill(hits, Progress::none(), levels);
   }
 
   template <class Visit>
@@ -66,8 +67,9 @@ struct Floor {
     }
   }
 
-  BilinearWeights at(float x, float y, std::vector<cache::MissingCell>* lacking = nullptr) const {
-    BilinearWeights bilinear;
+  cache::BilinearWeights at(float x, float y,
+                            std::vector<cache::MissingCell>* lacking = nullptr) const {
+    cache::BilinearWeights bilinear;
     const std::uint32_t chart = maps.charts().chart_of()[oriented(0, 0)];
     const auto missing = maps.tiles().find(chart, {x, y, 0}, bilinear);
     if (missing && lacking) lacking->push_back(*missing);
@@ -97,12 +99,13 @@ struct Floor {
   }
 
   const Scene scene;
+  const RayScene rays;
   FloorSource source;
-  LightMaps maps;
+  cache::LightMaps maps;
   cache::ShownNodes nodes;
 };
 
-float shown_between(std::span<const glm::vec4> light, const BilinearWeights& bilinear) {
+float shown_between(std::span<const glm::vec4> light, const cache::BilinearWeights& bilinear) {
   float sum = 0;
   for (std::size_t i = 0; i < 4; ++i) sum += bilinear.weight[i] * light[bilinear.node[i]].x;
   return sum;
@@ -161,7 +164,7 @@ TEST_CASE("A node that is shut in counts for little around it while others are l
   floor.source.surroundings = [&](const glm::vec3& p) { return is_shut_in(p) ? 0.005f : 10.0f; };
   floor.fill(0, floor_side, 1);
   floor.nodes.mix(floor.maps, at_full_power, floor.lacking(), false);
-  const BilinearWeights beside = floor.at(2.2f, 2.2f);
+  const cache::BilinearWeights beside = floor.at(2.2f, 2.2f);
   CHECK(shown_between(floor.nodes.held().light(), beside) < 0.7f);
   CHECK(shown_between(floor.nodes.light(), floor.nodes.weighted(beside)) > 0.95f);
 }

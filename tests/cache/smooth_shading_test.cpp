@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "cache/light_maps.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
@@ -212,10 +212,10 @@ TEST_CASE("Many lights are shaded as smoothly") {
 }
 
 /// Nodes that tell light by the normal.
-class TurnedSource : public NodeSource {
+class TurnedSource : public cache::NodeSource {
  public:
-  NodeValues value(const NodeBatch& batch, const Progress&) override {
-    NodeValues values{LightTable(1, false), {}, {}};
+  cache::NodeValues value(const cache::NodeBatch& batch, const Progress&) override {
+    cache::NodeValues values{LightTable(1, false), {}, {}};
     for (std::size_t node = 0; node < batch.nodes; ++node) {
       const glm::vec3& at = batch.points.position[node];
       values.light.irradiance.emplace_back(1.0f + at.x * at.x);
@@ -229,7 +229,8 @@ class TurnedSource : public NodeSource {
 
 TEST_CASE("Light by the normal is kept, taken in again and refused where it is no number") {
   const Scene scene = in_room(sphere, true, 1);
-  LightMapParameters parameters;
+  const RayScene rays(scene);
+  cache::LightMapParameters parameters;
   parameters.powers = {1.0};
   const auto hits_on_all = [&] {
     PrimaryHits hits;
@@ -241,11 +242,11 @@ TEST_CASE("Light by the normal is kept, taken in again and refused where it is n
     return hits;
   };
   TurnedSource source;
-  LightMaps maps(scene, parameters);
-  maps.fill(hits_on_all(), source, Progress::none());
+  cache::LightMaps maps(rays, parameters, source);
+  maps.fill(hits_on_all(), Progress::none());
   const LightMapContents whole = maps.contents();
   REQUIRE(whole.values.by_normal.size() == whole.nodes.size());
-  LightMaps same(scene, parameters);
+  cache::LightMaps same(rays, parameters, source);
   same.restore(whole);
   CHECK(same.values().by_normal == whole.values.by_normal);
   std::vector<std::uint8_t> keep(whole.nodes.size());
@@ -257,7 +258,7 @@ TEST_CASE("Light by the normal is kept, taken in again and refused where it is n
   const auto refused = [&](const auto& spoil) {
     LightMapContents contents = whole;
     spoil(contents.values.by_normal);
-    LightMaps other(scene, parameters);
+    cache::LightMaps other(rays, parameters, source);
     CHECK_THROWS_AS(other.restore(std::move(contents)), InputError);
   };
   refused([](auto& by_normal) { by_normal.pop_back(); });

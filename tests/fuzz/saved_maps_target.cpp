@@ -7,9 +7,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "cache/light_maps.hpp"
 #include "common/content_hash.hpp"
 #include "fuzz_files.hpp"
-#include "photile/light_maps.hpp"
 #include "saved_maps/saved_maps.hpp"
 #include "scene/scene_queries.hpp"
 #include "test_scenes.hpp"
@@ -72,14 +72,18 @@ std::vector<unsigned char> sealed(Bytes bytes) {
 
 /// Takes light maps in, as a render does, and looks something up in them.
 void use_light_maps(LightMapContents contents) {
-  LightMapParameters parameters;
+  cache::LightMapParameters parameters;
   parameters.spacing = 0.25;
   parameters.levels = 3;
   parameters.powers = {1.0};
-  LightMaps maps(floor_scene(), parameters);
+  struct : cache::NodeSource {  // what is taken in needs no source
+    cache::NodeValues value(const cache::NodeBatch&, const Progress&) override { return {}; }
+  } no_source;
+  static const RayScene rays(floor_scene());
+  cache::LightMaps maps(rays, parameters, no_source);
   maps.restore(std::move(contents));
   for (const float x : {0.0f, 0.3f, 1.0f}) {
-    BilinearWeights blend{};
+    cache::BilinearWeights blend{};
     if (!maps.find(0, {x, 0.5f * x, 0}, blend)) continue;
     for (const std::uint32_t node : blend.node) {
       require(node < maps.values().irradiance.size(), "a node that is not there");

@@ -50,7 +50,7 @@ std::span<const glm::vec3> light_of(const LightTable& values, std::uint32_t node
 }
 
 /// Light of a layer between nodes, at power 1.
-glm::vec3 interpolated(const LightTable& values, const BilinearWeights& bilinear,
+glm::vec3 interpolated(const LightTable& values, const cache::BilinearWeights& bilinear,
                        std::size_t layer) {
   glm::vec3 light(0.0f);
   for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
@@ -62,8 +62,8 @@ glm::vec3 interpolated(const LightTable& values, const BilinearWeights& bilinear
 }
 
 /// The irradiance of a plane of this normal.
-glm::vec3 turned(const LightTable& values, const BilinearWeights& bilinear, std::size_t layer,
-                 const glm::vec3& normal) {
+glm::vec3 turned(const LightTable& values, const cache::BilinearWeights& bilinear,
+                 std::size_t layer, const glm::vec3& normal) {
   glm::vec4 by_normal(0.0f);
   for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
     for_each_value(values, bilinear.node[i], layer, [&](std::size_t value) {
@@ -78,12 +78,11 @@ constexpr double widest_texel = 1e6;
 
 }  // namespace
 
-BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-                       const cache::NodeVisibility& visibility, const BakeParameters& parameters,
+BakedLight::BakedLight(const Scene& scene, cache::LightMaps& maps, const BakeParameters& parameters,
                        Progress& progress)
     : scene_(scene), maps_(maps) {
   progress.begin("find lit surfaces", 0, "");
-  choose_sides(source, parameters, progress);
+  choose_sides(parameters, progress);
   progress.end();
   const auto most_side = static_cast<std::uint32_t>(parameters.most_side);
   texel_ = parameters.texel > 0 ? parameters.texel : maps.charts().spacing() / 2;
@@ -106,11 +105,10 @@ BakedLight::BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
     }
     texel_ *= coarser;
   }
-  spread(fill(source, visibility, progress), visibility);
+  spread(fill(progress));
 }
 
-void BakedLight::choose_sides(NodeSource& source, const BakeParameters& parameters,
-                              const Progress& progress) {
+void BakedLight::choose_sides(const BakeParameters& parameters, const Progress& progress) {
   const std::span<const std::uint32_t> chart_of = maps_.charts().chart_of();
   const scene::CoincidentFaces& coincident = maps_.charts().coincident();
   const auto counts = [&](std::uint32_t s) {
@@ -127,11 +125,11 @@ void BakedLight::choose_sides(NodeSource& source, const BakeParameters& paramete
     add(samples, middle, s);
     for (const glm::vec3& corner : corners) add(samples, 0.5f * (middle + corner), s);
   }
-  maps_.fill(samples, source, progress);
+  maps_.fill(samples, progress);
   std::vector<double> light_at(samples.size());
   const std::size_t layers = parameters.powers.size();
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    BilinearWeights bilinear{};
+    cache::BilinearWeights bilinear{};
     maps_.find(samples.oriented_face[i], samples.position[i], bilinear);
     for (std::size_t layer = 0; layer < layers; ++layer) {
       light_at[i] += parameters.powers[layer] *
@@ -217,9 +215,8 @@ glm::vec3 BakedLight::point(const Placed& placed, std::uint32_t x, std::uint32_t
 
 /// A texel that no triangle covers has the light of the surface nearest to it, so that a lookup at
 /// an edge blends light of the surface alone.
-PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& visibility,
-                             Progress& progress) {
-  BilinearWeights nothing{};
+PrimaryHits BakedLight::fill(Progress& progress) {
+  cache::BilinearWeights nothing{};
   nothing.node.fill(none);
   bilinear_.assign(std::size_t{atlas_.width} * atlas_.height, nothing);
   PrimaryHits points;
@@ -229,12 +226,12 @@ PrimaryHits BakedLight::fill(NodeSource& source, const cache::NodeVisibility& vi
   PrimaryHits hits;
   std::vector<std::size_t> texels;
   const auto value = [&] {
-    maps_.fill(hits, source, progress);
+    maps_.fill(hits, progress);
     tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
       const trace::FlushDenormals flush_denormals;
-      BilinearWeights& bilinear = bilinear_[texels[i]];
+      cache::BilinearWeights& bilinear = bilinear_[texels[i]];
       maps_.find(hits.oriented_face[i], hits.position[i], bilinear);
-      visibility.keep_visible(hits.oriented_face[i], hits.position[i], bilinear);
+      maps_.keep_visible(hits.oriented_face[i], hits.position[i], bilinear);
     });
     for (std::size_t i = 0; i < texels.size(); ++i) {
       points.position[texels[i]] = hits.position[i];
@@ -290,10 +287,10 @@ std::uint64_t BakedLight::used_texels() const {
 /// has; and so do those in the slit below a thing that stands a little above the surface, such as a
 /// skirting board, where next to no light comes. A slit as high as texels are apart is lit where a
 /// lookup beside the thing reaches.
-void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& visibility) {
-  const std::vector<BilinearWeights> found = bilinear_;
+void BakedLight::spread(const PrimaryHits& points) {
+  const std::vector<cache::BilinearWeights> found = bilinear_;
   const LightTable& values = maps_.values();
-  const auto lit = [&](const BilinearWeights& bilinear) {
+  const auto lit = [&](const cache::BilinearWeights& bilinear) {
     for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
       if (bilinear.weight[i] == 0.0f) continue;
       const auto light = light_of(values, bilinear.node[i]);
@@ -305,7 +302,7 @@ void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& 
     return false;
   };
   const auto slit = static_cast<float>(texel_ / 4);
-  const auto may_be_covered = [&](const BilinearWeights& bilinear) {
+  const auto may_be_covered = [&](const cache::BilinearWeights& bilinear) {
     return std::any_of(bilinear.node.begin(), bilinear.node.end(), [&](std::uint32_t node) {
       return node != none && maps_.distance(node) < slit;
     });
@@ -332,10 +329,10 @@ void BakedLight::spread(const PrimaryHits& points, const cache::NodeVisibility& 
           if (nx >= rectangle.width || ny >= rectangle.height) continue;
           const std::size_t beside = texel(nx, ny);
           if (!lit(found[beside])) continue;
-          const bool hidden = dark && !visibility.sees(member_[placed.chart], point(placed, x, y),
-                                                       point(placed, nx, ny));
+          const bool hidden = dark && !maps_.sees(member_[placed.chart], point(placed, x, y),
+                                                  point(placed, nx, ny));
           if (!hidden &&
-              !(covered && visibility.is_in_slit(on_surface(beside), on_surface(here), slit))) {
+              !(covered && maps_.is_in_slit(on_surface(beside), on_surface(here), slit))) {
             continue;
           }
           bilinear_[here] = found[beside];
@@ -388,7 +385,7 @@ std::vector<bool> BakedLight::reaches(std::span<const std::uint8_t> sides,
     const glm::uvec2 high(glm::max(glm::max(corners[0], corners[1]), corners[2]) * size);
     for (std::uint32_t y = low.y; y <= std::min(high.y, atlas_.height - 1); ++y) {
       for (std::uint32_t x = low.x; x <= std::min(high.x, atlas_.width - 1); ++x) {
-        const BilinearWeights& bilinear = bilinear_[std::size_t{y} * atlas_.width + x];
+        const cache::BilinearWeights& bilinear = bilinear_[std::size_t{y} * atlas_.width + x];
         if (bilinear.node[0] == none) continue;
         for (std::size_t layer = 0; layer < layers; ++layer) {
           if (!reached[layer] && interpolated(values, bilinear, layer) != glm::vec3(0.0f)) {

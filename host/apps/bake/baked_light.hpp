@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/node_visibility.hpp"
-#include "photile/light_maps.hpp"
+#include "cache/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
@@ -70,10 +69,8 @@ class BakedLight {
  public:
   /// Values the nodes that texels need. Errors: UsageError where the charts do not fit the picture
   /// at this distance of texels; those of LightMaps::fill.
-  ///   visibility   of the light maps
   ///   progress   reports a stage
-  BakedLight(const Scene& scene, LightMaps& maps, NodeSource& source,
-             const cache::NodeVisibility& visibility, const BakeParameters& parameters,
+  BakedLight(const Scene& scene, cache::LightMaps& maps, const BakeParameters& parameters,
              Progress& progress);
 
   std::uint32_t width() const { return atlas_.width; }
@@ -112,24 +109,24 @@ class BakedLight {
     TexelRectangle rectangle;
   };
 
-  void choose_sides(NodeSource& source, const BakeParameters& parameters, const Progress& progress);
+  void choose_sides(const BakeParameters& parameters, const Progress& progress);
   bool place_charts(double texel, std::uint32_t most_side);
   /// Returns the points of all texels; the side is none where there is none.
-  PrimaryHits fill(NodeSource& source, const cache::NodeVisibility& visibility, Progress& progress);
-  void spread(const PrimaryHits& points, const cache::NodeVisibility& visibility);
+  PrimaryHits fill(Progress& progress);
+  void spread(const PrimaryHits& points);
   glm::dvec2 place(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
   glm::vec3 point(const Placed& placed, std::uint32_t x, std::uint32_t y) const;
 
   const Scene& scene_;
-  LightMaps& maps_;
+  cache::LightMaps& maps_;
   std::vector<std::uint32_t> sides_;
   double texel_ = 0;
   Atlas atlas_;
   std::vector<Placed> placed_;
-  std::vector<std::uint32_t> place_of_chart_;  ///< into placed_, or none
-  std::vector<std::uint32_t> member_;          ///< per chart: an oriented face of it
-  std::vector<BilinearWeights> bilinear_;      ///< per texel
-  std::vector<glm::vec3> normal_;              ///< per texel, where light depends on it
+  std::vector<std::uint32_t> place_of_chart_;     ///< into placed_, or none
+  std::vector<std::uint32_t> member_;             ///< per chart: an oriented face of it
+  std::vector<cache::BilinearWeights> bilinear_;  ///< per texel
+  std::vector<glm::vec3> normal_;                 ///< per texel, where light depends on it
 };
 
 }  // namespace photile::bake

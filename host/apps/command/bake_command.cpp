@@ -50,8 +50,7 @@ void run_bake(BakeOptions& options) {
   cache::SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights)
     options.baking.powers.push_back(mix.power_in_picture(light));
-  const bake::BakedLight baked(scene, cache.maps(), session.light().nodes(), cache.visibility(),
-                               options.baking, progress);
+  const bake::BakedLight baked(scene, cache.maps(), options.baking, progress);
   bake::write_baked(options.output, scene, baked, mix);
   keep_light_maps(session.light_map_contents(), render, progress);
   progress.note(fmt::format("{}: {} x {} texels, {:.3g} cm apart", options.output, baked.width(),

@@ -137,8 +137,7 @@ class LitRoom {
     if (!baking.exact) {  // finer in a small room, as nodes are
       baking.texel = std::min(defaults::published_texel, cache.maps().charts().spacing() / 2);
     }
-    baked_.emplace(scene_, cache.maps(), session_.light().nodes(), cache.visibility(), baking,
-                   progress);
+    baked_.emplace(scene_, cache.maps(), baking, progress);
   }
 
   const Scene& scene_;

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "photile/light_maps.hpp"
+#include "cache/light_maps.hpp"
 
 namespace photile::cache {
 

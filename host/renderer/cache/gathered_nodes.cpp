@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cache/irradiance_filter.hpp"
-#include "cache/node_visibility.hpp"
+#include "cache/light_maps.hpp"
 #include "estimate/map_order.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
@@ -138,14 +138,14 @@ NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; 
 
 std::uint64_t GatheredNodes::bytes() const {
   const std::size_t rows = former_.row_of.size() + raw_.row_of.size();
-  return former_.light.bytes() + raw_.light.bytes() + nodes_.bytes() + gather_.bytes() +
+  return former_.light.bytes() + raw_.light.bytes() + nodes_.bytes() + gather_.ends().bytes() +
          rows * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 void GatheredNodes::forget() {
   raw_ = {};
   nodes_ = {};
-  gather_.forget();
+  gather_.ends().clear();
 }
 
 NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {

@@ -10,7 +10,7 @@
 
 #include "cache/irradiance_filter.hpp"
 #include "cache/irradiance_gather.hpp"
-#include "photile/light_maps.hpp"
+#include "cache/node_source.hpp"
 
 namespace photile::cache {
 

@@ -3,12 +3,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "cache/ray_ends.hpp"
 #include "common/byte_stream.hpp"
 #include "estimate/map_order.hpp"
 #include "light/light_at_points.hpp"
@@ -48,8 +50,8 @@ struct RunLight {
   std::uint32_t first_light_sample;  ///< of a batch
   const PrimaryHits& points;
   std::span<const std::uint64_t> number;
-  const IndirectLight* traced;  ///< null where no rays are
-  const SecondaryLight& secondary;
+  const RayEnds* traced;       ///< null where no rays are
+  const LightTable& of_ends;   ///< of the nodes that rays read where they end
   const LightTable& caustics;  ///< of all points; empty where there are none
   double caustic_relative_variance;
   std::span<const double> layer_powers;
@@ -57,8 +59,8 @@ struct RunLight {
   /// Adds the indirect light of point i of the run, which is `point` of all.
   void add_indirect(std::size_t i, BatchSums& sums) const {
     if (!traced) return;
-    secondary.add_point(*traced, i, static_cast<std::uint32_t>(parameters.batches),
-                        static_cast<std::uint32_t>(rays_per_batch), sums);
+    traced->add_point(of_ends, i, static_cast<std::uint32_t>(parameters.batches),
+                      static_cast<std::uint32_t>(rays_per_batch), sums);
     const trace::HemisphereRays& met = traced->rays;
     for (std::size_t e = met.first_direct[i]; e < met.first_direct[i + 1]; ++e) {
       const VisibleEmission& light = met.ray_hits.direct[e];
@@ -288,6 +290,36 @@ void append(std::span<const std::byte> bytes, GatheredParts& all) {
   reader.append_to(all.distance);
 }
 
+/// 1 for each oriented face of a slat: a chart narrower than `width` metres, with other surface in
+/// front of it at a smaller distance than its width.
+std::vector<std::uint8_t> slats(const RayScene& rays, const Charts& charts, double width) {
+  const Scene& scene = rays.scene();
+  const std::span<const std::uint32_t> chart_of = charts.chart_of();
+  std::vector<std::uint8_t> is_slat(charts.size(), 0);
+  tbb::parallel_for(std::size_t{0}, chart_of.size(), [&](std::size_t face) {
+    const std::uint32_t chart = chart_of[face];
+    if (chart == none || !(charts[chart].width() < width)) return;
+    const auto oriented_face = static_cast<std::uint32_t>(face);
+    const auto corners = scene.corners(triangle_of(oriented_face));
+    const glm::vec3 reach =
+        static_cast<float>(charts[chart].width()) * glm::vec3(face_normal(scene, oriented_face));
+    const glm::vec3 sum = corners[0] + corners[1] + corners[2];
+    for (const glm::vec3& corner : corners) {
+      const glm::vec3 foot = (sum + 3.0f * corner) / 6.0f;
+      if (!trace::occluded(rays, foot + defaults::visibility_ray_offset * reach, foot + reach)) {
+        continue;
+      }
+      std::atomic_ref(is_slat[chart]).store(1, std::memory_order_relaxed);
+      return;
+    }
+  });
+  std::vector<std::uint8_t> of_faces;
+  for (const std::uint32_t chart : chart_of) {
+    of_faces.push_back(chart == none ? std::uint8_t{0} : is_slat[chart]);
+  }
+  return of_faces;
+}
+
 void check_range(const char* what, int value, int low, int high) {
   if (value < low || value > high)
     throw UsageError(std::string(what) + ": " + std::to_string(value) + " is not between " +
@@ -297,11 +329,11 @@ void check_range(const char* what, int value, int low, int high) {
 }  // namespace
 
 IrradianceGather::IrradianceGather(const RayScene& rays, light::LightAtPoints& photons,
-                                   light::LightAtPoints& of_nodes,
-                                   const LightMapParameters& secondary,
+                                   light::LightAtPoints& of_nodes, const LightMapParameters& ends,
                                    light::LightAtPoints* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
+      photons_(photons),
       caustics_(caustics),
       parameters_(parameters),
       light_sampler_(rays.scene()),
@@ -309,7 +341,8 @@ IrradianceGather::IrradianceGather(const RayScene& rays, light::LightAtPoints& p
       layer_powers_(light::layer_powers(rays.scene())),
       bright_(parameters.rays > 0 ? trace::bright_surface(rays, layer_powers_, parameters.seed)
                                   : trace::Targets({})),
-      secondary_(rays, photons, of_nodes, secondary) {
+      of_ends_(of_nodes),
+      ends_(rays, ends, of_ends_, LightMaps::Visibility::of_cells) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("light samples from a point", parameters.light_samples, 0, limits::max_direct_rays);
   check_range("batches of rays", parameters.batches, 2, LightTable::max_batches);
@@ -319,7 +352,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
                                        std::span<const std::uint64_t> number, int rays,
                                        int light_samples, const Progress& progress,
                                        NodeRays before) {
-  auto* const processes = secondary_.processes();
+  auto* const processes = ends_.processes();
   if (!processes) {
     return gather_own(points, number, rays, light_samples, before, points.size(), progress);
   }
@@ -340,7 +373,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            std::span<const std::uint64_t> number, int rays,
                                            int light_samples, NodeRays before, std::size_t most,
                                            const Progress& progress) {
-  const SecondaryLight::Costs costs_before = secondary_.costs();
+  const std::uint64_t nodes_before = ends_.statistics().nodes;
   const Stopwatch caustics_watch;
   const LightTable caustics = caustics_ ? caustics_->at(points, progress) : LightTable{};
   costs_.estimate_seconds += caustics_watch.seconds();
@@ -353,6 +386,9 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
       defaults::most_light_samples_again * light_samples /
       (std::max(1, before.light_samples + light_samples) * parameters_.batches);
   const float near = caustics_ ? 0.0f : static_cast<float>(parameters_.near);
+  if (near > 0 && rays > 0 && points.size() > 0 && slats_.empty()) {
+    slats_ = slats(rays_, ends_.charts(), near / 2);
+  }
   const trace::HemisphereParameters hemisphere{
       .batches = parameters_.batches,
       .rays = rays_per_batch,
@@ -366,8 +402,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
               ? static_cast<float>(rays_per_batch) / static_cast<float>(light_samples_per_batch)
               : 0.0f,
       .near = near,
-      .slats = near > 0 && rays > 0 && points.size() > 0 ? secondary_.slats(near / 2)
-                                                         : std::span<const std::uint8_t>{},
+      .slats = slats_,
       .bright = &bright_};
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
@@ -377,15 +412,18 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
     progress.throw_if_cancelled();
     const std::size_t first = std::min(round, points.size());
     const std::size_t count = std::min(at_a_time, points.size() - first);
-    IndirectLight traced;
+    RayEnds traced;
     if (rays_per_batch > 0) {
       const Stopwatch stopwatch;
       trace::HemisphereRays hemispheres =
           trace::trace_hemispheres(rays_, points, first, count, number, hemisphere);
       costs_.ray_seconds += stopwatch.seconds();
       const Stopwatch estimate_watch;
-      traced = secondary_.query(std::move(hemispheres), progress);
+      traced = light_at_ends(std::move(hemispheres), photons_, ends_, progress);
       costs_.estimate_seconds += estimate_watch.seconds();
+      costs_.rays += traced.rays.ray_hits.rays;
+      costs_.hits += traced.slot.size();
+      costs_.estimated += traced.found.size();
     }
     const Stopwatch sum_watch;
     add_run(
@@ -401,7 +439,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
          .points = points,
          .number = number,
          .traced = rays_per_batch > 0 ? &traced : nullptr,
-         .secondary = secondary_,
+         .of_ends = ends_.values(),
          .caustics = caustics,
          .caustic_relative_variance =
              caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
@@ -409,9 +447,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
         first, count, all);
     costs_.sum_seconds += sum_watch.seconds();
   }
-  costs_.rays += secondary_.costs().rays - costs_before.rays;
-  costs_.hits += secondary_.costs().hits - costs_before.hits;
-  costs_.estimated += secondary_.costs().estimated - costs_before.estimated;
+  costs_.estimated += ends_.statistics().nodes - nodes_before;
   return all;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cache/secondary_light.hpp"
+#include "cache/light_maps.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
@@ -70,13 +70,14 @@ struct GatheredParts {
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light but that of hot spots (trace_photons_beside_hot_spots), and
-  ///              `of_nodes`, as SecondaryLight has them; k of about 100 suffices
-  ///   secondary  light maps for these photons, read where rays meet surface
+  ///   photons    of all light but that of hot spots (trace_photons_beside_hot_spots), at ends that
+  ///              read no light maps, and `of_nodes` that at nodes: the same, unless several
+  ///              processes have the photons; k of about 100 suffices
+  ///   ends       light maps of one level for these photons, read where rays meet surface
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
   IrradianceGather(const RayScene& rays, light::LightAtPoints& photons,
-                   light::LightAtPoints& of_nodes, const LightMapParameters& secondary,
+                   light::LightAtPoints& of_nodes, const LightMapParameters& ends,
                    light::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
@@ -96,12 +97,8 @@ class IrradianceGather {
                     const Progress& progress = Progress::none());
 
   const RayScene& rays() const { return rays_; }
-  /// The light that rays find where they end.
-  SecondaryLight& secondary() { return secondary_; }
-
-  /// Bytes of the light maps where rays end; `forget` empties them.
-  std::uint64_t bytes() const { return secondary_.bytes(); }
-  void forget() { secondary_.forget(); }
+  /// The light maps where rays end.
+  LightMaps& ends() { return ends_; }
 
   /// The costs of all calls so far.
   struct Costs {
@@ -123,13 +120,16 @@ class IrradianceGather {
                            const Progress& progress);
 
   const RayScene& rays_;
+  light::LightAtPoints& photons_;
   light::LightAtPoints* caustics_;
   IrradianceGatherParameters parameters_;
   trace::LightSampler light_sampler_;
   std::vector<glm::vec3> emitted_;  ///< per light
   std::vector<double> layer_powers_;
   trace::Targets bright_;  ///< empty where light is spread
-  SecondaryLight secondary_;
+  ValuedBy of_ends_;
+  LightMaps ends_;
+  std::vector<std::uint8_t> slats_;  ///< per oriented face, see slats(); empty before it is asked
   Costs costs_;
 };
 

@@ -1,20 +1,16 @@
 // Contents of light maps: saved, taken in again, and dropped in part.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 
-#include "cache/light_maps_impl.hpp"
+#include "cache/light_maps.hpp"
 #include "cache/node_batch.hpp"
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
 
-namespace photile {
-
-using cache::NodeCoordinates;
-using cache::Tile;
-using cache::Tiles;
-
+namespace photile::cache {
 namespace {
 
 /// Whether these are the light of `nodes` nodes, which the content of a file may not be.
@@ -85,41 +81,48 @@ std::vector<std::uint8_t> corners_of(const Tiles& tiles, std::span<const std::ui
 
 LightMapContents LightMaps::contents() const {
   LightMapContents contents;
-  for (const NodeCoordinates& at : impl_->coordinates) {
+  for (const NodeCoordinates& at : coordinates_) {
     contents.nodes.push_back({at.chart, at.x, at.y});
   }
-  contents.values = impl_->values;
-  contents.error = impl_->error;
-  contents.distance = impl_->distance;
-  for (std::uint32_t i = 0; i < impl_->tiles.size(); ++i) {
-    const Tile& tile = impl_->tiles[i];
+  contents.values = values_;
+  contents.error = error_;
+  contents.distance = distance_;
+  for (std::uint32_t i = 0; i < tiles_.size(); ++i) {
+    const Tile& tile = tiles_[i];
     contents.tiles.push_back({tile.known, tile.split, tile.chart, tile.level, tile.x, tile.y});
   }
   return contents;
 }
 
 std::vector<std::uint32_t> LightMaps::forget(std::span<const std::uint8_t> keep) {
-  const std::vector<std::uint64_t> kept = kept_cells(impl_->tiles, keep);
-  const std::vector<std::uint8_t> requested = corners_of(impl_->tiles, kept, keep.size());
-  LightMapContents all = contents(), left;
-  std::vector<std::uint32_t> former;
-  for (std::uint32_t node = 0; node < requested.size(); ++node) {
-    if (requested[node] == 0) continue;
+  const std::vector<std::uint64_t> kept = kept_cells(tiles_, keep);
+  const std::vector<std::uint8_t> needed = corners_of(tiles_, kept, keep.size());
+  std::vector<std::uint32_t> former, number(keep.size(), none);
+  for (std::uint32_t node = 0; node < needed.size(); ++node) {
+    if (needed[node] == 0) continue;
+    number[node] = static_cast<std::uint32_t>(former.size());
     former.push_back(node);
-    left.nodes.push_back(all.nodes[node]);
-    if (all.error.empty()) continue;
-    left.error.push_back(all.error[node]);
-    left.distance.push_back(all.distance[node]);
   }
-  left.values = all.values.gathered(former);
-  for (std::uint32_t index = 0; index < kept.size(); ++index) {
-    if (kept[index] == 0) continue;
-    left.tiles.push_back(all.tiles[index]);
-    left.tiles.back().known = kept[index];
-    left.tiles.back().split &= kept[index];
+  const auto keep_needed = [&](auto& of_nodes) {
+    if (of_nodes.empty()) return;
+    for (std::size_t node = 0; node < former.size(); ++node)
+      of_nodes[node] = of_nodes[former[node]];
+    of_nodes.resize(former.size());
+  };
+  keep_needed(coordinates_);
+  keep_needed(together_);
+  keep_needed(error_);
+  keep_needed(distance_);
+  keep_needed(points_);
+  keep_needed(seen_by_middle_);
+  values_ = values_.gathered(former);
+  tiles_.keep(kept, number);
+  node_at_.clear();
+  for (std::uint32_t node = 0; node < coordinates_.size(); ++node) {
+    node_at_.insert({coordinates_[node], node});
   }
-  impl_->clear();
-  restore(std::move(left));
+  cells_ = 0;
+  for (const std::uint64_t cells : kept) cells_ += static_cast<std::uint64_t>(std::popcount(cells));
   return former;
 }
 
@@ -127,26 +130,24 @@ void LightMaps::restore(LightMapContents contents) {
   const auto fit = [](bool fits) {
     if (!fits) throw InputError("saved light maps do not fit the scene; save them again");
   };
-  Tiles& tiles = impl_->tiles;
   const std::size_t count = contents.nodes.size();
-  contents.values.lights = impl_->needs.light_count;
-  fit(are_values_of(contents.values, count, impl_->needs));
-  fit(tell_by_normal(contents.values, impl_->needs.smooth_shading && !contents.error.empty()));
+  contents.values.lights = rays_.needs().light_count;
+  fit(are_values_of(contents.values, count, rays_.needs()));
+  fit(tell_by_normal(contents.values, rays_.needs().smooth_shading && !contents.error.empty()));
   fit(are_errors_of(contents.error, contents.distance, count));
   for (std::uint32_t node = 0; node < count; ++node) {
     const auto& [chart, x, y] = contents.nodes[node];
-    fit(impl_->node_at.insert({NodeCoordinates{chart, x, y}, node}).second);
+    fit(node_at_.insert({NodeCoordinates{chart, x, y}, node}).second);
   }
   std::vector<NodeCoordinates> coordinates;
   for (const auto& [chart, x, y] : contents.nodes) {
-    fit(chart < impl_->charts.size());
+    fit(chart < charts_.size());
     coordinates.push_back({chart, x, y});
   }
-  const PrimaryHits points =
-      cache::node_points(impl_->scene, impl_->charts, coordinates, impl_->levels, false);
-  impl_->append(std::move(contents.values), points, coordinates);
-  impl_->error = std::move(contents.error);
-  impl_->distance = std::move(contents.distance);
+  const PrimaryHits points = node_points(scene_, charts_, coordinates, levels_, false);
+  append(std::move(contents.values), points, coordinates);
+  error_ = std::move(contents.error);
+  distance_ = std::move(contents.distance);
   const auto key_of = [](std::uint32_t chart, std::uint32_t level, std::uint32_t x,
                          std::uint32_t y) {
     return std::array{chart, level, x, y};
@@ -154,18 +155,18 @@ void LightMaps::restore(LightMapContents contents) {
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> tile_at;
   for (const LightMapContents::Tile& saved : contents.tiles) {
     const auto& [known, split, chart, level, x, y] = saved;
-    fit(chart < impl_->charts.size() && static_cast<int>(level) < impl_->levels && (x & 7) == 0 &&
+    fit(chart < charts_.size() && static_cast<int>(level) < levels_ && (x & 7) == 0 &&
         (y & 7) == 0 && (split & ~known) == 0);
     std::uint32_t index = none;
     if (level == 0) {
-      const cache::Chart& lattice = impl_->charts[chart];
+      const Chart& lattice = charts_[chart];
       fit(x / 8 < lattice.root_columns() && y / 8 < lattice.root_rows());
       index =
-          tiles.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});
+          tiles_.tile_of({lattice.first_root + y / 8 * lattice.root_columns() + x / 8, 0, false});
     } else {
       const auto parent = tile_at.find(key_of(chart, level - 1, x / 16 * 8, y / 16 * 8));
       fit(parent != tile_at.end());
-      index = tiles[parent->second].child[(y / 8 & 1) * 2 + (x / 8 & 1)];
+      index = tiles_[parent->second].child[(y / 8 & 1) * 2 + (x / 8 & 1)];
       fit(index != none);
     }
     fit(tile_at.emplace(key_of(chart, level, x, y), index).second);
@@ -174,16 +175,16 @@ void LightMaps::restore(LightMapContents contents) {
       if ((known >> cell & 1) != 0) cells.emplace_back(index, cell);
     }
     std::vector<NodeCoordinates> added;
-    impl_->number_corners(cells, added);
+    number_corners(cells, added);
     fit(added.empty());
-    tiles[index].known = known;
-    impl_->cells += cells.size();
+    tiles_[index].known = known;
+    cells_ += cells.size();
     for (std::uint32_t cell = 0; cell < 64; ++cell) {
       if ((split >> cell & 1) == 0) continue;
-      fit(static_cast<int>(level) + 1 < impl_->levels);
-      tiles.split(index, cell);
+      fit(static_cast<int>(level) + 1 < levels_);
+      tiles_.split(index, cell);
     }
   }
 }
 
-}  // namespace photile
+}  // namespace photile::cache

@@ -101,18 +101,18 @@ struct LightMapFrames::View {
   }
 };
 
-LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source)
+LightMapFrames::LightMapFrames(const RayScene& rays, LightMaps& maps)
     : rays_(rays),
       scene_(rays.scene()),
       maps_(maps),
-      source_(source),
       surfaces_(scene_.triangle_count()),
       layer_of_(light_groups_of(scene_).group_of),
       emitted_(emitted_radiance_at_unit_power(scene_)),
       distant_(scene_),
       is_shown_(maps.charts().size(), 0),
       waits_(maps.charts().size(), 0),
-      seconds_per_sample_(source.surroundings().rounds > 0 ? seconds_of_rays : seconds_of_photons) {
+      seconds_per_sample_(maps.source().surroundings().rounds > 0 ? seconds_of_rays
+                                                                  : seconds_of_photons) {
   const std::span<const std::uint32_t> chart_of = maps.charts().chart_of();
   for (std::uint32_t t = 0; t < surfaces_.size(); ++t) {
     const Material& material = scene_.materials[scene_.triangle_material[t]];
@@ -202,9 +202,9 @@ void LightMapFrames::mix(std::span<const glm::vec3> powers, bool soft) {
 /// Before a frame: the latest is the one before.
 void LightMapFrames::forget_unseen() {
   const LightMapStatistics statistics = maps_.statistics();
-  const std::uint64_t own = statistics.value_bytes + statistics.index_bytes;
-  if (own + source_.bytes() <= bound_ || statistics.nodes == 0) return;
-  source_.forget();
+  const std::uint64_t own = maps_.bytes();
+  if (own + maps_.source().bytes() <= bound_ || statistics.nodes == 0) return;
+  maps_.source().forget();
   if (own <= bound_ / 2) return;
   seen_.resize(statistics.nodes, 0);
   // The oldest frame whose cells stay: the nodes that are kept take half of the memory.
@@ -329,7 +329,7 @@ void LightMapFrames::fill(std::span<const MissingSample> samples, double seconds
       hits.oriented_face.push_back(sample.oriented_face);
     }
     const Stopwatch batch_watch;
-    maps_.fill(hits, source_, progress, empty ? 1 : limits::max_light_map_levels);
+    maps_.fill(hits, progress, empty ? 1 : limits::max_light_map_levels);
     const double latest = batch_watch.seconds() / static_cast<double>(count);
     seconds_per_sample_ += 0.5 * (latest - seconds_per_sample_);
     first += count;

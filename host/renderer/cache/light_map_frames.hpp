@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "cache/ambient_light.hpp"
+#include "cache/light_maps.hpp"
 #include "cache/shown_nodes.hpp"
 #include "cache/tiles.hpp"
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/light_maps.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
@@ -27,7 +27,7 @@ namespace photile::cache {
 class LightMapFrames {
  public:
   /// References are kept.
-  LightMapFrames(const RayScene& rays, LightMaps& maps, NodeSource& source);
+  LightMapFrames(const RayScene& rays, LightMaps& maps);
 
   /// From now on, frames forget the cells that were seen least recently where light maps take more
   /// than this many bytes: down to half of it, but none that the latest frame sees. What their
@@ -101,7 +101,6 @@ class LightMapFrames {
   const RayScene& rays_;
   const Scene& scene_;
   LightMaps& maps_;
-  NodeSource& source_;
   std::vector<Surface> surfaces_;
   std::vector<std::uint32_t> layer_of_;  ///< per light
   std::vector<glm::vec3> emitted_;       ///< per light, at power 1

@@ -1,3 +1,5 @@
+#include "cache/light_maps.hpp"
+
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -8,14 +10,18 @@
 #include <limits>
 #include <numeric>
 
-#include "cache/light_maps_impl.hpp"
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
 
 namespace photile {
-namespace cache {
+
+std::string_view name_of(LightMapMode mode) { return name_in({"off", "on", "auto"}, mode); }
+
+}  // namespace photile
+
+namespace photile::cache {
 
 namespace {
 
@@ -62,59 +68,59 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
   }
 }
 
+/// The parameters, checked.
+const LightMapParameters& checked(const LightMapParameters& parameters, std::size_t layers) {
+  check(parameters, layers);
+  return parameters;
+}
+
 }  // namespace
-}  // namespace cache
 
-std::string_view name_of(LightMapMode mode) { return name_in({"off", "on", "auto"}, mode); }
-
-using cache::Charts;
-using cache::MissingCell;
-using cache::NodeCoordinates;
-using cache::Tile;
-using cache::Tiles;
-
-LightMaps::Impl::Impl(const Scene& from, const LightMapParameters& given)
-    : scene(from),
-      needs(needs_of(from)),
-      parameters(given),
-      charts(scene, parameters.spacing, parameters.angle_degrees),
-      levels(cache::levels_that_fit(charts, parameters.levels)),
-      skipped_levels(levels -
-                     cache::levels_that_fit(charts, parameters.levels - parameters.skipped_levels)),
-      tiles(charts) {
+LightMaps::LightMaps(const RayScene& rays, const LightMapParameters& parameters, NodeSource& source,
+                     Visibility visibility)
+    : rays_(rays),
+      scene_(rays.scene()),
+      parameters_(checked(parameters, rays.needs().light_count)),
+      source_(source),
+      visibility_(visibility),
+      charts_(scene_, parameters.spacing, parameters.angle_degrees),
+      levels_(levels_that_fit(charts_, parameters.levels)),
+      skipped_levels_(levels_ -
+                      levels_that_fit(charts_, parameters.levels - parameters.skipped_levels)),
+      tiles_(charts_) {
   clear();
 }
 
-void LightMaps::Impl::clear() {
-  tiles.clear();
-  node_at.clear();
-  values = LightTable(needs);
-  together.clear();
-  error.clear();
-  distance.clear();
-  points.clear();
-  coordinates.clear();
-  cells = 0;
+void LightMaps::clear() {
+  tiles_.clear();
+  node_at_.clear();
+  values_ = LightTable(rays_.needs());
+  seen_by_middle_.clear();
+  together_.clear();
+  error_.clear();
+  distance_.clear();
+  points_.clear();
+  coordinates_.clear();
+  cells_ = 0;
 }
 
-std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
-                                                        std::vector<std::uint32_t>& pending,
-                                                        int levels) const {
+std::vector<MissingCell> LightMaps::missing_cells(const PrimaryHits& hits,
+                                                  std::vector<std::uint32_t>& pending,
+                                                  int levels) const {
   struct Found {
     std::vector<MissingCell> cells;
     std::vector<std::uint32_t> hits;
   };
-  const std::size_t tasks =
-      (pending.size() + cache::hits_per_query_task - 1) / cache::hits_per_query_task;
+  const std::size_t tasks = (pending.size() + hits_per_query_task - 1) / hits_per_query_task;
   std::vector<Found> found(tasks);
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     Found& own = found[task];
-    const std::size_t end = std::min(pending.size(), (task + 1) * cache::hits_per_query_task);
-    for (std::size_t i = task * cache::hits_per_query_task; i < end; ++i) {
+    const std::size_t end = std::min(pending.size(), (task + 1) * hits_per_query_task);
+    for (std::size_t i = task * hits_per_query_task; i < end; ++i) {
       const std::uint32_t hit = pending[i];
       BilinearWeights bilinear;
-      const auto missing = tiles.find(charts.chart_of()[hits.oriented_face[hit]],
-                                      hits.position[hit], bilinear, levels);
+      const auto missing = tiles_.find(charts_.chart_of()[hits.oriented_face[hit]],
+                                       hits.position[hit], bilinear, levels);
       if (!missing) continue;
       own.hits.push_back(hit);
       if (own.cells.empty() || own.cells.back() != *missing) own.cells.push_back(*missing);
@@ -133,198 +139,175 @@ std::vector<MissingCell> LightMaps::Impl::missing_cells(const PrimaryHits& hits,
   return cells;
 }
 
-void LightMaps::Impl::number_corners(
-    std::span<const std::pair<std::uint32_t, std::uint32_t>> requested,
-    std::vector<NodeCoordinates>& added) {
+void LightMaps::number_corners(std::span<const std::pair<std::uint32_t, std::uint32_t>> requested,
+                               std::vector<NodeCoordinates>& added) {
   for (const auto& [index, cell] : requested) {
-    Tile& tile = tiles[index];
-    const int shift = levels - 1 - static_cast<int>(tile.level);
+    Tile& tile = tiles_[index];
+    const int shift = levels_ - 1 - static_cast<int>(tile.level);
     for (std::uint32_t corner = 0; corner < 4; ++corner) {
       const std::uint32_t x = (cell & 7) + (corner & 1), y = (cell >> 3) + (corner >> 1);
       std::uint32_t& node = tile.node[y * 9 + x];
       if (node != none) continue;
       const NodeCoordinates at{tile.chart, (tile.x + x) << shift, (tile.y + y) << shift};
-      const auto next = static_cast<std::uint32_t>(together.size() + added.size());
-      const auto [entry, is_new] = node_at.insert({at, next});
+      const auto next = static_cast<std::uint32_t>(together_.size() + added.size());
+      const auto [entry, is_new] = node_at_.insert({at, next});
       if (is_new) added.push_back(at);
       node = entry->second;
     }
   }
 }
 
-void LightMaps::Impl::forget(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
-                             std::span<const NodeCoordinates> added) {
-  for (const NodeCoordinates& at : added) node_at.erase(at);
+void LightMaps::take_back(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
+                          std::span<const NodeCoordinates> added) {
+  for (const NodeCoordinates& at : added) node_at_.erase(at);
   for (const auto& [index, cell] : cells) {
-    for (std::uint32_t& node : tiles[index].node) {
-      if (node != none && node >= together.size()) node = none;
+    for (std::uint32_t& node : tiles_[index].node) {
+      if (node != none && node >= together_.size()) node = none;
     }
   }
 }
 
-std::pair<NodeValues, PrimaryHits> LightMaps::Impl::values_of(
-    std::span<const NodeCoordinates> nodes, NodeSource& source, const Progress& progress) {
-  NodeBatch batch = cache::node_batch(scene, charts, nodes, {levels, skipped_levels}, needs.glossy,
-                                      source.surroundings());
-  NodeValues values = source.value(batch, progress);
-  return {std::move(values), std::move(batch.points)};
+/// Values the nodes that follow.
+void LightMaps::value(std::span<const NodeCoordinates> nodes, const Progress& progress) {
+  const NodeBatch batch = node_batch(scene_, charts_, nodes, {levels_, skipped_levels_},
+                                     rays_.needs().glossy, source_.surroundings());
+  NodeValues found = source_.value(batch, progress);
+  append(std::move(found.light), batch.points, nodes);
+  error_.insert(error_.end(), found.error.begin(), found.error.end());
+  distance_.insert(distance_.end(), found.distance.begin(), found.distance.end());
 }
 
 /// The light of the nodes that follow, at the first of these points.
-void LightMaps::Impl::append(LightTable light, const PrimaryHits& at,
-                             std::span<const NodeCoordinates> nodes) {
+void LightMaps::append(LightTable light, const PrimaryHits& at,
+                       std::span<const NodeCoordinates> nodes) {
   light.radiance.clear();
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     double sum = 0;
     light.for_each(node, [&](std::size_t layer, std::size_t i) {
-      sum += parameters.powers[layer] * luminance(glm::dvec3(light.irradiance[i]));
+      sum += parameters_.powers[layer] * luminance(glm::dvec3(light.irradiance[i]));
     });
-    together.push_back(static_cast<float>(sum));
-    points.push_back({at.position[node], at.oriented_face[node]});
+    together_.push_back(static_cast<float>(sum));
+    points_.push_back({at.position[node], at.oriented_face[node]});
   }
-  values.append(std::move(light));
-  coordinates.insert(coordinates.end(), nodes.begin(), nodes.end());
+  values_.append(std::move(light));
+  coordinates_.insert(coordinates_.end(), nodes.begin(), nodes.end());
+  seen_by_middle_.resize(points_.size(), unknown);
 }
 
 /// By more than contrast and noise allow.
-bool LightMaps::Impl::differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const {
+bool LightMaps::differ(const std::array<std::uint32_t, 4>& nodes, double spacing) const {
   const auto [low, high] = std::minmax_element(
       nodes.begin(), nodes.end(),
-      [&](std::uint32_t a, std::uint32_t b) { return together[a] < together[b]; });
-  const double least = together[*low], most = together[*high];
-  if (error.empty()) return differ_by_photons(most, least);
-  const double noise = std::hypot(error[*low], error[*high]);
-  if (most - least > most * parameters.contrast + cache::doubted_errors * noise) return true;
-  const auto [near, far] =
-      std::minmax({distance[nodes[0]], distance[nodes[1]], distance[nodes[2]], distance[nodes[3]]});
-  if (is_dark(most) && far < cache::near_of_spacing * spacing) return true;
+      [&](std::uint32_t a, std::uint32_t b) { return together_[a] < together_[b]; });
+  const double least = together_[*low], most = together_[*high];
+  if (error_.empty()) return differ_by_photons(most, least);
+  const double noise = std::hypot(error_[*low], error_[*high]);
+  if (most - least > most * parameters_.contrast + doubted_errors * noise) return true;
+  const auto [near, far] = std::minmax(
+      {distance_[nodes[0]], distance_[nodes[1]], distance_[nodes[2]], distance_[nodes[3]]});
+  if (is_dark(most) && far < near_of_spacing * spacing) return true;
   const double nearest = near;
-  return spacing > parameters.near * nearest &&
-         most - least > 0.25 * most * parameters.contrast + noise;
+  return spacing > parameters_.near * nearest &&
+         most - least > 0.25 * most * parameters_.contrast + noise;
 }
 
-bool LightMaps::Impl::is_dark(double light) const {
-  return light <= cache::dark_of_sparse * parameters.sparse_irradiance;
+bool LightMaps::is_dark(double light) const {
+  return light <= dark_of_sparse * parameters_.sparse_irradiance;
 }
 
-bool LightMaps::Impl::differ_by_photons(double high, double low) const {
+bool LightMaps::differ_by_photons(double high, double low) const {
   const double full =
-      parameters.sparse_irradiance > 0 ? std::min(1.0, high / parameters.sparse_irradiance) : 1.0;
-  const double noise = 1 / std::sqrt(parameters.neighbours * full);
-  return high - low > high * (parameters.contrast + noise);
+      parameters_.sparse_irradiance > 0 ? std::min(1.0, high / parameters_.sparse_irradiance) : 1.0;
+  const double noise = 1 / std::sqrt(parameters_.neighbours * full);
+  return high - low > high * (parameters_.contrast + noise);
 }
 
-LightMaps::LightMaps(const Scene& scene, const LightMapParameters& parameters) {
-  cache::check(parameters, needs_of(scene).light_count);
-  const Stopwatch stopwatch;
-  impl_ = std::make_unique<Impl>(scene, parameters);
-  impl_->chart_seconds = stopwatch.seconds();
-}
-
-LightMaps::~LightMaps() = default;
-LightMaps::LightMaps(LightMaps&&) noexcept = default;
-
-void LightMaps::fill(const PrimaryHits& hits, NodeSource& source, const Progress& progress,
-                     int rounds, int levels) {
+void LightMaps::fill(const PrimaryHits& hits, const Progress& progress, int rounds, int levels) {
   std::vector<std::uint32_t> pending(hits.size());
   std::iota(pending.begin(), pending.end(), 0u);
-  Tiles& tiles = impl_->tiles;
   for (int round = 0; round < rounds; ++round) {
     progress.throw_if_cancelled();
-    std::vector<MissingCell> missing = impl_->missing_cells(hits, pending, levels);
-    if (impl_->parameters.processes) {  // cells that some process misses, the same on all of them
-      missing = impl_->parameters.processes->gather_values<MissingCell>(missing);
+    std::vector<MissingCell> missing = missing_cells(hits, pending, levels);
+    if (parameters_.processes) {  // cells that some process misses, the same on all of them
+      missing = parameters_.processes->gather_values<MissingCell>(missing);
       std::sort(missing.begin(), missing.end());
       missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
     }
     if (missing.empty()) return;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cells;
     for (const MissingCell& cell : missing) {
-      const std::uint32_t tile = tiles.tile_of(cell);
-      if (static_cast<int>(tiles[tile].level) >= impl_->skipped_levels) {
+      const std::uint32_t tile = tiles_.tile_of(cell);
+      if (static_cast<int>(tiles_[tile].level) >= skipped_levels_) {
         cells.emplace_back(tile, cell.cell);
         continue;
       }
-      tiles[tile].known |= std::uint64_t{1} << cell.cell;
-      tiles.split(tile, cell.cell);
+      tiles_[tile].known |= std::uint64_t{1} << cell.cell;
+      tiles_.split(tile, cell.cell);
     }
     std::vector<NodeCoordinates> added;
-    impl_->number_corners(cells, added);
+    number_corners(cells, added);
     try {
-      if (!added.empty()) {
-        auto [values, points] = impl_->values_of(added, source, progress);
-        impl_->append(std::move(values.light), points, added);
-        impl_->error.insert(impl_->error.end(), values.error.begin(), values.error.end());
-        impl_->distance.insert(impl_->distance.end(), values.distance.begin(),
-                               values.distance.end());
-      }
+      if (!added.empty()) value(added, progress);
     } catch (...) {
-      impl_->forget(cells, added);
+      take_back(cells, added);
       throw;
     }
     for (const auto& [tile, cell] : cells) {
-      tiles[tile].known |= std::uint64_t{1} << cell;
-      if (static_cast<int>(tiles[tile].level) + 1 < impl_->levels &&
-          impl_->differ(
-              tiles[tile].corners(cell),
-              std::ldexp(impl_->charts.spacing(), -static_cast<int>(tiles[tile].level)))) {
-        tiles.split(tile, cell);
+      tiles_[tile].known |= std::uint64_t{1} << cell;
+      if (static_cast<int>(tiles_[tile].level) + 1 < levels_ &&
+          differ(tiles_[tile].corners(cell),
+                 std::ldexp(charts_.spacing(), -static_cast<int>(tiles_[tile].level)))) {
+        tiles_.split(tile, cell);
       }
     }
-    impl_->cells += cells.size();
+    cells_ += cells.size();
   }
 }
 
 bool LightMaps::find(std::uint32_t oriented_face, const glm::vec3& position,
                      BilinearWeights& bilinear, int levels) const {
-  return !impl_->tiles.find(impl_->charts.chart_of()[oriented_face], position, bilinear, levels);
+  return !tiles_.find(charts_.chart_of()[oriented_face], position, bilinear, levels);
 }
 
 double LightMaps::relative_error(const BilinearWeights& bilinear) const {
-  if (impl_->error.empty()) return 0;
+  if (error_.empty()) return 0;
   double error = 0, light = 0;
   for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-    error += double{bilinear.weight[i]} * impl_->error[bilinear.node[i]];
-    light += double{bilinear.weight[i]} * impl_->together[bilinear.node[i]];
+    error += double{bilinear.weight[i]} * error_[bilinear.node[i]];
+    light += double{bilinear.weight[i]} * together_[bilinear.node[i]];
   }
   return light > 0 ? error / light : 0;
 }
 
-bool LightMaps::uneven(const BilinearWeights& bilinear, double contrast) const {
-  const auto light = [&](std::size_t corner) { return impl_->together[bilinear.node[corner]]; };
+bool LightMaps::uneven(const BilinearWeights& bilinear) const {
+  const double contrast = visibility_ == Visibility::of_cells ? 0.0 : parameters_.contrast;
+  const auto light = [&](std::size_t corner) { return together_[bilinear.node[corner]]; };
   const auto [least, most] = std::minmax({light(0), light(1), light(2), light(3)});
-  if (most - least > most * contrast || impl_->is_dark(most)) return true;
-  if (impl_->distance.empty()) return false;
-  const auto finest = static_cast<float>(std::ldexp(impl_->charts.spacing(), 1 - impl_->levels));
+  if (most - least > most * contrast || is_dark(most)) return true;
+  if (distance_.empty()) return false;
+  const auto finest = static_cast<float>(std::ldexp(charts_.spacing(), 1 - levels_));
   return std::any_of(bilinear.node.begin(), bilinear.node.end(),
-                     [&](std::uint32_t node) { return impl_->distance[node] < finest; });
-}
-
-const LightMaps::NodePoint& LightMaps::point(std::uint32_t node) const {
-  return impl_->points[node];
+                     [&](std::uint32_t node) { return distance_[node] < finest; });
 }
 
 float LightMaps::distance(std::uint32_t node) const {
-  return impl_->distance.empty() ? std::numeric_limits<float>::infinity() : impl_->distance[node];
+  return distance_.empty() ? std::numeric_limits<float>::infinity() : distance_[node];
 }
-
-const Charts& LightMaps::charts() const { return impl_->charts; }
-const Tiles& LightMaps::tiles() const { return impl_->tiles; }
-
-const LightTable& LightMaps::values() const { return impl_->values; }
 
 LightMapStatistics LightMaps::statistics() const {
-  return {
-      .nodes = impl_->together.size(),
-      .tiles = impl_->tiles.size(),
-      .cells = impl_->cells,
-      .charts = impl_->charts.size(),
-      .value_bytes = impl_->values.bytes() +
-                     (impl_->together.size() + 2 * impl_->error.size()) * sizeof(float) +
-                     impl_->points.size() * (sizeof(NodePoint) + sizeof(NodeCoordinates)),
-      .index_bytes = impl_->charts.bytes() + impl_->tiles.bytes() +
-                     impl_->node_at.size() * 2 * sizeof(std::pair<NodeCoordinates, std::uint32_t>),
-      .chart_seconds = impl_->chart_seconds};
+  return {.nodes = together_.size(),
+          .tiles = tiles_.size(),
+          .cells = cells_,
+          .charts = charts_.size(),
+          .value_bytes = values_.bytes() + (together_.size() + 2 * error_.size()) * sizeof(float) +
+                         points_.size() * (sizeof(NodePoint) + sizeof(NodeCoordinates)),
+          .index_bytes = charts_.bytes() + tiles_.bytes() +
+                         node_at_.size() * 2 * sizeof(std::pair<NodeCoordinates, std::uint32_t>)};
 }
 
-}  // namespace photile
+std::uint64_t LightMaps::bytes() const {
+  const LightMapStatistics now = statistics();
+  return now.value_bytes + now.index_bytes;
+}
+
+}  // namespace photile::cache

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cache/charts.hpp"
-#include "photile/light_maps.hpp"
+#include "cache/node_source.hpp"
 #include "photile/ray_scene.hpp"
 
 namespace photile::cache {

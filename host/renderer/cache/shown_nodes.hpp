@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "cache/light_maps.hpp"
 #include "cache/node_mix.hpp"
 #include "cache/tiles.hpp"
-#include "photile/light_maps.hpp"
 
 namespace photile::cache {
 

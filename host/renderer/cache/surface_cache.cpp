@@ -31,64 +31,6 @@ constexpr std::size_t rows_per_task = 1024;
 
 constexpr int coarsest_level = 1;
 
-/// Per oriented face: flux of its photons at the powers, luminance. Of those that this process
-/// answers for, where there are several.
-std::vector<double> flux_of_triangles(const Photons& photons, std::span<const double> powers) {
-  std::vector<double> flux(std::max<std::size_t>(1, photons.first_of.size()) - 1, 0.0);
-  tbb::parallel_for(std::size_t{0}, flux.size(), [&](std::size_t s) {
-    if (photons.of_all && photons.of_all->own[s] == 0) return;
-    for (std::size_t i = photons.first_of[s]; i < photons.first_of[s + 1]; ++i) {
-      const std::size_t layer = photons.light.empty() ? 0 : photons.light[i];
-      flux[s] += powers[layer] * luminance(glm::dvec3(photons.flux[i]));
-    }
-  });
-  return flux;
-}
-
-/// Mean flux of a photon at the powers, luminance.
-double mean_photon(const Photons& photons, std::span<const double> powers) {
-  std::vector<double> flux = flux_of_triangles(photons, powers);
-  if (photons.of_all) {
-    // One process has a number for each, the others zeros: bits add up to those of the number.
-    std::vector<std::uint64_t> bits;
-    for (const double one : flux) bits.push_back(std::bit_cast<std::uint64_t>(one));
-    photons.of_all->processes->sum(bits);
-    for (std::size_t s = 0; s < flux.size(); ++s) flux[s] = std::bit_cast<double>(bits[s]);
-  }
-  const double sum = std::accumulate(flux.begin(), flux.end(), 0.0);
-  return photons.total() == 0 ? 0 : sum / static_cast<double>(photons.total());
-}
-
-/// Metres: that of photons spread evenly over the triangles that have some; 0 without photons.
-double mean_distance(const Scene& scene, const Photons& photons) {
-  double area = 0;
-  for (std::uint32_t face = 0; face + 1 < photons.first_of.size(); ++face) {
-    const std::uint32_t landed = photons.of_all
-                                     ? photons.of_all->landed[face]
-                                     : photons.first_of[face + 1] - photons.first_of[face];
-    if (landed > 0) area += triangle_area(scene, face / 2);
-  }
-  return photons.total() == 0 ? 0 : std::sqrt(area / static_cast<double>(photons.total()));
-}
-
-/// Metres: half the median distance from a photon to its nearest; 0 where most lie in the same
-/// points.
-double near_photons(const Photons& photons) {
-  if (photons.total() < 2) return 0;
-  try {
-    return automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance / 2;
-  } catch (const UsageError&) {
-    return 0;
-  }
-}
-
-/// Metres, for estimates that reach so far. Photons know light no finer than they lie apart: most
-/// may lie close together, up to a sixteenth of the mean, which is looked up where it counts.
-double least_spacing(const Scene& scene, const Photons& photons, double reach) {
-  const double distance = mean_distance(scene, photons);
-  return reach > distance ? 0 : std::max(distance / 16, near_photons(photons));
-}
-
 const Material& material_of(const Scene& scene, std::uint32_t oriented_face) {
   return scene.materials[scene.triangle_material[triangle_of(oriented_face)]];
 }
@@ -171,43 +113,14 @@ double ErrorSum::mean() const {
   return hits == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(hits));
 }
 
-LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,
-                                        double radius, double angle_degrees, double spacing,
-                                        double detail, std::span<const double> powers) {
-  // The radius is so many times the distance to the k-th photon of a typical estimate.
-  const double reach = radius / defaults::radius_over_median_kth_distance;
-  LightMapParameters parameters;
-  const double steps = std::max(
-      std::round(std::log2(reach / defaults::light_map_spacing)),
-      std::ceil(std::log2(least_spacing(scene, photons, reach) / defaults::light_map_spacing)));
-  parameters.spacing = spacing > 0 ? spacing : defaults::light_map_spacing * std::exp2(steps);
-  if (detail > 0) {
-    // One more where the division is a rounding above a power of two would halve the detail again.
-    const double halvings = std::ceil(std::log2(parameters.spacing / detail) - 1e-9);
-    parameters.levels =
-        1 + static_cast<int>(std::clamp(halvings, 0.0, limits::max_light_map_levels - 1.0));
-  }
-  parameters.angle_degrees = angle_degrees;
-  parameters.neighbours = neighbours;
-  // Where k photons are just within the radius.
-  parameters.sparse_irradiance =
-      neighbours * mean_photon(photons, powers) / (glm::pi<double>() * radius * radius);
-  parameters.powers.assign(powers.begin(), powers.end());
-  return parameters;
-}
-
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-                           light::LightAtPoints& elsewhere, NodeSource& source,
-                           SecondaryLight* secondary)
+                           light::LightAtPoints& elsewhere, NodeSource& source, LightMaps* ends)
     : scene_(rays.scene()),
       needs_(rays.needs()),
-      shared_(parameters.processes != nullptr),
       neighbours_(parameters.neighbours),
       elsewhere_(elsewhere),
-      source_(source),
-      secondary_(secondary),
-      maps_(scene_, parameters),
-      visibility_(rays, maps_) {}
+      maps_(rays, parameters, source),
+      ends_(ends) {}
 
 /// What answers for each of the points.
 struct SurfaceCache::Reading {
@@ -251,11 +164,10 @@ LightAndErrors SurfaceCache::with_errors(const PrimaryHits& points, const Gather
 LightTable SurfaceCache::light_of(const Reading& reading, const Progress& progress) {
   hits_alone_ += reading.alone.size();
   const LightTable found =
-      reading.alone.empty() && !shared_
+      reading.alone.empty() && !maps_.processes()
           ? LightTable{}
           : elsewhere_.at(estimate::reordered(reading.points, 0, reading.alone), progress);
-  const LightTable& of_coarse =
-      secondary_ && !reading.coarse.empty() ? secondary_->values() : maps_.values();
+  const LightTable& of_coarse = ends_ ? ends_->values() : maps_.values();
   return rows(reading, found, maps_.values(), of_coarse, Coarse::between_nodes);
 }
 
@@ -295,34 +207,24 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
     const bool is_coarse = !points.coarse.empty() && points.coarse[point] != 0;
     (!serves(points, point) ? alone : is_coarse ? coarse : fine).push_back(point);
   }
-  const auto fill = [&](std::span<const std::uint32_t> part, int levels) {
-    if (part.size() == points.size()) {
-      maps_.fill(points, source_, progress, LightMaps::all_rounds, levels);
-    } else if (shared_ || !part.empty()) {
-      maps_.fill(estimate::reordered(points, 0, part), source_, progress, LightMaps::all_rounds,
-                 levels);
-    }
+  const auto around = [&](std::span<const std::uint32_t> part, LightMaps& maps, int levels) {
+    if (part.size() == points.size()) return maps.around(points, progress, levels);
+    if (part.empty() && !maps.processes()) return LightMaps::Around{};
+    return maps.around(estimate::reordered(points, 0, part), progress, levels);
   };
   const Stopwatch stopwatch;
-  fill(fine, LightMaps::all_rounds);
-  if (!secondary_) {
-    fill(coarse, coarsest_level);
-  } else if (shared_ || !coarse.empty()) {
-    coarse_nodes = secondary_->nodes_around(estimate::reordered(points, 0, coarse), progress);
-  }
+  LightMaps::Around of_fine = around(fine, maps_, LightMaps::all_levels);
+  fine_nodes = std::move(of_fine.nodes);
+  coarse_nodes = ends_ ? around(coarse, *ends_, LightMaps::all_levels).nodes
+                       : around(coarse, maps_, coarsest_level).nodes;
   fill_time_ += stopwatch.taken();
-  std::vector<std::uint8_t> seen;
-  if (!secondary_) {
-    coarse_nodes = find_nodes(points, coarse, coarsest_level, seen);
-    count_errors(coarse_nodes);
-  }
-  fine_nodes = find_nodes(points, fine, LightMaps::all_rounds, seen);
+  if (!ends_) count_errors(coarse_nodes);
   // Where photons value nodes they would say no more at a point which no node sees, and may have
   // to be traced first.
-  if (secondary_) {
+  if (ends_) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < fine.size(); ++i) {
-      if (seen[i] == 0) {
+      if (of_fine.seen[i] == 0) {
         alone.push_back(fine[i]);
         continue;
       }
@@ -337,27 +239,6 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
   return reading;
 }
 
-/// The nodes around chosen points.
-///   seen   becomes 1 for each of them that one of its nodes sees, else 0
-std::vector<BilinearWeights> SurfaceCache::find_nodes(const PrimaryHits& points,
-                                                      std::span<const std::uint32_t> chosen,
-                                                      int levels,
-                                                      std::vector<std::uint8_t>& seen) const {
-  std::vector<BilinearWeights> nodes(chosen.size());
-  seen.resize(chosen.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), rows_per_task),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      const trace::FlushDenormals flush_denormals;
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        const std::uint32_t face = points.oriented_face[chosen[i]];
-                        const glm::vec3& position = points.position[chosen[i]];
-                        maps_.find(face, position, nodes[i], levels);
-                        seen[i] = visibility_.keep_visible(face, position, nodes[i]);
-                      }
-                    });
-  return nodes;
-}
-
 void SurfaceCache::count_errors(std::span<const BilinearWeights> nodes) {
   for (const BilinearWeights& bilinear : nodes) {
     const double error = maps_.relative_error(bilinear);
@@ -367,14 +248,13 @@ void SurfaceCache::count_errors(std::span<const BilinearWeights> nodes) {
 }
 
 PhotonNoise SurfaceCache::photon_noise() const {
-  return {secondary_ ? secondary_->spacing() : maps_.charts().spacing(),
-          1 / std::sqrt(neighbours_)};
+  return {(ends_ ? *ends_ : maps_).charts().spacing(), 1 / std::sqrt(neighbours_)};
 }
 
 bool SurfaceCache::serves(const PrimaryHits& hits, std::size_t hit) const {
   const bool has_lobe = !hits.lobe.empty() && hits.lobe[hit].f90 > 0.0f;
   const bool mapped = material_of(scene_, hits.oriented_face[hit]).normal_texture != none;
-  return !has_lobe && (!mapped || secondary_ != nullptr);
+  return !has_lobe && (!mapped || ends_ != nullptr);
 }
 
 }  // namespace photile::cache

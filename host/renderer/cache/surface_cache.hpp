@@ -6,11 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/node_visibility.hpp"
-#include "cache/secondary_light.hpp"
+#include "cache/light_maps.hpp"
 #include "light/light_at_points.hpp"
-#include "photile/light_maps.hpp"
-#include "photile/photons.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/statistics.hpp"
@@ -45,18 +42,6 @@ struct ErrorSum {
   double mean() const;
 };
 
-/// Light maps for photons of this density: nodes lie as far apart as the photons that a typical
-/// estimate takes, at the coarsest level, in steps of two.
-///   neighbours   k
-///   radius       of the photon maps, metres. One so small that estimates find no photon makes
-///                nodes no closer than photons
-///   spacing      metres, > 0: of the coarsest nodes; 0 = by the photons
-///   detail       metres, > 0: spacing of the finest nodes, at most; 0 = an eighth of the coarsest
-///   powers       per layer of the scene
-LightMapParameters light_map_parameters(const Scene& scene, const Photons& photons, int neighbours,
-                                        double radius, double angle_degrees, double spacing,
-                                        double detail, std::span<const double> powers);
-
 /// Light at points, and its standard errors in the same form.
 struct LightAndErrors {
   LightTable light, errors;
@@ -70,11 +55,11 @@ class SurfaceCache : public light::LightAtPoints {
   ///               with a normal map where photons value nodes, which ask where light comes from.
   ///               What a point gets from it does not depend on the points beside it.
   ///   source      values nodes
-  ///   secondary   where rays value nodes, the light that they read where they meet surface; hits
-  ///               read it, too, where PrimaryHits::coarse says that it suffices; null where
+  ///   ends        where rays value nodes, the light maps that they read where they end; points
+  ///               read them, too, where PrimaryHits::coarse says that they suffice; null where
   ///               photons value nodes: the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
-               light::LightAtPoints& elsewhere, NodeSource& source, SecondaryLight* secondary);
+               light::LightAtPoints& elsewhere, NodeSource& source, LightMaps* ends);
 
   /// The light at points in any order.
   LightTable at(const PrimaryHits& points, const Progress& progress) override;
@@ -90,8 +75,6 @@ class SurfaceCache : public light::LightAtPoints {
 
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
-  NodeSource& source() { return source_; }
-  const NodeVisibility& visibility() const { return visibility_; }
 
   /// Hits that were estimated where they are, so far.
   std::uint64_t hits_alone() const { return hits_alone_; }
@@ -106,9 +89,6 @@ class SurfaceCache : public light::LightAtPoints {
 
   struct Reading;
   Reading read(const PrimaryHits& points, const Progress& progress);
-  std::vector<BilinearWeights> find_nodes(const PrimaryHits& points,
-                                          std::span<const std::uint32_t> chosen, int levels,
-                                          std::vector<std::uint8_t>& seen) const;
   LightTable light_of(const Reading& reading, const Progress& progress);
   enum class Coarse { between_nodes, found };
   LightTable rows(const Reading& reading, const LightTable& of_alone, const LightTable& of_nodes,
@@ -117,13 +97,10 @@ class SurfaceCache : public light::LightAtPoints {
 
   const Scene& scene_;
   const SceneNeeds needs_;
-  const bool shared_;        ///< with other processes, which make the same calls
   const double neighbours_;  ///< of a photon estimate
   light::LightAtPoints& elsewhere_;
-  NodeSource& source_;
-  SecondaryLight* secondary_;
   LightMaps maps_;
-  NodeVisibility visibility_;
+  LightMaps* ends_;
   std::uint64_t hits_alone_ = 0;
   ErrorSum errors_read_;
   TimeTaken fill_time_;

@@ -37,6 +37,37 @@ void Tiles::split(std::uint32_t tile, std::uint32_t cell) {
   tiles_[tile].child[quadrant] = child;
 }
 
+void Tiles::keep(std::span<const std::uint64_t> cells, std::span<const std::uint32_t> number) {
+  // A tile without cells stays where a cell that stays is split into it.
+  std::vector<std::uint8_t> stays(tiles_.size(), 0);
+  std::vector<std::uint32_t> tile_number(tiles_.size(), none);
+  std::uint32_t kept = 0;
+  for (std::size_t index = 0; index < tiles_.size(); ++index) {
+    if (cells[index] != 0) stays[index] = 1;
+    if (stays[index] != 0) tile_number[index] = kept++;
+    const std::uint64_t split = tiles_[index].split & cells[index];
+    for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+      const std::uint64_t own = std::uint64_t{0x0F0F0F0F}
+                                << ((quadrant >> 1) * 32 + (quadrant & 1) * 4);
+      if ((split & own) != 0) stays[tiles_[index].child[quadrant]] = 1;
+    }
+  }
+  const auto renumber = [](std::uint32_t& old, std::span<const std::uint32_t> numbers) {
+    if (old != none) old = numbers[old];
+  };
+  for (std::uint32_t& root : root_) renumber(root, tile_number);
+  for (std::size_t index = 0; index < tiles_.size(); ++index) {
+    if (tile_number[index] == none) continue;
+    Tile tile = tiles_[index];
+    tile.known = cells[index];
+    tile.split &= cells[index];
+    for (std::uint32_t& child : tile.child) renumber(child, tile_number);
+    for (std::uint32_t& node : tile.node) renumber(node, number);
+    tiles_[tile_number[index]] = tile;
+  }
+  tiles_.resize(kept);
+}
+
 std::uint32_t Tiles::tile_at(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
                              std::uint32_t y) const {
   const Chart& lattice = charts_[chart];

@@ -7,12 +7,18 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cache/charts.hpp"
-#include "photile/light_maps.hpp"
 
 namespace photile::cache {
+
+/// Four nodes and their weights, which sum to 1.
+struct BilinearWeights {
+  std::array<std::uint32_t, 4> node;
+  std::array<float, 4> weight;
+};
 
 /// Cells of one level of a chart. Corner (x, y) of the tile is node[y * 9 + x].
 struct Tile {
@@ -101,6 +107,11 @@ class Tiles {
     std::fill(root_.begin(), root_.end(), none);
     tiles_.clear();
   }
+  /// Keeps the tiles that have cells to keep, in this order; each comes after the one that it
+  /// refines, and nothing is kept without what is coarser there.
+  ///   cells    per tile
+  ///   number   per node: its new number; none where it goes
+  void keep(std::span<const std::uint64_t> cells, std::span<const std::uint32_t> number);
 
   Tile& operator[](std::uint32_t tile) { return tiles_[tile]; }
   const Tile& operator[](std::uint32_t tile) const { return tiles_[tile]; }

@@ -39,7 +39,7 @@ class LazyLight : public light::LightAtPoints {
 
 /// The same light maps, with nodes as close together as this spacing asks for, by levels that are
 /// split everywhere.
-LightMapParameters finer_than(LightMapParameters maps, double spacing) {
+cache::LightMapParameters finer_than(cache::LightMapParameters maps, double spacing) {
   const double halvings = std::round(std::log2(maps.spacing / spacing));
   maps.skipped_levels =
       std::clamp(static_cast<int>(halvings), 0, limits::max_light_map_levels - maps.levels);
@@ -80,7 +80,7 @@ void PassLight::read_light_maps(Growth growth) {
         std::move(growth.points));
   }
   cache_.emplace(rays_, photons_.maps, *photons_.all.of_points, nodes(),
-                 gather_ ? &gather_->secondary() : nullptr);
+                 gather_ ? &gather_->ends() : nullptr);
 }
 
 std::span<const std::uint32_t> PassLight::map_of() const {

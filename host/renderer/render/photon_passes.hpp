@@ -33,9 +33,10 @@ struct PhotonLight {
 struct PassPhotons {
   double radius = 0;  ///< of the first pass, metres
   PhotonLight all;
-  PhotonLight at_ends;            ///< by fewer neighbours: of rays, where nodes gather; else null
-  PhotonLight caustics;           ///< that came by mirrors and glass alone; null without any
-  LightMapParameters maps, ends;  ///< where light maps are read: of them, and of those at ray ends
+  PhotonLight at_ends;   ///< by fewer neighbours: of rays, where nodes gather; else null
+  PhotonLight caustics;  ///< that came by mirrors and glass alone; null without any
+  cache::LightMapParameters maps,
+      ends;  ///< where light maps are read: of them, and of those at ray ends
   /// What such light maps held, if they were kept.
   std::optional<LightMapContents> contents = std::nullopt;
 };
@@ -68,7 +69,9 @@ class PassLight {
   cache::SurfaceCache* cache() { return cache_ ? &*cache_ : nullptr; }
   const cache::SurfaceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
   /// What values the nodes of the cache.
-  NodeSource& nodes() { return gathered_ ? static_cast<NodeSource&>(*gathered_) : *by_photons_; }
+  cache::NodeSource& nodes() {
+    return gathered_ ? static_cast<cache::NodeSource&>(*gathered_) : *by_photons_;
+  }
   /// Where rays value nodes; else null.
   const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
   /// Takes the points at which rays gathered, for the light of further photons.
@@ -161,12 +164,12 @@ class PhotonPasses {
   const RenderPlan& plan_;
   RenderCosts& costs_;
   const std::vector<double> layer_powers_;
-  std::optional<KernelPreparation> kernels_;      ///< begun when photons are first traced
-  int pass_ = 0;                                  ///< the next; 0 where light maps are read
-  int parts_ = 0, all_parts_ = 0;                 ///< of the latest photons, and of all
-  std::optional<LightMapParameters> first_maps_;  ///< of the first photons
-  std::vector<std::uint64_t> paths_before_;       ///< per light
-  double radius_ = 0;                             ///< of the first pass, metres
+  std::optional<KernelPreparation> kernels_;             ///< begun when photons are first traced
+  int pass_ = 0;                                         ///< the next; 0 where light maps are read
+  int parts_ = 0, all_parts_ = 0;                        ///< of the latest photons, and of all
+  std::optional<cache::LightMapParameters> first_maps_;  ///< of the first photons
+  std::vector<std::uint64_t> paths_before_;              ///< per light
+  double radius_ = 0;                                    ///< of the first pass, metres
   NeighbourGroups groups_;
   std::shared_ptr<const SurfaceIndex> surface_;  ///< where areas are clipped
   std::shared_ptr<const MapOwners> owners_;      ///< where several processes share the rendering

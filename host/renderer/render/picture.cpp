@@ -184,10 +184,9 @@ cache::LightAndErrors Picture::light_at(PassLight& light, const PrimaryHits& hit
   const TimeTaken filled_before = cache->fill_time();
   cache::LightAndErrors found = with_errors ? cache->with_errors(hits, *light.gathered(), progress)
                                             : cache::LightAndErrors{cache->at(hits, progress), {}};
-  const LightMapStatistics maps = cache->maps().statistics();
   const TimeTaken filling = cache->fill_time() - filled_before;
-  costs_.light_maps.add(filling - (costs_.build.time - built), maps.value_bytes + maps.index_bytes);
-  costs_.light_map_nodes += maps.nodes - nodes_before;
+  costs_.light_maps.add(filling - (costs_.build.time - built), cache->maps().bytes());
+  costs_.light_map_nodes += cache->maps().statistics().nodes - nodes_before;
   costs_.light_map_errors = cache->errors_read();
   costs_.estimate.add(stopwatch.taken() - filling);
   costs_.hit_count += cache->hits_alone() - alone_before;

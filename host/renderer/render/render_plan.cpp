@@ -199,10 +199,11 @@ EstimateParameters RenderPlan::estimate_at_ends(
           .surface = surface};
 }
 
-LightMapParameters RenderPlan::light_maps(double radius, const Scene& scene, const Photons& photons,
-                                          std::span<const double> powers) const {
+cache::LightMapParameters RenderPlan::light_maps(double radius, const Scene& scene,
+                                                 const Photons& photons,
+                                                 std::span<const double> powers) const {
   const int times = gathers_at_nodes() ? defaults::photons_between_nodes : 1;
-  LightMapParameters parameters = cache::light_map_parameters(
+  cache::LightMapParameters parameters = cache::light_map_parameters(
       scene, photons, times * used_.neighbours, std::sqrt(times) * radius, used_.angle_degrees,
       used_.light_map_spacing, used_.light_map_detail, powers);
   parameters.neighbours = used_.neighbours;
@@ -210,9 +211,10 @@ LightMapParameters RenderPlan::light_maps(double radius, const Scene& scene, con
   return parameters;
 }
 
-LightMapParameters RenderPlan::ends(double radius, const Scene& scene, const Photons& photons,
-                                    std::span<const double> powers) const {
-  LightMapParameters parameters =
+cache::LightMapParameters RenderPlan::ends(double radius, const Scene& scene,
+                                           const Photons& photons,
+                                           std::span<const double> powers) const {
+  cache::LightMapParameters parameters =
       cache::light_map_parameters(scene, photons, neighbours_at_ends(), reach_at_ends(radius),
                                   used_.angle_degrees, 0, 0, powers);
   parameters.levels = 1;
@@ -220,8 +222,8 @@ LightMapParameters RenderPlan::ends(double radius, const Scene& scene, const Pho
   return parameters;
 }
 
-cache::IrradianceGatherParameters RenderPlan::node_gathering(double radius,
-                                                             const LightMapParameters& maps) const {
+cache::IrradianceGatherParameters RenderPlan::node_gathering(
+    double radius, const cache::LightMapParameters& maps) const {
   return {.rays = used_.light_map_rays,
           .light_samples = used_.light_map_rays,
           .near = defaults::near_radii * reach_at_ends(radius),

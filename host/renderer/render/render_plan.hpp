@@ -75,17 +75,17 @@ class RenderPlan {
   /// The parameters of light maps from these photons.
   ///   radius   of their maps, metres
   ///   powers   per layer
-  LightMapParameters light_maps(double radius, const Scene& scene, const Photons& photons,
-                                std::span<const double> powers) const;
+  cache::LightMapParameters light_maps(double radius, const Scene& scene, const Photons& photons,
+                                       std::span<const double> powers) const;
 
   /// The parameters of light maps where gathering rays end.
-  LightMapParameters ends(double radius, const Scene& scene, const Photons& photons,
-                          std::span<const double> powers) const;
+  cache::LightMapParameters ends(double radius, const Scene& scene, const Photons& photons,
+                                 std::span<const double> powers) const;
   /// At nodes of light maps.
   ///   radius   of the photon maps, metres
   ///   maps     of these nodes
   cache::IrradianceGatherParameters node_gathering(double radius,
-                                                   const LightMapParameters& maps) const;
+                                                   const cache::LightMapParameters& maps) const;
 
   /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
   /// of neighbouring samples alike, those of another do not.

@@ -72,7 +72,7 @@ RenderSession::RenderSession(std::shared_ptr<const PreparedScene> scene, std::sp
         photons_.next(first ? prepared : nullptr, first && keep ? &keep : nullptr, progress)));
   }
   if (reads_light_maps()) {
-    frames_.emplace(scene_->rays, light().cache()->maps(), light().nodes());
+    frames_.emplace(scene_->rays, light().cache()->maps());
   }
 }
 
@@ -107,12 +107,12 @@ void RenderSession::grow(int parts, Progress& progress) {
         scene_->rays, plan_, photons_.next(nullptr, nullptr, progress, more_photons),
         std::move(growth)));
   }
-  frames_.emplace(scene_->rays, light().cache()->maps(), light().nodes());
+  frames_.emplace(scene_->rays, light().cache()->maps());
 }
 
 std::optional<LightMapContents> RenderSession::light_map_contents() const {
   if (!reads_light_maps()) return std::nullopt;
-  const LightMaps& maps = passes_.front()->cache()->maps();
+  const cache::LightMaps& maps = passes_.front()->cache()->maps();
   if (maps.statistics().nodes == 0) return std::nullopt;
   LightMapContents contents = maps.contents();
   contents.settings = photons_.light_map_settings();

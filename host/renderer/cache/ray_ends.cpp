@@ -1,0 +1,117 @@
+#include "cache/ray_ends.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <glm/gtc/constants.hpp>
+#include <utility>
+
+#include "light/light_at_points.hpp"
+#include "trace/hit_batch.hpp"
+#include "trace/surface.hpp"
+
+namespace photile::cache {
+namespace {
+
+/// Finds the weight of irradiance at each end. Returns 1 for those whose lobe reflects much, else
+/// 0; their light is radiance.
+std::vector<std::uint8_t> weigh(RayEnds& ends) {
+  const trace::EyeRecord& ray_hits = ends.rays.ray_hits;
+  std::vector<std::uint8_t> has_lobe(ray_hits.hits.size());
+  ends.weight.resize(ray_hits.hits.size());
+  tbb::parallel_for(std::size_t{0}, ends.rays.first.size() - 1, [&](std::size_t point) {
+    const trace::FlushDenormals flush_denormals;
+    for (std::size_t end = ends.rays.first[point]; end < ends.rays.first[point + 1]; ++end) {
+      const trace::HitReflection reflection = trace::reflection_of(ray_hits, end);
+      has_lobe[end] = reflection.strong_lobe;
+      ends.weight[end] = ray_hits.hits[end].throughput;
+      if (reflection.strong_lobe) continue;
+      ends.weight[end] *= reflection.reflectance * glm::one_over_pi<float>();
+    }
+  });
+  return has_lobe;
+}
+
+/// In the order of the ends that are chosen.
+PrimaryHits hits_of(const trace::EyeRecord& ray_hits, std::span<const std::uint32_t> chosen) {
+  trace::EyeRecord record;
+  for (const std::uint32_t end : chosen) {
+    record.hits.push_back(ray_hits.hits[end]);
+    if (!ray_hits.glossy.empty()) record.glossy.push_back(ray_hits.glossy[end]);
+  }
+  std::vector<trace::HitIndex> indices;
+  for (std::uint32_t i = 0; i < chosen.size(); ++i) indices.push_back({0, i});
+  return trace::hits_at({&record, 1}, indices);
+}
+
+}  // namespace
+
+void RayEnds::add_point(const LightTable& of_nodes, std::size_t point, std::uint32_t batches,
+                        std::uint32_t rays_per_batch, BatchSums& sums) const {
+  for (std::size_t end = rays.first[point]; end < rays.first[point + 1]; ++end) {
+    const trace::EyeHit& hit = rays.ray_hits.hits[end];
+    const std::uint32_t batch = hit.pixel / rays_per_batch % batches;
+    const glm::vec3 direction = rays.direction_of(hit.pixel);
+    if (slot[end] < found.size()) {
+      light.for_each(slot[end], [&](std::size_t layer, std::size_t i) {
+        sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                         weight[end] * light::reflected_radiance(found, slot[end], light, i),
+                         direction);
+      });
+      continue;
+    }
+    const BilinearWeights& bilinear = nodes[slot[end] - found.size()];
+    for (std::size_t corner = 0; corner < bilinear.node.size(); ++corner) {
+      if (bilinear.weight[corner] == 0.0f) continue;
+      const glm::vec3 of_corner = bilinear.weight[corner] * weight[end];
+      of_nodes.for_each(bilinear.node[corner], [&](std::size_t layer, std::size_t i) {
+        sums.add_surface(static_cast<std::uint32_t>(layer), batch,
+                         of_corner * of_nodes.irradiance[i], direction);
+      });
+    }
+  }
+}
+
+RayEnds light_at_ends(trace::HemisphereRays rays, light::LightAtPoints& photons, LightMaps& maps,
+                      const Progress& progress) {
+  RayEnds ends{
+      .rays = std::move(rays), .weight = {}, .slot = {}, .found = {}, .light = {}, .nodes = {}};
+  const trace::EyeRecord& ray_hits = ends.rays.ray_hits;
+  std::vector<std::uint8_t> is_found = weigh(ends);
+  PrimaryHits served;
+  for (std::size_t end = 0; end < is_found.size(); ++end) {
+    if (is_found[end]) continue;
+    served.position.push_back(ray_hits.hits[end].position);
+    served.oriented_face.push_back(ray_hits.hits[end].oriented_face);
+  }
+  LightMaps::Around around = maps.around(served, progress);
+
+  std::vector<std::uint32_t> chosen;
+  std::size_t next = 0, kept = 0;
+  ends.slot.resize(is_found.size());
+  for (std::uint32_t end = 0; end < is_found.size(); ++end) {
+    if (!is_found[end]) {
+      const std::size_t own = next++;
+      if (around.seen[own]) {
+        around.nodes[kept] = around.nodes[own];
+        ends.slot[end] = static_cast<std::uint32_t>(kept++);
+        continue;
+      }
+      is_found[end] = 1;
+      ends.weight[end] = ray_hits.hits[end].throughput;
+    }
+    ends.slot[end] = static_cast<std::uint32_t>(chosen.size());
+    chosen.push_back(end);
+  }
+  around.nodes.resize(kept);
+  ends.nodes = std::move(around.nodes);
+  for (std::size_t end = 0; end < is_found.size(); ++end) {
+    if (!is_found[end]) ends.slot[end] += static_cast<std::uint32_t>(chosen.size());
+  }
+  if (!chosen.empty() || maps.processes()) {
+    ends.found = hits_of(ray_hits, chosen);
+    ends.light = photons.at(ends.found, progress);
+  }
+  return ends;
+}
+
+}  // namespace photile::cache
