@@ -83,10 +83,18 @@ def test_a_page_in_german_has_no_english_words(record):
     assert "Key figures" not in page
 
 
-def test_every_word_of_the_templates_is_translated():
+def test_every_word_of_templates_and_tables_is_translated(record):
     words = json.loads((FOLDER / "words/de.json").read_text(encoding="utf-8"))
     said = re.findall(r'_\("((?:[^"\\]|\\.)*)"', (FOLDER / "templates/report.html").read_text())
-    assert len(said) > 20 and [one for one in said if one not in words and one not in ("met", "lux")] == []
+    assert len(said) > 20
+    results = pathlib.Path(__file__).parent / "results"
+    record["report"]["included"] = [{"file": name, "content": json.loads((results / name).read_text())}
+                                    for name in ("observers.json", "daylight.json")]
+    report = Report(record)
+    for table in (*report._included.tables, *report._tables()):
+        said += [table["heading"], *table["columns"]]
+    same = ("met", "lux", "UGR", "DGP", "DA", "sDA", "ASE")
+    assert [one for one in said if one not in words and one not in same] == []
     for english, german in words.items():
         assert english.count("{") == german.count("{"), english
 
