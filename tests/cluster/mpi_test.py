@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Processes that share a rendering give the bits of one, and end together.
+"""Processes that share a rendering give the bits of one, and end together. (tests/equal_bits has 1 and 3 of them for each
+kind of picture.)
 
     mpi_test.py PHOTILE MPIEXEC CASE
 
@@ -95,25 +96,6 @@ def same_pictures(ranks, arguments, scene=BOX, by=0):
 SMALL = ["--photons", "20k", "--size", "32x24", "--samples", "2", "--seed", "3"]
 
 
-def light_maps():
-    """Light maps that photons value: the bits of photile on its own."""
-    same_pictures([2, 3], [*SMALL, "--quality", "draft"])
-
-
-def hits():
-    """Estimates at hits: the same bits for any ranks, and those of photile on its own but for roundings."""
-    arguments = [*SMALL, "--quality", "draft", "--set", "light_maps=off"]
-    shared = same_pictures([2, 3], arguments, by=1)
-    alone = same_pictures([], arguments)
-    check(np.allclose(shared, alone, rtol=1e-4, atol=1e-6 * alone.max()),
-          "the light of several ranks is not that of one process")
-
-
-def nodes():
-    """Nodes that gather light by rays, the default."""
-    same_pictures([2, 3], [*SMALL[:-4], "--samples", "1", "--set", "light_map_rays=8"])
-
-
 def readings(ranks, folder, arguments=()):
     file, points = folder / f"{ranks}.json", folder / "points.pts"
     points.write_text("".join(f"{0.1 + 0.05 * i} 0.4 {0.1 + 0.03 * i} 0 1 0\n" for i in range(7)))
@@ -199,33 +181,6 @@ def walk():
             check(all(np.array_equal(a, b) for a, b in zip(frames[0], frames[3])), f"walk {more} differs")
             for png in (folder / "0").glob("*.png"):
                 check(png.read_bytes() == (folder / "3" / png.name).read_bytes(), f"{png.name} differs")
-
-
-def passes():
-    """Several photon passes, in light maps and in the mean of pictures."""
-    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "light_maps=on"])
-    same_pictures([2], [*SMALL[:4], "--samples", "4", "--set", "light_map_rays=8"])
-    same_pictures([3], [*SMALL, "--quality", "draft", "--set", "passes=2"], by=1)
-
-
-def many_lights():
-    """More lights than have planes of their own: sparse layers."""
-    with tempfile.TemporaryDirectory() as name:
-        scene = pathlib.Path(name) / "lamps.gltf"
-        content = json.loads(BOX.read_text())
-        shutil.copy(BOX.with_suffix(".bin"), name)
-        count = 40
-        content.setdefault("extensionsUsed", []).append("KHR_lights_punctual")
-        content.setdefault("extensions", {})["KHR_lights_punctual"] = {
-            "lights": [{"type": "point", "intensity": 10, "name": f"lamp{i}"} for i in range(count)]}
-        roots = content["scenes"][content.get("scene", 0)]["nodes"]
-        for i in range(count):
-            roots.append(len(content["nodes"]))
-            content["nodes"].append({"translation": [0.05 + 0.45 * i / count, 0.4 + 0.003 * i, 0.1],
-                                     "extensions": {"KHR_lights_punctual": {"light": i}}})
-        scene.write_text(json.dumps(content))
-        for more in (["--quality", "draft"], ["--set", "light_map_rays=8"]):
-            same_pictures([3], [*SMALL[:4], "--samples", "1", *more], scene)
 
 
 def glossy():

@@ -251,36 +251,6 @@ TEST_CASE("next to no light of the sky is told of with how much it is") {
   CHECK(report::darkness_warning(0.11).empty());
 }
 
-TEST_CASE("daylight without weather, or with a sky of its own, is refused in a line") {
-  const FileFolder folder;
-  const std::string scene = write_open_box(folder);
-  const auto refused = [&](std::vector<std::string> more) {
-    const Outcome outcome = run_photile(quick("daylight", scene, std::move(more)));
-    CHECK(outcome.exit_code == 2);
-    CHECK(outcome.output.empty());
-    return outcome.errors;
-  };
-  CHECK_THAT(refused({}), Contains("--weather"));
-  CHECK_THAT(refused({"--weather", write_weather(folder), "--sky", "overcast=1000"}),
-             Contains("--sky"));
-  CHECK_THAT(refused({"--weather", write_weather(folder), "--occupied", "9"}),
-             Contains("--occupied"));
-  CHECK_THAT(
-      refused({"--weather", write_weather(folder), "--blinds", "*=0.1", "--suns", "patches"}),
-      Contains("--suns"));
-  const auto groups = [&](int count) {
-    std::vector<std::string> more{"--weather", folder.write("none.epw", "")};
-    for (int i = 0; i < count; ++i) more.insert(more.end(), {"--blinds", "*=0.1"});
-    return run_photile(quick("daylight", scene, more)).errors;
-  };
-  CHECK_THAT(groups(4), Contains("none.epw"));
-  CHECK_THAT(groups(5), Contains("--blinds: 5 groups") && Contains("more than 4"));
-  const Outcome broken = run_photile(quick("daylight", folder.write("broken.obj", "f 1 2 3\n"),
-                                           {"--weather", write_weather(folder)}));
-  CHECK(broken.exit_code == 3);
-  CHECK_THAT(broken.errors, Contains("broken.obj"));
-}
-
 TEST_CASE("daylight factors are per cent of the sky's lux") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder);

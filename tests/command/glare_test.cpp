@@ -80,18 +80,6 @@ TEST_CASE("a grid has four directions of view at each point, and no pictures") {
   CHECK_THAT(outcome.output, Contains("highest UGR") && !Contains("DGP"));
 }
 
-TEST_CASE("glare needs somebody who looks, and outputs that are tables") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder);
-  CHECK_THAT(only_error(run_photile(glare(scene, {})), usage), Contains("--observers"));
-  CHECK_THAT(only_error(run_photile(glare(scene, {"--grid", "--directions", "0"})), usage),
-             Contains("--directions"));
-  CHECK_THAT(only_error(run_photile(glare(scene, {"--grid", "-o", folder / "a.png"})), usage),
-             Contains("a.png") && Contains(".csv"));
-  CHECK_THAT(only_error(run_photile(glare(scene, {"--grid", "--ratings", "vcp"})), usage),
-             Contains("vcp"));
-}
-
 TEST_CASE("render projects as it is told, black beyond the circle of a fisheye") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
@@ -133,26 +121,6 @@ TEST_CASE("a camera may be a view of Radiance: that of a picture shows the same 
       REQUIRE((*second.find("G"))[i] == Approx((*first.find("G"))[i]).epsilon(1e-3));
     }
   }
-  const auto refusal = [&](const std::string& text) {
-    return only_error(run_photile({"render", scene, "-q", "-o", folder / "c.exr", "--camera",
-                                   folder.write("c.vf", text)}),
-                      3);
-  };
-  CHECK_THAT(refusal("hello\n"), Contains("c.vf: is no view"));
-  CHECK_THAT(refusal("-vtc\n"), Contains("-vtc"));
-  CHECK_THAT(refusal("-vp 1 2\n"), Contains("-vp has no number"));
-  CHECK_THAT(refusal("-vs 0.5\n"), Contains("shifted"));
-  CHECK_THAT(refusal("-vd 0 0 1\n"), Contains("-vd and -vu"));
-  CHECK_THAT(refusal("-vv 200\n"), Contains("at most 179"));
-}
-
-TEST_CASE("a field of view has to fit its projection") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder);
-  CHECK_THAT(only_error(run_photile(typed("render", scene, "-q -o", folder / "a.exr",
-                                          "--projection fisheye --field-of-view 200")),
-                        usage),
-             Contains("--field-of-view 200") && Contains("180"));
 }
 
 TEST_CASE("ies says what a lamp is and prints its UGR table") {
@@ -167,11 +135,6 @@ TEST_CASE("ies says what a lamp is and prints its UGR table") {
                                  Contains("crosswise") && Contains("12H x 8H"));
   CHECK(lines_of_text(folder.read("a.csv")) == 20);
   CHECK(nlohmann::json::parse(folder.read("a.json"))["rooms"].size() == 19);
-  // A point has no luminance.
-  const std::string point =
-      folder.write("point.ies", text.replace(text.find("0.1 1.2"), 7, "0.0 0.0"));
-  CHECK_THAT(last_error(run_photile({"ies", point, "--ugr-table"}), 3), Contains("opening"));
-  CHECK_THAT(only_error(run_photile({"ies", folder / "none.ies"}), 3), Contains("none.ies"));
 }
 
 TEST_CASE("tables of UGR state no rating below 10; files of numbers do") {
@@ -208,12 +171,6 @@ TEST_CASE("matt walls have no reflections to mark, with photons or paths") {
       render(write_box(folder), {"--glare", folder / "glare.png", "--integrator", integrator}));
   CHECK_THAT(outcome.errors, Contains("glare: no reflection is above"));
   CHECK(read_image(folder / "glare.png").width == 40);
-}
-
-TEST_CASE("glare needs a PNG to be written to") {
-  const FileFolder folder;
-  CHECK_THAT(only_error(run_photile(render(write_box(folder), {"-q", "--glare", "marks.exr"})), 2),
-             Contains("marks.exr") && Contains(".png"));
 }
 
 }  // namespace

@@ -56,8 +56,6 @@ TEST_CASE("info lists the groups that it is given, with the sum of their lights'
   const FileFolder folder;
   const std::string scene = write_box(folder);
   CHECK(info(scene)["groups"].empty());
-  // An option that may be repeated takes one word each time.
-  only_error(run_photile({"info", scene, "--light-group", "l*=left", "r*=right"}), usage);
   const auto facts = info(scene, {"--light-group", "*t=both"});
   CHECK(facts["lights"][0]["group"] == "both");
   REQUIRE(facts["groups"].size() == 1);
@@ -66,12 +64,6 @@ TEST_CASE("info lists the groups that it is given, with the sum of their lights'
   const auto watts = [](const nlohmann::json& light) { return light["watts"].get<double>(); };
   CHECK(watts(facts["groups"][0]) ==
         Approx(watts(facts["lights"][0]) + watts(facts["lights"][1])).epsilon(1e-12));
-
-  const Outcome text = run_photile({"info", scene, "--light-group", "left=own"});
-  CHECK_THAT(text.output, Contains("group: own: 1 light, ") && Contains(", of group own"));
-  const Outcome none = run_photile({"info", scene, "--light-group", "lamp*=lamps"});
-  CHECK(none.exit_code == 2);
-  CHECK_THAT(none.errors, Contains("'left', 'right'"));
 }
 
 TEST_CASE("a luminaire beside an OBJ is stated in lumens and in its electrical watts") {
@@ -115,89 +107,6 @@ TEST_CASE("info applies the emissive scale and the lumens per watt that it is gi
   const auto scaled = info(scene, {"--set", "emissive_scale=10", "--set", "lumen_per_watt=179"});
   CHECK(scaled["lights"][0]["watts"].get<double>() == Approx(10 * plain).epsilon(1e-6));
   CHECK(scaled["lights"][0]["lumens"].get<double>() == Approx(1790 * plain).epsilon(1e-6));
-}
-
-TEST_CASE("info as text names every light and material, and what a coat adds to its colour") {
-  const FileFolder folder;
-  folder.write("box.mtl",
-               box_mtl() + "newmtl coated\nKd 0.5 0.5 0.5\nKs 0.3 0.3 0.3\nNs 50\nillum 2\n");
-  const std::string scene = folder.write("box.obj", box_obj() + "usemtl coated\nf 1 2 7\n");
-  CHECK_THAT(succeed({"info", scene}).output,
-             Contains("light: left: area") && Contains("light: right: area") &&
-                 Contains("material: wall: diffuse, 12 triangles") &&
-                 Contains("room: 4.0 m2, 2.00 x 2.00 m, 2.00 m high") &&
-                 Contains("material: coated: glossy, 1 triangle, reflectance 0.65 (0.5 entered, "
-                          "and 0.3 specular"));
-}
-
-TEST_CASE("info counts what the import dropped, and says so") {
-  const FileFolder folder;
-  folder.write("box.mtl", box_mtl());
-  // The first wall again, the other way round, a triangle without area, and one with a corner that
-  // is no number.
-  const std::string scene = folder.write(
-      "box.obj", box_obj() + "v nan -1 -1\nusemtl wall\nf 4 3 2 1\nf 1 2 2\nf 1 2 17\n");
-  const auto facts = info(scene);
-  CHECK(facts["triangles"] == 16);
-  CHECK(facts["degenerate_triangles"] == 1);
-  CHECK(facts["duplicate_triangles"] == 2);
-  CHECK(facts["non_finite_triangles"] == 1);
-  const Outcome text = run_photile({"info", scene});
-  CHECK_THAT(text.output, Contains("warning: 1 triangles without area are dropped"));
-}
-
-TEST_CASE("info states what panes let through and reflect, however the file makes them") {
-  const FileFolder folder;
-  folder.write("box.mtl", box_mtl() + "newmtl pane\nKd 0 0 0\nd 0.1\n");
-  const std::string scene = folder.write(
-      "box.obj", box_obj() + "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nusemtl pane\nf -3 -2 -1\n");
-  CHECK_THAT(succeed({"info", scene}).output,
-             Contains("material: pane: pane, 1 triangle, transmittance 0.9, reflectance 0"));
-  const auto material = info(scene)["materials"].back();
-  CHECK(material["transmittance"].get<double>() == Approx(0.9));
-  CHECK_FALSE(info(scene)["materials"].front().contains("transmittance"));
-  CHECK_THAT(succeed({"info", scene, "--reflectance", "pane=0.08"}).output,
-             Contains("transmittance 0.9, reflectance 0.08"));
-  CHECK_THAT(only_error(run_photile({"info", scene, "--reflectance", "pane=0.2"}), usage),
-             Contains("at its brightest it reflects 0.1"));
-}
-
-TEST_CASE("info names rough glass, which it treats as smooth") {
-  const FileFolder folder;
-  folder.write("box.mtl", box_mtl() + "newmtl frosted\nillum 7\nNs 80\n");
-  const std::string scene = folder.write(
-      "box.obj", box_obj() + "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nusemtl frosted\nf -3 -2 -1\n");
-  const Outcome text = run_photile({"info", scene});
-  CHECK_THAT(text.output,
-             Contains("warning: material 'frosted': rough glass (Ns 80) is treated as smooth"));
-}
-
-TEST_CASE("info takes the scene of a glTF file that is named, and refuses one that is not there") {
-  const FileFolder folder;
-  const std::string scene = folder.write("two.gltf", R"({"asset": {"version": "2.0"},
-    "scenes": [{"name": "day", "nodes": [0]}, {"name": "night", "nodes": [0, 1]}],
-    "nodes": [{"name": "a", "mesh": 0}, {"name": "b", "mesh": 0, "translation": [0, 0, 1]}],
-    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
-    "materials": [{"emissiveFactor": [1, 1, 1]}],
-    "buffers": [{"byteLength": 36, "uri":
-      "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
-    "bufferViews": [{"buffer": 0, "byteLength": 36}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]})");
-  CHECK(info(scene)["lights"].size() == 1);
-  CHECK(info(scene, {"--set", "scene=night"})["lights"].size() == 2);
-  CHECK(info(scene, {"--set", "scene=1"})["lights"].size() == 2);
-  const Outcome dusk = run_photile({"info", scene, "--set", "scene=dusk"});
-  CHECK_THAT(only_error(dusk, 2), Contains("0 'day', 1 'night'"));
-}
-
-TEST_CASE("info names solid glass on a single sheet") {
-  const FileFolder folder;
-  const std::string pane = "v 0.5 0.5 0.5\nv 1 0.5 0.5\nv 1 1 0.5\nusemtl pane\nf -3 -2 -1\n";
-  const auto scene = folder.write("box.obj", box_obj() + pane);
-  folder.write("box.mtl", box_mtl() + "newmtl pane\nillum 7\nNi 1.5\n");
-  const auto warnings = info(scene)["warnings"];
-  REQUIRE(warnings.size() == 1);
-  CHECK_THAT(warnings[0].get<std::string>(), Contains("material pane") && Contains("3 edges"));
 }
 
 // Options that add lights, through the whole command.
@@ -245,25 +154,6 @@ TEST_CASE("both integrators render a floor under a sky, as a layer that can be r
   for (const float radiance : *sky) brightest = std::max(brightest, radiance);
   CHECK(brightest >= Approx(10 / 3.14159265).epsilon(0.01));
   succeed({"relight", picture, "--light", "sky=x2", "-o", folder / "twice.exr"});
-}
-
-TEST_CASE("a malformed option of a light is one line") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder);
-  const std::string lamp = folder.write("lamp.ies", "no lamp\n");
-  const auto refused = [&](const std::vector<std::string>& options, int code, const char* words) {
-    std::vector<std::string> arguments = typed("info", scene, options);
-    CHECK_THAT(only_error(run_photile(arguments), code), Contains(words));
-  };
-  refused({"--sun", "1,2"}, 2, "AZIMUTH,ELEVATION,LUX");
-  refused({"--sky", "foggy=1"}, 2, "uniform, overcast and clear");
-  refused({"--sky", "clear=1000"}, 2, "needs a sun");
-  refused({"--ies", "left"}, 2, "NAME=FILE");
-  refused({"--ies", "left=" + lamp}, 2, "neither a point nor a spot light");
-  refused({"--area-light", "Area=1x1"}, 2, "NAME=WxH,LUMENS");
-  refused({"--area-light", "Area=1x1,100"}, 2, "glTF");
-  refused({"--environment", folder / "gone.exr"}, 3, "gone.exr");
-  refused({"--environment", lamp}, 3, "lamp.ies");
 }
 
 }  // namespace

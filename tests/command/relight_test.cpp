@@ -70,12 +70,6 @@ TEST_CASE("a relit picture can be relit again and comes back to the original") {
   check_same_root(original, folder / "b.exr", 0);  // powers of two are exact
 }
 
-TEST_CASE("relight without a change and an output lists the lights with their powers") {
-  const FileFolder folder;
-  const Outcome outcome = succeed({"relight", render(folder, "a.exr", {"--light", "left=7"})});
-  CHECK_THAT(outcome.output, Contains("light: left: 7 W") && Contains("light: right: "));
-}
-
 TEST_CASE("relight writes a PNG that changes with the exposure") {
   const FileFolder folder;
   const std::string original = render(folder, "a.exr");
@@ -89,30 +83,6 @@ TEST_CASE("relight writes a PNG that changes with the exposure") {
     return sum;
   };
   CHECK(mean("light.png") > 1.5 * mean("dark.png"));
-}
-
-TEST_CASE("relight refuses what it cannot do with one line and the right exit code") {
-  const FileFolder folder;
-  const std::string original = render(folder, "a.exr");
-  const std::string out = folder / "out.png";
-  SECTION("an unknown light") {
-    const Outcome outcome = run_photile({"relight", original, "--light", "sun=x2", "-o", out});
-    CHECK_THAT(only_error(outcome, 2), Contains("sun") && Contains("left"));
-  }
-  SECTION("a value that is none") {
-    only_error(run_photile({"relight", original, "--light", "left=bright", "-o", out}), 2);
-  }
-  SECTION("a change without an output") {
-    only_error(run_photile({"relight", original, "--light", "left=x2"}), 2);
-  }
-  SECTION("a missing picture") {
-    const Outcome outcome = run_photile({"relight", folder / "none.exr", "-o", out});
-    CHECK_THAT(only_error(outcome, 3), Contains("none.exr"));
-  }
-  SECTION("an empty picture") {
-    only_error(run_photile({"relight", folder.write("empty.exr", ""), "-o", out}), 3);
-  }
-  CHECK_FALSE(std::filesystem::exists(out));
 }
 
 TEST_CASE("relight names the picture that lacks what it needs") {

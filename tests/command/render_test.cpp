@@ -1,4 +1,4 @@
-// `photile render` as a whole: what it writes, and that the same seed gives the same bits.
+// `photile render` as a whole: what it writes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -54,22 +54,6 @@ std::vector<std::string> checked_stages(const nlohmann::json& record) {
   return names;
 }
 
-TEST_CASE("the same seed gives the same bits on one and on two threads") {
-  const std::string maps = GENERATE("auto", "patch", "triangle", "naive");
-  const FileFolder folder;
-  const std::vector<std::string> options{"--size", "32x24", "--seed", "7", "--set", "maps=" + maps};
-  const auto with = [&](const char* threads, const char* name) {
-    auto all = options;
-    all.insert(all.end(), {"--threads", threads, "-o", folder / name});
-    render(folder, all);
-    return read_image(folder / name);
-  };
-  const Image one = with("1", "one.exr"), two = with("2", "two.exr");
-  REQUIRE(one.channel_names == two.channel_names);
-  CHECK(one.channels == two.channels);
-  CHECK(mean(one, "G") > 0);
-}
-
 TEST_CASE("naive maps take whole discs, and the EXR says so") {
   const FileFolder folder;
   render(folder, {"--size", "16x12", "--set", "maps=naive", "-o", folder / "out.exr"});
@@ -112,9 +96,6 @@ TEST_CASE("a camera stands where --eye says and looks where --look-at says, what
                   "--set", "up=z"});
   CHECK_THAT(read_image(folder / "out.exr").attributes.at("photile.view"),
              Contains("-vp 0.25 -0.5 0.5 -vd 0 1 0 -vu 0 0 1"));
-  const Outcome outcome = run_photile(typed("render", write_box(folder), "-o", folder / "out.exr",
-                                            "--eye 1,2,3 --look-at 1,2,3 --size 8x8"));
-  CHECK_THAT(last_error(outcome, usage), Contains("--look-at 1,2,3") && Contains("--eye"));
 }
 
 TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
@@ -271,27 +252,6 @@ TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
   CHECK(*read_image(folder / "b.exr").find("R") == *picture.find("Combined_right.R"));
 }
 
-TEST_CASE("options of photon maps are usage errors beside --integrator path") {
-  const auto option = GENERATE(values<std::vector<std::string>>({{"--photons", "10"},
-                                                                 {"--set", "passes=2"},
-                                                                 {"--set", "quota=power"},
-                                                                 {"-k", "20"},
-                                                                 {"--set", "radius=0.1"},
-                                                                 {"--set", "angle_degrees=30"},
-                                                                 {"--set", "maps=auto"},
-                                                                 {"--set", "photons_per_cell=2"},
-                                                                 {"--device", "cpu"},
-                                                                 {"--set", "device_memory=1"},
-                                                                 {"--set", "program_cache=off"},
-                                                                 {"--set", "profile=on"}}));
-  const FileFolder folder;
-  std::vector<std::string> options = typed("-o", folder / "a.exr", option);
-  const std::string name = option[0] == "-k" ? "--neighbours" : option[0];
-  CHECK_THAT(only_error(run_photile(by_paths(folder, options)), 2),
-             Contains(name) && Contains("photon maps"));
-  CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
-}
-
 TEST_CASE("a signal stops paths with 130") {
   const FileFolder folder;
   Run run;
@@ -349,19 +309,6 @@ TEST_CASE("a room without lamps is lit by a sky in every command") {
     CAPTURE(command[0], command[3]);
     succeed(command);
   }
-}
-
-TEST_CASE("info takes a room without lamps and says what is missing, others refuse it") {
-  const FileFolder folder;
-  const std::string room = write_unlit_box(folder);
-  const Outcome info = succeed({"info", room});
-  CHECK_THAT(info.output, Contains("material: wall") && Contains("warning: no lights") &&
-                              Contains("--luminaires") && Contains("--sky"));
-  succeed({"info", room, "--json"});
-  CHECK_THAT(
-      only_error(run_photile({"render", room, "-o", folder / "a.exr", "--quiet"}), bad_input),
-      Contains("no lights"));
-  CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
 }
 
 // `photile render --errors`: the noise of each light's layer, as the picture states it.
@@ -430,19 +377,6 @@ TEST_CASE("errors are relit as pictures are: a light's own in proportion to its 
     CHECK(tripled[pixel] == Approx(3 * own[pixel]));
   }
   CHECK(*before.find("Combined_right.G") == *after.find("Combined_right.G"));
-}
-
-TEST_CASE("errors are not stated where no nodes gather") {
-  const FileFolder folder;
-  const auto refusal = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = typed("render", write_box(folder), "-o", folder / "a.exr",
-                                               "--errors", folder / "errors.exr", more);
-    return only_error(run_photile(arguments), usage);
-  };
-  CHECK_THAT(refusal({"--set", "light_map_rays=0"}),
-             Contains("--errors") && Contains("--quality good"));
-  CHECK_THAT(refusal({"--integrator", "path"}), Contains("--errors"));
-  CHECK_THAT(refusal({"--save-maps", folder / "a.maps"}), Contains("--errors"));
 }
 
 }  // namespace

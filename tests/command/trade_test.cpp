@@ -54,18 +54,6 @@ TEST_CASE("a trade writes its files and prints a row for each requested error", 
   CHECK(text_of(folder / "again/reference.exr").empty());
 }
 
-TEST_CASE("a trade refuses a reference of another size in one line") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder);
-  const std::string reference = folder / "reference.exr";
-  succeed(typed("render", scene, "--integrator path --size 16x16 --samples 1 -o", reference, "-q"));
-  const std::string line =
-      only_error(run_photile({"trade", scene, "-o", folder / "results", "--reference", reference,
-                              "--size", "24x18", "-q"}),
-                 2);
-  CHECK_THAT(line, Contains("16x16") && Contains("--size"));
-}
-
 TEST_CASE("pictures are made until one states the requested error, which its settings make again") {
   const FileFolder folder;
   const std::vector<std::string> box{"render", write_box(folder), "--size", "24x18"};
@@ -102,7 +90,7 @@ TEST_CASE("an error that is out of reach is told") {
   CHECK_THAT(outcome.errors, Contains("warning: a standard error of 0.001% was not reached"));
 }
 
-TEST_CASE("pictures are made for a time; that needs nodes that gather") {
+TEST_CASE("pictures are made for a time") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
   const Outcome outcome =
@@ -112,25 +100,6 @@ TEST_CASE("pictures are made for a time; that needs nodes that gather") {
                  Contains("--photons 1500000 -k 100 --samples 4 --set light_map_rays=16") &&
                  !Contains("picture 2"));
   CHECK_FALSE(text_of(folder / "box.exr").empty());
-  const std::string goal = GENERATE("--for=1s", "--target-error=2%");
-  const auto refused = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all = typed("render", scene, "-o", folder / "no.exr", goal, more);
-    return only_error(run_photile(all), 2);
-  };
-  const std::string name = goal.substr(0, goal.find('='));
-  CHECK_THAT(refused({"--set", "light_maps=off"}), Contains(name) && Contains("--quality good"));
-  CHECK_THAT(refused({"--set", "light_map_rays=0"}), Contains(name) && Contains("--quality good"));
-  CHECK_THAT(refused({"--integrator", "path"}), Contains(name));
-  CHECK_THAT(refused({"--glare", folder / "glare.png"}), Contains(name));
-}
-
-TEST_CASE("requested errors and times that are none are usage errors") {
-  const FileFolder folder;
-  const std::string option =
-      GENERATE("--target-error=0", "--target-error=200%", "--target-error=small", "--for=33",
-               "--for=-1s", "--for=fast");
-  INFO(option);
-  only_error(run_photile({"render", write_box(folder), "-o", folder / "box.exr", option}), 2);
 }
 
 // `photile validate`: the table, the JSON and the exit codes.
@@ -170,11 +139,6 @@ TEST_CASE("readings that are too noisy for 1% make validate fail") {
     text += static_cast<char>(c);
   }
   CHECK(text == outcome.output + outcome.errors);
-}
-
-TEST_CASE("an unknown case is a usage error that lists those there are") {
-  CHECK_THAT(only_error(run_photile({"validate", "--case", "moonlight"}), 2),
-             Contains("moonlight") && Contains("integrating sphere"));
 }
 
 // `photile bake`: the files that it writes, and what other programs find in them.
@@ -286,9 +250,6 @@ TEST_CASE("a page and a scene for other programs are written with the same light
   CHECK_THAT(folder.read("room.html"), Contains("<!DOCTYPE html>"));
   CHECK(folder.read("room.glb").substr(0, 4) == "glTF");
   CHECK(read_image(folder / "room.light01.exr").find("G"));
-  CHECK_THAT(only_error(run_photile(publish({"-o", folder / "a.glb", "-o", folder / "a.gltf"})), 2),
-             Contains("a.light00.exr") && Contains("twice"));
-  CHECK_THAT(only_error(run_photile(publish({"-o", folder / "a.png"})), 2), Contains(".html"));
 }
 
 TEST_CASE("pages are made for a time, the first from a quarter of the rays", "[slow]") {
@@ -311,34 +272,6 @@ TEST_CASE("pages are made for a time, the first from a quarter of the rays", "[s
   succeed(typed("publish", scene, "-o", folder / "three.html",
                 "--texel 0.2 --title box --photons 20k --set light_map_rays=24 --set passes=3"));
   CHECK(folder.read("one.html") != folder.read("three.html"));
-  CHECK_THAT(only_error(run_photile(publish({"--for", "1s", "--set", "light_map_rays=0"})), 2),
-             Contains("--for") && Contains("--quality good"));
-}
-
-TEST_CASE("bake refuses what it cannot do in one line") {
-  const FileFolder folder;
-  CHECK_THAT(only_error(run_photile({"bake", write_box(folder), "-o", folder / "a.obj"}), 2),
-             Contains(".gltf or .glb"));
-  CHECK_THAT(last_error(run_photile(bake(folder, {"--texel", "0.00001"})), 2),
-             Contains("do not fit"));
-  CHECK_THAT(only_error(run_photile(bake(folder, {"--texel", "0"})), 2), Contains("--texel"));
-  // More surfaces than 64 x 64 texels can show: as many plates of a centimetre in the air.
-  std::string text = folder.read("box.obj") + "\nusemtl wall\n";
-  const auto corner = [&](double x, double y) {
-    text += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
-  };
-  for (int i = 0; i < 64 * 64; ++i) {
-    const double x = 0.025 * (i % 64) - 0.8, y = 0.025 * (i / 64) - 0.8;
-    corner(x, y);
-    corner(x + 0.01, y);
-    corner(x, y + 0.01);
-    text += "f -3 -2 -1\n";
-  }
-  folder.write("box.obj", text);
-  CHECK_THAT(last_error(run_photile({"bake", folder / "box.obj", "-o", folder / "a.gltf", "-q",
-                                     "--photons", "5k", "--most-texels", "64"}),
-                        2),
-             Contains("a picture of 64 x 64 has no room for "));
 }
 
 }  // namespace

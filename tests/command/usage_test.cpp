@@ -1,4 +1,4 @@
-// What the command line takes, says and refuses before anything starts.
+// What the command line takes and says. What it refuses is in tests/transcript.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -23,151 +23,10 @@ namespace {
 using Catch::Contains;
 using namespace app;
 
-// What the command line refuses before anything starts: exit code 2 and one line.
-
-/// `photile render` of a good scene with one more option.
-Outcome render_with(const FileFolder& folder, const std::string& option, const std::string& value) {
-  return run_photile({"render", write_box(folder), "-o", folder / "out.exr", option + "=" + value});
-}
-
-TEST_CASE("an unknown option is a usage error of one line that names it") {
-  const std::string line = only_error(run_photile({"render", "a.obj", "--fast"}), usage);
-  CHECK_THAT(line, Contains("--fast") && Contains("photile render --help"));
-}
-
-TEST_CASE("an option that is given twice is told so in words") {
-  CHECK_THAT(only_error(run_photile({"render", "a.obj", "--mood", "x", "--mood", "y"}), usage),
-             Contains("--mood is given 2 times; give it once"));
-}
-
 TEST_CASE("columns are as wide as their widest text") {
   CHECK(report::aligned({{"", "first"}, {"a lamp of a long name", "2 lm"}, {"\u00e9", "10 lm"}}) ==
         std::vector<std::string>{"                       first", "a lamp of a long name   2 lm",
                                  "\u00e9                      10 lm"});
-}
-
-TEST_CASE("an empty value is refused, and takes no other word in its place") {
-  const FileFolder folder;
-  const std::string scene = write_box(folder), notes = folder.write("notes.txt", "precious");
-  for (const std::string option : {"--stats", "--save-maps", "--png", "--glare", "--errors"}) {
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{option + "=", notes}, std::vector<std::string>{option, ""}}) {
-      std::vector<std::string> arguments = typed("render", scene, "-o", folder / "out.exr", words);
-      CHECK_THAT(only_error(run_photile(arguments), usage), Contains(option) && Contains("empty"));
-    }
-  }
-  CHECK(folder.read("notes.txt") == "precious");
-  CHECK_THAT(only_error(run_photile({"render", ""}), usage), Contains("empty"));
-}
-
-TEST_CASE("an unknown subcommand is a usage error of one line") {
-  CHECK_THAT(only_error(run_photile({"paint"}), usage), Contains("photile --help"));
-}
-
-TEST_CASE("no subcommand is a usage error of one line") {
-  only_error(run_photile(std::vector<std::string>{}), usage);
-}
-
-TEST_CASE("a scene is required") {
-  CHECK_THAT(only_error(run_photile({"render", "-o", "a.exr"}), usage), Contains("SCENE"));
-}
-
-TEST_CASE("an output is required") {
-  const FileFolder folder;
-  const Outcome outcome = run_photile({"render", write_box(folder)});
-  CHECK_THAT(only_error(outcome, usage), Contains("-o"));
-}
-
-TEST_CASE("values out of range are usage errors that name the option and the value") {
-  const auto [option, value] = GENERATE(table<std::string, std::string>({
-      {"--neighbours", "0"},
-      {"--neighbours", "-3"},
-      {"--neighbours", "2000000"},
-      {"--neighbours", "many"},
-      {"--set", "radius=0"},
-      {"--set", "radius=-1"},
-      {"--set", "radius=nan"},
-      {"--set", "radius=inf"},
-      {"--set", "radius=1e-60"},
-      {"--photons", "0"},
-      {"--photons", "1e11"},
-      {"--photons", "1.5"},
-      {"--samples", "0"},
-      {"--samples", "70000"},
-      {"--set", "angle_degrees=181"},
-      {"--set", "angle_degrees=-1"},
-      {"--set", "photons_per_cell=0"},
-      {"--seed", "-1"},
-      {"--seed", "1e30"},
-      {"--size", "0x10"},
-      {"--size", "10"},
-      {"--size", "10x20x30"},
-      {"--size", "100000x10"},
-      {"--set", "maps=magic"},
-      {"--set", "quota=magic"},
-      {"--threads", "-1"},
-      {"--threads", "1000000"},
-      {"--exposure", "nan"},
-      {"--set", "lumen_per_watt=0"},
-      {"--set", "emissive_scale=-1"},
-      {"--scale", "nan"},
-      {"--scale", "0"},
-      {"--scale", "24x24"},
-  }));
-  INFO(option << "=" << value);
-  const FileFolder folder;
-  const std::string line = only_error(render_with(folder, option, value), usage);
-  CHECK_THAT(line, Contains(option) && Contains(value));
-  CHECK(line.size() < 250);  // no range of 300 digits
-  CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
-}
-
-TEST_CASE("arguments too many are told as they were given") {
-  const std::string line =
-      only_error(run_photile({"render", "a.obj", "--turn", "20", "--frames", "2"}), usage);
-  CHECK_THAT(line, Contains("--turn 20 --frames 2"));
-}
-
-TEST_CASE("the endings that a file may have are told in one sentence") {
-  const std::string line = only_error(run_photile({"walk", "a.obj", "-o", "frames"}), usage);
-  CHECK_THAT(line, Contains("'frames' does not end in .exr or .png; rename it"));
-}
-
-TEST_CASE("a change of a light without a value is a usage error") {
-  const FileFolder folder;
-  const Outcome outcome = render_with(folder, "--light", "left");
-  CHECK_THAT(only_error(outcome, usage), Contains("left"));
-}
-
-TEST_CASE("an unknown light is a usage error that lists the lights") {
-  const FileFolder folder;
-  const Outcome outcome = render_with(folder, "--light", "middle=x2");
-  CHECK_THAT(last_error(outcome, usage),
-             Contains("middle") && Contains("left") && Contains("right"));
-}
-
-TEST_CASE("a sky too dark for its radiance to be a number is refused") {
-  const FileFolder folder;
-  for (const std::string sky : {"clear=1e-50", "perez=1,1e-300"}) {
-    const Outcome outcome =
-        run_photile(typed("render", write_box(folder), "-o", folder / "out.exr", "--sky", sky,
-                          "--site 52,13,1 --time 2026-06-21T12:00 --size 8x8"));
-    CHECK_THAT(last_error(outcome, usage), Contains("lux") && Contains("at least"));
-  }
-}
-
-TEST_CASE("parallel rays that span more than scenes may hold are refused") {
-  const FileFolder folder;
-  const Outcome outcome =
-      run_photile(typed("render", write_box(folder), "-o", folder / "out.exr",
-                        "--projection orthographic --field-of-view 1e19 --size 8x8"));
-  CHECK_THAT(last_error(outcome, usage), Contains("--field-of-view"));
-}
-
-TEST_CASE("an unknown camera is a usage error that lists the cameras") {
-  const FileFolder folder;
-  const Outcome outcome = render_with(folder, "--camera", "nobody");
-  CHECK_THAT(last_error(outcome, usage), Contains("nobody"));
 }
 
 TEST_CASE("the version names photile and what it was built with") {
@@ -234,30 +93,6 @@ TEST_CASE("the help of render has at most 45 options") {
   CHECK(options <= 45);
 }
 
-TEST_CASE("what --set does not know is refused in a line that says what to type") {
-  const auto [command, arguments, remedy] =
-      GENERATE(table<std::string, std::vector<std::string>, std::string>({
-          {"render", {"--set", "light_map_ray=64"}, "nearest is light_map_rays"},
-          {"render", {"--set", "Radius=1"}, "nearest is radius"},
-          {"render", {"--set", "radius"}, "radius=X"},
-          {"render", {"--set", "maps="}, "naive"},
-          {"render", {"--set", ""}, "empty"},
-          {"render", {"--set", "samples_per_pixel=4"}, "--samples"},
-          {"render", {"--set", "width=4"}, "--size"},
-          {"measure", {"--set", "gloss=rays"}, "no use"},
-          {"render", {"--radius", "0.1"}, "--set radius=0.1"},
-          {"render", {"--angle=30"}, "--set angle_degrees=30"},
-          {"render", {"--light-map-rays", "64"}, "--set light_map_rays=64"},
-          {"walk", {"--lambertian"}, "--set lambertian="},
-      }));
-  const FileFolder folder;
-  const std::string output = command == "measure" ? "out.csv" : "out.exr";
-  std::vector<std::string> all =
-      typed(command, write_box(folder), "-o", folder / output, arguments);
-  CAPTURE(all);
-  CHECK_THAT(only_error(run_photile(all), usage), Contains(remedy));
-}
-
 TEST_CASE("the memory of a device is set in GiB") {
   DeviceOptions options;
   assign_named(device_settings(options), "device_memory=1.5");
@@ -319,10 +154,6 @@ TEST_CASE("--quality sets settings that go together, and those given beside it c
   CHECK(good == made_with({"--samples", "2"}));  // the usual quality
   CHECK(draft["light_map_rays"] > 0);
   CHECK(good["light_map_rays"] > draft["light_map_rays"]);
-  CHECK_THAT(only_error(run_photile({"render", write_box(folder), "-o", folder / "b.exr",
-                                     "--quality", "best"}),
-                        usage),
-             Contains("draft, good, final"));
 }
 
 TEST_CASE("nodes gather in pictures unless another method is asked for") {

@@ -109,14 +109,6 @@ TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in pr
   CHECK(read_image(file(frames)).width == 16);
 }
 
-TEST_CASE("saved photons are those of one pass, and the refusal says so") {
-  const FileFolder folder;
-  const std::vector<std::string> more{"--set", "passes=2", "--save-maps", folder / "room.maps"};
-  const std::string error = last_error(run_photile(walk(folder, more)), 2);
-  CHECK_THAT(error, Contains("photons of one pass") && Contains("leave out passes"));
-  CHECK_FALSE(std::filesystem::exists(folder / "room.maps"));
-}
-
 TEST_CASE("frames of other settings are not taken for finished") {
   const FileFolder folder;
   succeed(walk(folder));
@@ -188,25 +180,30 @@ TEST_CASE("a walk from saved maps draws the same frames, without a photon") {
   for (std::size_t i = 0; i < saved.size(); ++i) CHECK(saved[i].channels == loaded[i].channels);
 }
 
-TEST_CASE("walk refuses what it cannot do with one line and the right exit code") {
-  const FileFolder folder;
-  const auto error = [&](const std::vector<std::string>& arguments, int code) {
-    return only_error(run_photile(arguments), code);
+TEST_CASE("frames that several processes make are those of one, with its exposure") {
+  const FileFolder one, several;
+  const auto walk = [](const FileFolder& folder, const std::vector<std::string>& more) {
+    const std::string path = folder.write("path.json", R"([
+        {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
+        {"time": 1, "position": [0.5, 0, 0.2], "look_at": [0, 0, -1], "fov": 60}])");
+    return typed("walk", write_box(folder), "-o", folder / "f.##.exr", "--png", folder / "f.##.png",
+                 "--fps 4 --quality draft --photons 20k --size 16x12 --camera-path", path, more);
   };
-  const std::string box = write_box(folder);
-  CHECK_THAT(error({"walk", box, "-o", folder / "##-##.exr"}, 2), Contains("####"));
-  CHECK_THAT(error({"walk", box, "-o", folder / "a##.jpg"}, 2), Contains(".exr"));
-  CHECK_THAT(
-      error({"walk", box, "-o", folder / "a##.exr", "--quick", "--set", "light_maps=off"}, 2),
-      Contains("light_maps"));
-  CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet"}, 3),
-             Contains("--camera-path"));
-  CHECK_THAT(error({"walk", box, "-o", folder / "a##.exr", "--quiet", "--camera-path",
-                    folder.write("b.json", "{}")},
-                   3),
-             Contains("b.json"));
-  CHECK_THAT(error({"walk", box, "-o", box + "/a##.exr", "--camera-path", "x"}, 1),
-             Contains("box.obj"));
+  succeed(walk(one, {}));
+  succeed(walk(several, {"--frames", "2-4x2"}));
+  CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
+  CHECK_FALSE(std::filesystem::exists(several / "f.03.png"));
+  CHECK_THAT(succeed(walk(several, {"--frames", "3-5"})).errors,
+             Contains("1 of 3 frames are finished"));  // 3, 4 and 5
+  CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
+  succeed(walk(several, {"--frames", "1-2"}));
+  for (int frame = 1; frame <= 5; ++frame) {
+    CAPTURE(frame);
+    const std::string name = fmt::format("f.{:02}", frame);
+    CHECK(several.read(name + ".png") == one.read(name + ".png"));
+    CHECK(read_image(several / (name + ".exr")).channels ==
+          read_image(one / (name + ".exr")).channels);
+  }
 }
 
 }  // namespace photile::test

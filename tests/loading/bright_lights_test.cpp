@@ -23,55 +23,6 @@ std::string refusal_of(const std::string& emission, const SceneLoadOptions& opti
 
 }  // namespace
 
-TEST_CASE("lamps beyond the greatest power are refused by name") {
-  for (const char* emission : {"1e39 1e39 1e39", "1e30 1e30 1e30", "1e300 0 0"}) {
-    CHECK_THAT(refusal_of(emission), Contains("light 'panel'") && Contains("1e+30"));
-  }
-  CHECK(refusal_of("1e29 1e29 1e29").empty());
-}
-
-TEST_CASE("an emissive scale that makes a lamp too bright is refused, not the scene") {
-  SceneLoadOptions options;
-  options.emissive_scale = 1e38;
-  CHECK_THROWS_WITH(load_obj(lit_square, mtl_with("2 2 2"), options),
-                    Contains("emissive scale of 1e+38") && Contains("light 'panel'") &&
-                        Contains("6.283e+38 W") && !Contains("scene.obj"));
-  options.emissive_scale = 2;
-  CHECK_THAT(refusal_of("1e38 1e38 1e38", options), Contains("scene.obj"));
-}
-
-TEST_CASE("an area light of an option beyond the greatest power is refused, not the scene") {
-  SceneLoadOptions options;
-  options.panels.push_back({"panel", 1, 1, 1e31});
-  CHECK_THROWS_WITH(load_gltf(square_document(), options),
-                    Contains("area light 'panel' of 1e+31 lm") && !Contains("scene.gltf"));
-}
-
-TEST_CASE("a sky or a sun of too much light for the scene's size is refused, not the scene") {
-  // Ninety metres wide: its sphere takes more lumens than the light has lux.
-  const std::string large = "v 0 0 0\nv 90 0 0\nv 90 90 0\nv 0 90 0\nusemtl lamp\nf 1 2 3 4\n";
-  SceneLoadOptions options;
-  options.sky = Sky{SkyKind::uniform, 1e30};
-  CHECK_THROWS_WITH(load_obj(large, mtl_with("1 1 1"), options), Contains("sky of 1e+30 lux") &&
-                                                                     Contains("fewer lux") &&
-                                                                     !Contains("scene.obj"));
-  options.sky.reset();
-  options.sun = Sun{0, 40, 1e30};
-  CHECK_THROWS_WITH(load_obj(large, mtl_with("1 1 1"), options), Contains("sun of 1e+30 lux") &&
-                                                                     Contains("fewer lux") &&
-                                                                     !Contains("scene.obj"));
-}
-
-TEST_CASE("a sky and a sun beyond the greatest illuminance are refused, not the scene") {
-  SceneLoadOptions options;
-  options.sky = Sky{SkyKind::uniform, 1e300};
-  CHECK_THROWS_WITH(load_obj(lit_square, mtl_with("1 1 1"), options),
-                    Contains("sky of 1e+300 lux") && !Contains("scene.obj"));
-  options.sky.reset();
-  options.sun = Sun{0, 40, 1e38};
-  CHECK_THROWS_WITH(load_obj(lit_square, mtl_with("1 1 1"), options), Contains("sun of 1e+38 lux"));
-}
-
 TEST_CASE(
     "an environment beyond floats is refused by its file, one of too much power by its light") {
   const SceneFolderOnDisk folder;

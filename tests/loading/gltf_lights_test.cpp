@@ -89,17 +89,6 @@ TEST_CASE("what a file makes invisible is left out, with all below it") {
   CHECK(warns(hidden, {"'group'", "KHR_node_visibility", "all below"}));
 }
 
-TEST_CASE("extensions that are not understood are named with what has them") {
-  nlohmann::json document = square_document();
-  document["extensionsUsed"] = {"KHR_materials_unlit", "EXT_mesh_gpu_instancing", "VENDOR_x"};
-  document["materials"][0]["extensions"]["KHR_materials_unlit"] = nlohmann::json::object();
-  document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = nlohmann::json::object();
-  const Scene scene = load_gltf(document);
-  CHECK(warns(scene, {"material 'glow'", "KHR_materials_unlit", "lit as all others"}));
-  CHECK(warns(scene, {"node 'panel'", "EXT_mesh_gpu_instancing", "copies are missing"}));
-  CHECK(warns(scene, {"VENDOR_x", "ignored"}));
-}
-
 TEST_CASE("the colour of a light multiplies its intensity by its luminance") {
   const Scene scene =
       load_gltf(lit_by({{"type", "point"}, {"intensity", 10}, {"color", {0.5, 0, 0}}}));
@@ -122,42 +111,6 @@ TEST_CASE("a directional light's flux is its lux over the disc of the bounding s
   const Scene scene = load_gltf(lit_by({{"type", "directional"}, {"intensity", 1000}}));
   CHECK(scene.lights[0].kind == LightKind::directional);
   CHECK(scene.lights[0].power == Approx(1000.0 * pi * 0.5));  // radius sqrt(2) / 2
-}
-
-TEST_CASE("black lights are dropped with a warning") {
-  nlohmann::json document = square_document();
-  document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 0}}};
-  document["nodes"].push_back(
-      {{"name", "dead"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-  document["scenes"][0]["nodes"] = {0, 1};
-  const Scene scene = load_gltf(document);
-  CHECK(scene.lights.size() == 1);
-  CHECK(warns(scene, {"'dead'", "dropped"}));
-}
-
-TEST_CASE("an area light that Blender's exporter lost is named") {
-  nlohmann::json document = square_document();
-  document["nodes"].push_back({{"name", "Area.001"}});
-  document["nodes"].push_back({{"name", "Cube.001"}});
-  document["scenes"][0]["nodes"] = {0, 1, 2};
-  CHECK(warns(load_gltf(document), {"'Area.001'", "area lights"}));
-  CHECK_FALSE(warns(load_gltf(document), {"'Cube.001'"}));
-  // Without any other light it is named in the error.
-  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
-  const std::string error = input_error_of([&] { load_gltf(document); });
-  CHECK(error.find("no lights") != std::string::npos);
-  CHECK(error.find("'Area.001'") != std::string::npos);
-}
-
-TEST_CASE("emissive materials of a Blender export are noted unless they are scaled") {
-  nlohmann::json document = square_document();
-  document["asset"]["generator"] = "Khronos glTF Blender I/O v4.2.60";
-  CHECK(warns(load_gltf(document), {"'glow'", "emissive scale of 683"}));
-  SceneLoadOptions scaled;
-  scaled.emissive_scale = 683.0f;
-  const Scene scene = load_gltf(document, scaled);
-  CHECK_FALSE(warns(scene, {"emissive scale"}));
-  CHECK(scene.lights[0].power == Approx(68'300.0 * pi));
 }
 
 }  // namespace photile::test

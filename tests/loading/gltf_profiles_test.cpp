@@ -155,22 +155,6 @@ TEST_CASE("photile_lumens sets the flux of any lamp without size, but no sun's")
   CHECK(warns(Folder().load(document), {"'lamp'", "photile_lumens"}));
 }
 
-TEST_CASE("a profile that is missing, outside or malformed is an error that names it") {
-  const Folder folder;
-  const auto error_of = [&](const nlohmann::json& lights) {
-    return input_error_of(
-        [&] { folder.load(with_profiles(document_with(node_of_profile()), lights)); });
-  };
-  CHECK_THAT(error_of({{{"uri", "gone.ies"}}}), Catch::Contains("'gone.ies'"));
-  CHECK_THAT(error_of({{{"uri", "../lamp.ies"}}}), Catch::Contains("outside"));
-  CHECK_THAT(error_of({{{"uri", "data:text/plain,none"}}}), Catch::Contains("base64"));
-  CHECK_THAT(error_of({{{"bufferView", 99}}}), Catch::Contains("light 0 of EXT_lights_ies"));
-  CHECK_THAT(error_of(nlohmann::json::array()), Catch::Contains("there is no light 0"));
-  folder.write("bad.ies", even_lamp.substr(0, even_lamp.size() - 12));
-  CHECK_THAT(error_of({{{"uri", "bad.ies"}}}),
-             Catch::Contains("'bad.ies'") && Catch::Contains("ends before"));
-}
-
 TEST_CASE("the option --ies gives a point or spot light a file") {
   const Folder folder;
   nlohmann::json document = document_with(nlohmann::json::object());
@@ -187,16 +171,6 @@ TEST_CASE("the option --ies gives a point or spot light a file") {
   CHECK(scene.lights.at(0).power == Approx(400 * pi));
   CHECK(folder.load(document, option("lamp=" + path + "/lamp.ldt")).lights.at(0).power ==
         Approx(50 * 2 * 4 * pi));
-
-  CHECK_THROWS_WITH(folder.load(document, option("lump=x.ies")),
-                    Catch::Contains("there is no light 'lump'; there is 'lamp'"));
-  CHECK_THROWS_WITH(folder.load(document, option("lamp=gone.ies")), Catch::Contains("gone.ies"));
-  CHECK_THROWS_AS(folder.load(document, option("lamp=" + path)), InputError);
-  CHECK_THROWS_AS(option("lamp"), UsageError);
-  CHECK_THROWS_AS(option("=lamp.ies"), UsageError);
-  nlohmann::json panel = square_document();
-  CHECK_THROWS_WITH(folder.load(panel, option("panel=" + path + "/lamp.ies")),
-                    Catch::Contains("neither a point nor a spot"));
 }
 
 }  // namespace photile::test

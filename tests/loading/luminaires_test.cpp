@@ -215,33 +215,4 @@ TEST_CASE("photometric files outside the list's folder are read where that is al
   }
 }
 
-TEST_CASE("what is wrong with a placed lamp is told in a line") {
-  const SceneFolderOnDisk folder;
-  const auto error_of = [&](const std::string& text) {
-    std::string message = message_of<InputError>([&] { scene_with(folder, text); });
-    CHECK_THAT(message, Catch::Contains("luminaires.json"));
-    return message;
-  };
-  using Catch::Contains;
-  CHECK_THAT(error_of("{"), Contains("JSON"));
-  CHECK_THAT(error_of("[]"), Contains("no luminaire"));
-  CHECK_THAT(error_of(R"({"file": "gone.ies", "position": [0,0,1], "size": [1,1]})"),
-             Contains("gone.ies"));
-  CHECK_THAT(error_of(R"({"file": "lamp.ies", "size": [1,1]})"), Contains("position"));
-  CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1]})"),
-             Contains("size"));
-  CHECK_THAT(
-      error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "aim": [0,0,0]})"),
-      Contains("aim"));
-  CHECK_THAT(
-      error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "count": [2,2]})"),
-      Contains("spacing"));
-  CHECK_THAT(
-      error_of(
-          R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "count": [2.5,2], "spacing": [1,1]})"),
-      Contains("count"));
-  CHECK_THAT(error_of(R"({"file": "lamp.ies", "position": [0,0,1], "size": [1,1], "colour": 1})"),
-             Contains("colour"));
-}
-
 }  // namespace photile::test

@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "message_of.hpp"
 #include "photile/sensors.hpp"
 #include "scene/surface_models.hpp"
 #include "scene_files.hpp"
@@ -140,24 +139,6 @@ TEST_CASE("a texture reflects what its surface shows of it, by area") {
   CHECK_FALSE(scene::set_reflectance(scene, scene.materials[0], 1.01 * mean));
   REQUIRE(scene::set_reflectance(scene, scene.materials[0], 0.2));
   CHECK(scene.materials[0].diffuse.r == Approx(0.2 / mean).epsilon(1e-3));
-}
-
-TEST_CASE("reflectances that cannot be are refused with the remedy") {
-  const auto refused = [&](const char* text, const char* words) {
-    SceneLoadOptions options;
-    const auto load = [&] {
-      options.reflectances = {ReflectanceChange::parse(text)};
-      square_of(json::object(), options);
-    };
-    CHECK_THAT(message_of<UsageError>(load), Catch::Contains(words));
-  };
-  refused("*=0", "--set lambertian=on");  // the lobe reflects more
-  refused("*=0.95", "exceeds 1");
-  refused("nothing=0.5", "no such material");
-  refused("wall=1.5", "0 to 1");
-  refused("wall=120%", "0 to 1");
-  refused("wall", "MATERIAL=REFLECTANCE");
-  CHECK(ReflectanceChange::parse("wall=20%").fraction == Approx(0.2));
 }
 
 TEST_CASE("a black material becomes grey, and glass has no reflectance") {

@@ -102,20 +102,6 @@ TEST_CASE("what has no holes is not asked for any") {
   CHECK_FALSE(has_cutouts({{"alphaMode", "OPAQUE"}}));
 }
 
-TEST_CASE("alpha mode BLEND and alpha of lamps are approximations that are told") {
-  const auto blend = [](json& material) {
-    material["alphaMode"] = "BLEND";
-    material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.5};
-  };
-  CHECK(warns(square_with({}, blend), {"'glow'", "BLEND", "straight through"}));
-  const Scene lamp = square_with({}, [&](json& material) {
-    blend(material);
-    material["emissiveFactor"] = {1, 1, 1};
-  });
-  CHECK(warns(lamp, {"'glow'", "emits"}));
-  CHECK_FALSE(lamp.materials[0].has_cutouts());
-}
-
 TEST_CASE("a glTF normal map is read with its scale and turns normals") {
   // (204, 128, 230): slope 0.6 / 0.8 along u, which runs along y on this square.
   const Scene scene = square_with({{204, 128, 230}}, [](json& material) {

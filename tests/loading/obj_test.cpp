@@ -27,8 +27,6 @@ TEST_CASE("--set hide leaves out objects and groups of an OBJ") {
   CHECK(scene.triangle_count() == 2);
   REQUIRE(scene.report.meshes.size() == 1);
   CHECK(scene.report.meshes[0].name == "lamp");
-  options.hidden = {"fog"};
-  CHECK_THROWS_AS(load_obj(obj, lamp_and_wall, options), UsageError);
 }
 
 TEST_CASE("an OBJ square becomes two triangles of area 1 that face its winding's side") {
@@ -77,25 +75,6 @@ TEST_CASE("emissive_scale multiplies emission") {
         Approx(683.0 * load_obj(obj, lamp_and_wall).lights[0].power));
 }
 
-TEST_CASE("an OBJ coordinate that is no number drops its triangles, counted and reported") {
-  const Scene scene =
-      load_obj(unit_square +
-                   "v nan 0 0\nv inf 1 0\nv 1e39 2 0\nusemtl lamp\nf 1 2 3\nf 1 2 5\nf 2 3 6\n"
-                   "f 3 4 7\nf 1 2 3 5\n",
-               lamp_and_wall);
-  CHECK(scene.triangle_count() == 1);
-  CHECK(scene.report.non_finite_triangles == 5);  // the quad would have given two
-  CHECK(warns(scene, {"5", "NaN"}));
-}
-
-TEST_CASE("degenerate OBJ triangles are dropped, counted and reported in one line") {
-  const Scene scene =
-      load_obj(unit_square + "usemtl lamp\nf 1 2 3\nf 1 1 2\nf 4 4 4\n", lamp_and_wall);
-  CHECK(scene.triangle_count() == 1);
-  CHECK(scene.report.degenerate_triangles == 2);
-  CHECK(warns(scene, {"2 triangles without area"}));
-}
-
 TEST_CASE("a concave OBJ polygon keeps its area, against the shoelace value") {
   const Scene scene = load_obj(
       "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nusemtl lamp\nf 1 2 3 4 5\n", lamp_and_wall);
@@ -124,26 +103,6 @@ TEST_CASE("faces with negative and continued indices are read") {
   CHECK(triangle_area(scene, 0) == Approx(0.5));
 }
 
-TEST_CASE("what an OBJ holds beyond surfaces is named in a warning") {
-  const Scene scene = load_obj(
-      unit_square + "v 0 0 9 1 0 0\nl 1 2\np 1\ncurv 0 1\nusemtl lamp\nf 1 2 3 4\n", lamp_and_wall);
-  CHECK(warns(scene, {"'l'"}));
-  CHECK(warns(scene, {"'p'"}));
-  CHECK(warns(scene, {"'curv'"}));
-  CHECK(warns(scene, {"vertex colours"}));
-}
-
-TEST_CASE("a missing material library and a missing material are named and become mid grey") {
-  const SceneFolderOnDisk folder;
-  folder.write("lamp.mtl", lamp_and_wall);
-  const Scene scene =
-      load_scene(folder.write("scene.obj", "mtllib absent.mtl\nmtllib lamp.mtl\n" + unit_square +
-                                               "usemtl lamp\nf 1 2 3\nusemtl nowhere\nf 1 3 4\n"));
-  CHECK(warns(scene, {"absent.mtl"}));
-  CHECK(warns(scene, {"'nowhere'", "grey"}));
-  CHECK(scene.materials[scene.triangle_material[1]].diffuse == glm::vec3(0.5f));
-}
-
 /// Material m of an MTL text, beside a lamp. Warnings go to `report` where given.
 Material mtl_material(const std::string& statements, Scene* report = nullptr) {
   Scene scene = load_obj(unit_square + "usemtl lamp\nf 1 2 3\nusemtl m\nf 1 3 4\n",
@@ -165,15 +124,6 @@ TEST_CASE("MTL illum 2 is glossy with GGX alpha sqrt(2 / (Ns + 2))") {
   CHECK(m.glossy());
   CHECK(m.specular == glm::vec3(0.2f, 0.3f, 0.4f));
   CHECK(m.roughness == Approx(0.25));
-}
-
-TEST_CASE("MTL Kd + Ks above 1 is scaled to 1 with a warning") {
-  Scene scene;
-  const Material m = mtl_material("Kd 0.9 0.2 0.1\nKs 0.6 0.1 0.1\nNs 30\nillum 2\n", &scene);
-  CHECK(m.diffuse.r == Approx(0.6));
-  CHECK(m.specular.r == Approx(0.4).epsilon(1e-4));
-  CHECK(m.diffuse.g == Approx(0.2 / 1.5));
-  CHECK(warns(scene, {"'m'", "exceeds 1"}));
 }
 
 TEST_CASE("MTL illum 3 with a sharp lobe or without a diffuse part is a mirror") {
@@ -199,39 +149,11 @@ TEST_CASE("MTL glass models and transparency with Ni are glass of that index") {
   CHECK(mtl_material("Kd 1 1 1\nNi 1.33\nd 1\n").interaction == Interaction::opaque);
 }
 
-TEST_CASE("MTL glass of a Phong exponent that is no mirror's is named as rough") {
-  Scene scene;
-  mtl_material("illum 7\nNs 250\n", &scene);
-  CHECK(warns(scene, {"'m'", "rough glass (Ns 250)", "smooth"}));
-  for (const std::string exponent : {"", "Ns 0\n", "Ns 1\n", "Ns 1000\n"}) {
-    mtl_material("illum 7\n" + exponent, &scene);
-    CHECK_FALSE(warns(scene, {"rough"}));
-  }
-}
-
-TEST_CASE("MTL transparency without Ni lets light straight through, with a warning") {
-  Scene scene;
-  const Material m = mtl_material("Kd 1 1 1\nd 0.5\n", &scene);
-  CHECK(m.interaction == Interaction::opaque);
-  CHECK(m.opacity == 0.5f);
-  CHECK(warns(scene, {"'m'", "straight through"}));
-  CHECK_FALSE(mtl_material("Kd 1 1 1\nd 0\n", &scene).has_cutouts());
-  CHECK(warns(scene, {"'m'", "opaque"}));
-}
-
 TEST_CASE("MTL roughness and metallic factors are used where present") {
   const Material m = mtl_material("Kd 0.5 0.5 0.5\nPr 0.5\nPm 1\n");
   CHECK(m.diffuse == glm::vec3(0.0f));
   CHECK(m.specular == glm::vec3(0.5f));
   CHECK(m.roughness == Approx(0.25));
-}
-
-TEST_CASE("a missing MTL texture is named and becomes mid grey") {
-  Scene scene;
-  const Material m = mtl_material("Kd 1 1 1\nmap_Kd absent.png\n", &scene);
-  CHECK(m.diffuse == glm::vec3(0.5f));
-  CHECK(m.diffuse_texture == none);
-  CHECK(warns(scene, {"'m'", "absent.png", "grey"}));
 }
 
 /// A picture of one texel, written by hand (PPM).
@@ -265,77 +187,6 @@ TEST_CASE("MTL colours of one number, in any case and of CIE XYZ are read") {
   CHECK(grey.r == Approx(0.5));
   CHECK(grey.b == Approx(0.5));
   CHECK(mtl_material("illum 7\nTf 0.5\n").transmission == glm::vec3(0.5f));
-}
-
-TEST_CASE("an MTL material without Kd is mid grey, with a warning, or emits") {
-  Scene scene;
-  CHECK(mtl_material("Ns 10\n", &scene).diffuse == glm::vec3(0.5f));
-  CHECK(warns(scene, {"'m'", "no Kd", "grey"}));
-  CHECK(mtl_material("Ke 1 1 1\n", &scene).diffuse == glm::vec3(0.0f));
-  CHECK_FALSE(warns(scene, {"'m'", "Kd"}));
-  mtl_material("Kd 1 1 1\nmap_Ke glow.png\n", &scene);
-  CHECK(warns(scene, {"'m'", "map_Ke", "without a Ke"}));
-  mtl_material("Kd 1.5 0.5 0.5\n", &scene);
-  CHECK(warns(scene, {"line 4", "more than all light"}));
-}
-
-TEST_CASE("MTL numbers that are none are refused with their line") {
-  for (const std::string statement : {"Kd",
-                                      "Kd 0.5 0.5",
-                                      "Kd 0.5 0.5 0.5 1",
-                                      "Kd red",
-                                      "Kd 0,5 0,5 0,5",
-                                      "Kd nan nan nan",
-                                      "Kd inf 0 0",
-                                      "Kd -0.5 0 0",
-                                      "Kd spectral oak.rfl",
-                                      "Kd 0.5x",
-                                      "Kd 1e400",
-                                      "Ks 0.5 0.5",
-                                      "Ke -1 0 0",
-                                      "Ke 1 1 1,",
-                                      "Tf glass",
-                                      "Ns",
-                                      "Ns shiny",
-                                      "Ns 1 2",
-                                      "Ns -1",
-                                      "Ni 1,5",
-                                      "d",
-                                      "d 2",
-                                      "d -1",
-                                      "Tr x",
-                                      "illum",
-                                      "illum 2.5",
-                                      "illum 11",
-                                      "illum mirror",
-                                      "Pr 2",
-                                      "Pm metal",
-                                      "map_Kd",
-                                      "map_Kd -mm 0 2 a.png",
-                                      "map_Kd -s a.png"}) {
-    CAPTURE(statement);
-    const std::string error = input_error_of([&] { mtl_material("Kd 1 1 1\n" + statement); });
-    CHECK(error.find("materials.mtl, line 5: ") != std::string::npos);
-    CHECK(error.find('\n') == std::string::npos);
-  }
-  CHECK_THAT(input_error_of([] { mtl_material("Kd 0,5\n"); }), Catch::Contains("decimal point"));
-  // What says nothing of light may be anything.
-  CHECK(mtl_material("Kd 0.5 0.5 0.5\nKa nan\nsharpness x\n").diffuse == glm::vec3(0.5f));
-}
-
-TEST_CASE("MTL options of a texture that change nothing read are named in a warning") {
-  Scene scene;
-  mtl_material("Kd 1 1 1\nmap_Kd -s 2 2 1 -o 0.5 -clamp on a.png\n", &scene);
-  CHECK(warns(scene, {"'m'", "-s of its map_kd"}));
-  CHECK(warns(scene, {"'m'", "-o of its map_kd"}));
-  CHECK(warns(scene, {"'m'", "-clamp of its map_kd"}));
-}
-
-TEST_CASE("MTL textures other than map_Kd are named in a warning") {
-  Scene scene;
-  mtl_material("Kd 1 1 1\nmap_Ks s.png\nbump b.png\n", &scene);
-  CHECK(warns(scene, {"map_Ks"}));
-  CHECK(warns(scene, {"bump"}));
 }
 
 TEST_CASE("materials that scatter in one way cost nothing elsewhere") {

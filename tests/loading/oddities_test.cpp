@@ -33,17 +33,6 @@ TEST_CASE("a face that the file has twice is one, whatever its winding") {
   CHECK(warns(scene, {"2 triangles that lie exactly on others"}));
 }
 
-TEST_CASE("of two materials in one place that face one way the first counts") {
-  const Scene scene =
-      load_obj(unit_square + lamp_above + "usemtl other\nf 1 2 3\nusemtl wall\nf 2 3 1\nf 1 3 4\n",
-               three_materials);
-  REQUIRE(scene.triangle_count() == 4);
-  CHECK(scene.materials[scene.triangle_material[2]].name == "other");
-  CHECK(scene.materials[scene.triangle_material[3]].name == "wall");
-  CHECK(scene.report.duplicate_triangles == 1);
-  CHECK(warns(scene, {"1 triangles that lie exactly on others", "that face one way the first"}));
-}
-
 TEST_CASE("two materials in one place that face away from each other are two sides") {
   // The third and the fourth face look where others look that come before them.
   const Scene scene = load_obj(unit_square + lamp_above +
@@ -158,40 +147,6 @@ TEST_CASE("material libraries are found as exporters name them") {
   CHECK(warns(some, {"'wall'", "mid grey"}));
 }
 
-TEST_CASE("textures outside the scene's folder are not read, nor names with schemes or NUL bytes") {
-  const SceneFolderOnDisk folder;
-  folder.write("outside.png", "no picture, but nobody may know");
-  folder.write("inner/square.bin", square_buffer());
-  std::filesystem::create_symlink("../outside.png", folder.path / "inner/link.png");
-  const auto warning_for = [&](const std::string& uri) {
-    json document = square_document();
-    document["images"] = {{{"uri", uri}}};
-    document["textures"] = {{{"source", 0}}};
-    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-    const Scene scene = load_scene(folder.write("inner/scene.gltf", document.dump()));
-    check_invariants(scene);
-    REQUIRE(scene.report.warnings.size() == 1);
-    CHECK(scene.materials[0].diffuse == glm::vec3(0.5f));
-    return scene.report.warnings[0];
-  };
-  using Catch::Contains;
-  for (const std::string uri : {"../outside.png", "%2e%2e/outside.png", "link.png", "/etc/hostname",
-                                "absent/../../outside.png"}) {
-    CHECK_THAT(warning_for(uri), Contains("'glow'") && Contains("outside the scene's folder"));
-  }
-  CHECK_THAT(warning_for("a%00b.png"), Contains("NUL byte"));
-  CHECK_THAT(warning_for("https://example.org/a.png"), Contains("not fetched"));
-  // What a shell would expand or run are names of files like any other.
-  for (const std::string uri :
-       {"$HOME/a.png", "`id`.png", "~/a.png", "$(id).png", "file:a.png", "C:\\a.png", "*.png"}) {
-    CHECK_THAT(warning_for(uri), Contains("No such file"));
-  }
-  folder.write("inner/lamp.mtl", "newmtl lamp\nKe 2 2 2\nKd 1 1 1\nmap_Kd ..\\outside.png\n");
-  const Scene obj = load_scene(folder.write(
-      "inner/scene.obj", "mtllib lamp.mtl\n" + unit_square + "usemtl lamp\nf 1 2 3 4\n"));
-  CHECK(warns(obj, {"'lamp'", "outside the scene's folder", "mid grey"}));
-}
-
 TEST_CASE("all perspective cameras of a glTF scene are there, in the order of its nodes") {
   json document = square_document();
   document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 1}}}},
@@ -204,59 +159,6 @@ TEST_CASE("all perspective cameras of a glTF scene are there, in the order of it
   CHECK(scene.cameras[0].name == "door");
   CHECK(scene.cameras[0].vertical_field_of_view == Approx(0.9));
   CHECK(scene.cameras[1].name == "window");
-}
-
-TEST_CASE("a scene of several is taken by name or index") {
-  json document = square_document();
-  document["nodes"].push_back({{"name", "far"}, {"mesh", 0}, {"translation", {0, 0, 9}}});
-  document["scenes"] = {{{"name", "day"}, {"nodes", {0}}},
-                        {{"name", "1"}, {"nodes", {1}}},
-                        {{"name", "night"}, {"nodes", {0, 1}}}};
-  const auto load = [&](const std::string& scene) {
-    SceneLoadOptions options;
-    options.scene = scene;
-    return load_gltf(document, options);
-  };
-  CHECK(load("").triangle_count() == 2);
-  CHECK(warns(load(""), {"of 3 scenes", "can be chosen", "0 'day', 1 '1', 2 'night'"}));
-  CHECK(load("night").triangle_count() == 4);
-  CHECK(load("night").report.warnings.empty());
-  CHECK(load("2").triangle_count() == 4);
-  CHECK(load("1").vertices[0].z == 9.0f);  // a name comes before an index
-  CHECK(load("0").vertices[0].z == 0.0f);
-  CHECK_THROWS_WITH(load("dusk"), Catch::Contains("'dusk'") && Catch::Contains("2 'night'"));
-  CHECK_THROWS_AS(load("3"), UsageError);
-  document["scene"] = 1;
-  CHECK(load("").vertices[0].z == 9.0f);
-  document.erase("scenes");
-  document.erase("scene");
-  CHECK_THROWS_AS(load("0"), UsageError);
-  SceneLoadOptions options;
-  options.scene = "0";
-  CHECK_THROWS_AS(load_obj(unit_square + "usemtl lamp\nf 1 2 3\n", three_materials, options),
-                  UsageError);
-}
-
-TEST_CASE("compressed textures are refused by the extension's name, with a remedy") {
-  json compressed = square_document();
-  compressed["extensionsUsed"] = compressed["extensionsRequired"] = {"KHR_texture_basisu"};
-  const std::string error = input_error_of([&] { load_gltf(compressed); });
-  CHECK_THAT(error, Catch::Contains("KHR_texture_basisu") && Catch::Contains("PNG"));
-}
-
-TEST_CASE("extensions that a file can do without are named, with what is lost") {
-  json document = square_document();
-  document["extensionsUsed"] = {"EXT_lights_image_based", "KHR_texture_basisu", "FB_ngon_encoding",
-                                "VENDOR_thing"};
-  document["extensions"]["EXT_lights_image_based"]["lights"] = {
-      {{"intensity", 1.0}, {"specularImageSize", 16}}};
-  document["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 0;
-  const Scene scene = load_gltf(document);
-  CHECK(scene.triangle_count() == 2);
-  CHECK(warns(scene, {"EXT_lights_image_based", "an environment picture"}));
-  CHECK(warns(scene, {"KHR_texture_basisu", "as PNG or JPEG"}));
-  CHECK(warns(scene, {"VENDOR_thing", "ignored"}));
-  CHECK_FALSE(warns(scene, {"FB_ngon_encoding"}));
 }
 
 TEST_CASE("indices may be sparse, too") {
@@ -274,32 +176,6 @@ TEST_CASE("indices may be sparse, too") {
   const Scene scene = load_scene(folder.write("scene.gltf", document.dump()));
   REQUIRE(scene.triangle_count() == 2);
   for (const glm::vec3& corner : scene.corners(1)) CHECK(corner.x + corner.y < 1.5f);
-}
-
-TEST_CASE("sparse accessors are bounded: their count, their indices, their values") {
-  const SceneFolderOnDisk folder;
-  folder.write("square.bin", square_buffer());
-  folder.write("sparse.bin", bytes_of<std::uint16_t>({2, 0}) + bytes_of<float>({3, 3, 0}));
-  const auto error_of = [&](const json& change) {
-    json document = square_document();
-    document["buffers"].push_back({{"uri", "sparse.bin"}, {"byteLength", 16}});
-    document["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 0}, {"byteLength", 4}});
-    document["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 4}, {"byteLength", 12}});
-    document["accessors"][0]["sparse"] = {{"count", 1},
-                                          {"indices", {{"bufferView", 4}, {"componentType", 5123}}},
-                                          {"values", {{"bufferView", 5}}}};
-    document["accessors"][0]["sparse"].merge_patch(change);
-    return input_error_of([&] { load_scene(folder.write("scene.gltf", document.dump())); });
-  };
-  CHECK(error_of(json::object()).empty());
-  using Catch::Contains;
-  CHECK_THAT(error_of({{"count", 5}}), Contains("POSITION") && Contains("sparse"));
-  CHECK_THAT(error_of({{"count", 3}}), Contains("POSITION") && Contains("beyond"));
-  CHECK_THAT(error_of({{"indices", {{"componentType", 5126}}}}), Contains("sparse"));
-  CHECK_THAT(error_of({{"indices", {{"byteOffset", 4}}}}), Contains("beyond"));
-  CHECK_THAT(error_of({{"indices", {{"bufferView", 77}}}}), Contains("no buffer view 77"));
-  CHECK_THAT(error_of({{"values", {{"byteOffset", 4}}}}), Contains("beyond"));
-  CHECK_THAT(error_of({{"values", {{"bufferView", -3}}}}), Contains("values.bufferView is -3"));
 }
 
 }  // namespace photile::test

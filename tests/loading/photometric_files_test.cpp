@@ -163,57 +163,6 @@ TEST_CASE("numbers may be wrapped, separated by commas and ended in any way", "[
   CHECK(read_ies(IesText().str() + "\x1A").flux() == Approx(400 * pi));
 }
 
-TEST_CASE("tilt is read over, with a warning where it says something", "[ies]") {
-  const auto& [tilt, warned] = GENERATE(table<std::string, bool>({
-      {"TILT=NONE\n", false},
-      {"  TILT = NONE \r\n", false},
-      {"Tilt=none\n", false},
-      {"TILT=INCLUDE\n1\n3\n0 45 90\n1 1 1\n", false},
-      {"TILT=INCLUDE\n2 3 0 45\n90 1 0.95 0.9\n", true},
-      {"TILT=other.tlt\n", true},
-  }));
-  IesText file;
-  file.tilt = tilt;
-  files::Warnings warnings;
-  CHECK(read_ies("lamp.ies", file.str(), warnings).flux() == Approx(400 * pi));
-  CHECK(warnings.lines().empty() != warned);
-}
-
-TEST_CASE("what is wrong with a file is told with its line", "[ies]") {
-  const std::string sound = IesText().str();
-  const auto holds = [](const char* words) { return Catch::Contains(words); };
-  CHECK_THAT(ies_refusal(""), holds("TILT="));
-  CHECK_THAT(ies_refusal("not a lamp\n"), holds("TILT="));
-  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 100")), holds("ends before"));
-  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 1O0 100")),
-             holds("line 9: '1O0' is no number"));
-  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 nan 100")),
-             holds("'nan' is no number"));
-  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 1e400 100")), holds("is no number"));
-  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 1e39 100")), holds("1e+39 cd"));
-  CHECK_THAT(ies_refusal(replaced(sound, "100 100 100", "100 -1 100")), holds("-1 cd"));
-  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 180 90")), holds("angles ascend"));
-  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 90 90")), holds("angles ascend"));
-  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 90 181")), holds("within 0 and 180"));
-  // Mirrored, these would be one.
-  CHECK_THAT(ies_refusal(replaced(sound, "0 90 180", "0 1e-44 180")), holds("angles ascend"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 0 3 1 1")),
-             holds("multiplier is 0"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 1 1 1")),
-             holds("vertical angles is 1"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3.5 1 1")), holds("whole number"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3 0 1")),
-             holds("horizontal angles is 0"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3 1 4")),
-             holds("photometric type is 4"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 3 1 2")), holds("type A or B"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 4e9 1 1")), holds("20000"));
-  CHECK_THAT(ies_refusal(replaced(sound, "1 -1 1 3 1 1", "1 -1 1 20000 20000 1")), holds("limit"));
-  IesText odd;
-  odd.horizontal = angles(0, 270, 9);
-  CHECK_THAT(ies_refusal(odd.str()), holds("from 0 to 270"));
-}
-
 TEST_CASE("keywords and input watts describe the luminaire", "[ies]") {
   IesText file;
   file.first_line =
@@ -395,29 +344,6 @@ TEST_CASE("of several sets of lamps the first counts, and a warning says so") {
   const auto lamp = photometry::read_eulumdat("lamp.ldt", file.str(), warnings);
   CHECK(lamp.flux() == Approx(50 * 2 * 4 * pi));
   CHECK(warnings.lines().size() == 1);
-}
-
-TEST_CASE("what is wrong with a EULUMDAT file is told with its line") {
-  EulumdatText file;
-  CHECK_THAT(eulumdat_refusal(""), Catch::Contains("ends before the symmetry"));
-  CHECK_THAT(eulumdat_refusal("a\nb\nc\n"), Catch::Contains("line 3: no number"));
-  file.symmetry = 5;
-  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("line 3: the symmetry indicator is 5"));
-  file.symmetry = 4;
-  file.planes = 6;
-  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("6 C planes cannot have symmetry 4"));
-  file = {};
-  file.lamp_flux = 0;
-  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("not above 0"));
-  file = {};
-  file.gamma = {0, 90, 90};
-  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("angles ascend"));
-  file = {};
-  file.intensity = [](double, double) { return -1.0; };
-  CHECK_THAT(eulumdat_refusal(file.str()), Catch::Contains("-2 cd"));
-  std::string text = EulumdatText().str();
-  text.replace(text.find("\n1\n0\r\n4\r\n"), 9, "\n1\n0\r\n4e9\r");
-  CHECK_THAT(eulumdat_refusal(text), Catch::Contains("4000000000"));
 }
 
 TEST_CASE("a EULUMDAT file cut anywhere is refused") {

@@ -68,18 +68,6 @@ TEST_CASE("a glTF camera looks along -z of its node, and scale does not change i
   CHECK(camera.aspect_ratio == 1.5);
 }
 
-TEST_CASE("an orthographic glTF camera is skipped by name and replaced") {
-  nlohmann::json document = square_document();
-  document["cameras"] = {{{"type", "orthographic"},
-                          {"name", "plan"},
-                          {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 1}}}}};
-  document["nodes"][0]["camera"] = 0;
-  const Scene scene = load_gltf(document);
-  CHECK(warns(scene, {"panel", "perspective"}));
-  REQUIRE(scene.cameras.size() == 1);
-  CHECK(scene.cameras[0].name == "default");
-}
-
 // Scenes whose files have another axis pointing up: turned at import, and told where they look so.
 
 struct World {
@@ -204,11 +192,6 @@ TEST_CASE("a room that lies on its side is told with the remedy, and is not turn
   CHECK(warnings({6, 2.8, 5}, worlds[0], "").empty());
   CHECK(warnings({12, 2.5, 1.6}, worlds[0], "").empty());
   CHECK(load_obj(unit_square + "usemtl lamp\nf 1 2 3 4\n", lamp_and_wall).report.warnings.empty());
-}
-
-TEST_CASE("an axis that is none is refused") {
-  CHECK_THROWS_WITH(load_obj(room({6, 2.8, 5}, worlds[0].file), white, up("w")),
-                    Contains("'w'") && Contains("-z"));
 }
 
 // Files in another unit of length: scaled as asked, and told where they look so.

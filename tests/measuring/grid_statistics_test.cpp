@@ -342,7 +342,7 @@ TEST_CASE("within two standard errors of the limit a judgement is doubtful") {
              Contains("met, within two standard errors"));
 }
 
-TEST_CASE("requirements of one's own are values by name, and others are refused with the list") {
+TEST_CASE("requirements of one's own are values by name") {
   const Requirement own =
       parse_requirement("Em=320,Uo=0.5,UGR=22,Ez=75,Ewall=60,Eceiling=40,Ra=90");
   CHECK(own.mean == 320);
@@ -352,9 +352,6 @@ TEST_CASE("requirements of one's own are values by name, and others are refused 
   CHECK(own.wall == 60);
   CHECK(own.ceiling == 40);
   CHECK(own.rendering == 90);
-  for (const char* text : {"desk", "Em", "Em=", "Em=-5", "Em=500,Xy=3", "Em=many"}) {
-    CHECK_THROWS_WITH(parse_requirement(text), Contains(text) && Contains("office-desk"));
-  }
 }
 
 TEST_CASE("each known row is complete, and its name is its own") {

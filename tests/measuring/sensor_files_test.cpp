@@ -40,20 +40,6 @@ TEST_CASE("points are read with blanks, tabs, commas, comments and line ends of 
   CHECK(points_in("0 0 0 0 0 1\r1 0 0 0 0 1\r").sensors.size() == 2);
 }
 
-TEST_CASE("lines that are no points are refused by file and number") {
-  const std::string line =
-      GENERATE("1 2 3", "1 2 3 0 0 1 7", "1 2 x 0 0 1", "1 2 nan 0 0 1", "1 2 inf 0 0 1",
-               "1 2 3 0 0 0", "1 2 1e300 0 0 1", "1 2 3,5m 0 0 1");
-  INFO(line);
-  CHECK_THROWS_AS(points_in("0 0 0 0 0 1\n" + line + "\n"), InputError);
-  CHECK_THROWS_WITH(points_in("0 0 0 0 0 1\n" + line + "\n"), Contains("desk.pts: line 2"));
-}
-
-TEST_CASE("a file without points, and one that is not there, are refused") {
-  CHECK_THROWS_WITH(points_in("# nothing\n"), Contains("no points"));
-  CHECK_THROWS_WITH(measuring::read_points("/nowhere/a.pts"), Contains("no such file"));
-}
-
 // Planes of sensors described as JSON.
 
 std::vector<measuring::SensorGrid> planes_in(const std::string& text) {
@@ -90,33 +76,6 @@ TEST_CASE("a list of planes, with columns and rows or the spacing of the standar
 
 TEST_CASE("a right angle is one to a millionth, however long its sides are") {
   CHECK(planes_in(R"({"origin": [0,0,0], "u": [10,0,0], "v": [5e-6,10,0]})").size() == 1);
-}
-
-TEST_CASE("what is no plane is refused by file, plane and key") {
-  const auto [text, expected] = GENERATE(table<std::string, std::string>({
-      {"{", "no JSON"},
-      {"[]", "no plane"},
-      {"[3]", "plane 1"},
-      {R"({"u": [1,0,0], "v": [0,1,0]})", "'origin'"},
-      {R"({"origin": [0,0], "u": [1,0,0], "v": [0,1,0]})", "'origin'"},
-      {R"({"origin": [0,0,"a"], "u": [1,0,0], "v": [0,1,0]})", "'origin'"},
-      {R"({"origin": [0,0,1e300], "u": [1,0,0], "v": [0,1,0]})", "'origin'"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [1,1,0]})", "right angle"},
-      {R"({"origin": [0,0,0], "u": [0.1,0,0], "v": [1e-5,0.1,0]})", "right angle"},
-      {R"({"origin": [0,0,0], "u": [0,0,0], "v": [0,1,0]})", "no length"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 0})", "'spacing'"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "spacing": 1e-9})", "'spacing'"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "columns": 2})", "'rows'"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "columns": 1.5, "rows": 1})",
-       "'columns'"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "columns": 9999, "rows": 9999})",
-       "points"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "space": 1})", "'space'"},
-      {R"({"origin": [0,0,0], "u": [1,0,0], "v": [0,1,0], "name": 7})", "'name'"},
-  }));
-  INFO(text);
-  CHECK_THROWS_AS(planes_in(text), InputError);
-  CHECK_THROWS_WITH(planes_in(text), Contains("plane.json") && Contains(expected));
 }
 
 // Files for Honeybee.

@@ -1,5 +1,4 @@
 // Pictures of the path tracer: what they do not depend on, and their layers.
-#include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
@@ -30,17 +29,6 @@ double mean_luminance(const std::vector<glm::vec3>& plane) {
 }
 
 }  // namespace
-
-TEST_CASE("a path-traced picture has the same bits on any number of threads") {
-  const Scene scene = test::furnished_room();
-  const auto on_threads = [&](std::size_t count) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
-    return trace_paths(scene, test::room_camera(), film(40, 30, 4)).layers;
-  };
-  const LightLayers one = on_threads(1);
-  CHECK(test::same_bits(one, on_threads(2)));
-  CHECK(mean_luminance(one.layers[0].radiance) > 0);
-}
 
 TEST_CASE("another seed gives another path-traced picture") {
   const Scene scene = test::furnished_room();

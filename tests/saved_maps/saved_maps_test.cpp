@@ -56,21 +56,6 @@ struct Saved {
 
 }  // namespace
 
-TEST_CASE("a picture from loaded maps is the picture, bit for bit") {
-  const Scene scene = test::furnished_room();
-  const MapMode mode =
-      GENERATE(MapMode::automatic, MapMode::triangle, MapMode::patch, MapMode::naive);
-  const RenderParameters parameters = small(mode);
-  const Saved saved(scene, parameters);
-  TracedPhotons prepared = saved_maps::load(saved.file, scene, words);
-  SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters, &prepared);
-  const LightLayers layers = renderer.render(Saved::scene_camera(), parameters.film).layers;
-  for (std::size_t light = 0; light < layers.layers.size(); ++light) {
-    CHECK(layers.layers[light].radiance == saved.layers.layers[light].radiance);
-    CHECK(layers.layers[light].illuminance == saved.layers.layers[light].illuminance);
-  }
-}
-
 TEST_CASE("saving twice gives the same bytes") {
   const Scene scene = test::furnished_room();
   CHECK(Saved(scene).bytes() == Saved(scene).bytes());

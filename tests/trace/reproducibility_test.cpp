@@ -1,8 +1,5 @@
-// A seed gives the same bits each time, whatever the number of threads, the winding and the
-// batches.
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
+// Shards, passes and batches trace the photons and hits of one run; that threads and windings
+// change none is in tests/equal_bits.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -42,32 +39,9 @@ Camera camera_into_room() {
   return camera;
 }
 
-template <class F>
-auto with_threads(int threads, F&& f) {
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(threads));
-  tbb::task_arena arena(threads);
-  return arena.execute(f);
-}
-
 constexpr PrimaryHitParameters film{.width = 61, .height = 47, .samples_per_pixel = 5};
 
 }  // namespace
-
-TEST_CASE("The photons have the same bits on 1, 2, 3 and 8 threads, the tree included") {
-  const Scene scene = difficult_room();
-  const auto trace = [&] {
-    return trace_photons(RayScene(scene), {.emitted_photons = 60'000, .seed = 5});
-  };
-  const PhotonTracerResult one = with_threads(1, trace);
-  REQUIRE(one.photons.size() > 60'000);
-  for (const int threads : {2, 3, 8}) {
-    const PhotonTracerResult many = with_threads(threads, trace);
-    CHECK(same_bits(one.photons, many.photons));
-    CHECK(same_bits(one.absorbed_flux_per_light, many.absorbed_flux_per_light));
-    CHECK(same_bits(one.escaped_flux_per_light, many.escaped_flux_per_light));
-  }
-}
 
 TEST_CASE("Photons of all shards are those of one process, bit for bit, caustics included") {
   const Scene scene = difficult_room();
@@ -107,34 +81,6 @@ TEST_CASE("Another seed gives other photons, and each light its own") {
   const Photons photons = trace_photons(RayScene(twins), {.emitted_photons = 2}).photons;
   REQUIRE(photons.size() == 2);
   CHECK(photons.position[0] != photons.position[1]);
-}
-
-TEST_CASE("The photons have the same bits when triangles are wound the other way") {
-  // Lamps emit from their fronts and glass has an inside, so these keep their winding.
-  const Scene scene = difficult_room();
-  const Scene other = rewound(scene, [&](std::size_t t) {
-    return t % 3 != 0 && scene.triangle_light[t] == none &&
-           scene.materials[scene.triangle_material[t]].interaction != Interaction::glass;
-  });
-  const PhotonTracerParameters parameters{.emitted_photons = 20'000, .seed = 5};
-  CHECK(same_bits(trace_photons(RayScene(scene), parameters).photons,
-                  trace_photons(RayScene(other), parameters).photons));
-}
-
-TEST_CASE("Primary hits have the same bits on 1, 2, 3 and 8 threads") {
-  const Scene scene = difficult_room();
-  const auto trace = [&] {
-    return trace_primary_hits(RayScene(scene), camera_into_room(), film, 0, film.height);
-  };
-  const PrimaryHitBatch one = with_threads(1, trace);
-  REQUIRE(one.hits.size() > 10'000);
-  REQUIRE(one.emission.size() > 10);
-  for (const int threads : {2, 3, 8}) {
-    const PrimaryHitBatch many = with_threads(threads, trace);
-    CHECK(same_bits(one.hits, many.hits));
-    CHECK(same_bits(one.emission, many.emission));
-    CHECK(one.rays == many.rays);
-  }
 }
 
 TEST_CASE("Each pixel's hits come in the same order however rows are split into batches") {

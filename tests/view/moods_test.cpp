@@ -131,30 +131,6 @@ TEST_CASE("a mood may switch a light or warm it without naming its power") {
   CHECK(Moods(file).changes("x", lamps()).size() == 2);
 }
 
-TEST_CASE("a damaged file of moods is refused with its name and what is wrong") {
-  const TemporaryFolder folder;
-  const auto file = folder.path / "room.moods.json";
-  const auto [text, told] = GENERATE(table<std::string, std::string>(
-      {{"", "is no JSON"},
-       {"{", "is no JSON"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1e39}}}})", "from 0 to 1e+30"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": "5"}}}})", "another type"},
-       {R"([])", "another type"},
-       {R"({"photile_moods": 1e10, "moods": {}})", "is not 1"},
-       {R"({"photile_moods": 2, "moods": {}})", "is not 1"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": -1}}}})", "mood 'x', light 'a'"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": 5}}})", "another type"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "unit": "cd"}}}})", "no unit"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "color": "#12345g"}}}})",
-        "no colour"},
-       {R"({"photile_moods": 1, "moods": {"x": {"a": {"power": 1, "kelvin": 99}}}})",
-        "no colour temperature"}}));
-  std::ofstream(file) << text;
-  CHECK_THROWS_WITH(Moods(file), Contains("room.moods.json") && Contains(told));
-  CHECK_THROWS_WITH(Moods(file), !Contains("json.exception"));
-  CHECK_THROWS_AS(Moods(file), InputError);
-}
-
 TEST_CASE("a mood that cannot be written leaves the moods as they were") {
   Moods moods("/nonexistent-folder/room.moods.json");
   CHECK_THROWS_AS(moods.keep("day", LightBoard(lamps())), OutputError);

@@ -89,33 +89,6 @@ TEST_CASE("directions turn along the shortest arc at even speed") {
   check_near(third.position, {4.0 / 3, 0, 0});
 }
 
-TEST_CASE("what is no path is refused by file, keyframe and key") {
-  const auto [text, expected] = GENERATE(table<std::string, std::string>({
-      {"[", "no JSON"},
-      {"[]", "no keyframes"},
-      {"{}", "no keyframes"},
-      {"[1]", "keyframe 1"},
-      {R"([{"position": [0,0,0], "look_at": [0,0,1]}])", "'time'"},
-      {R"([{"time": 0, "position": [0,0], "look_at": [0,0,1]}])", "'position'"},
-      {R"([{"time": 0, "position": [0,0,0]}])", "look_at"},
-      {R"([{"time": 0, "position": [0,0,0], "look_at": [0,0,1], "direction": [0,0,1]}])",
-       "look_at"},
-      {R"([{"time": 0, "position": [0,0,0], "look_at": [0,0,0]}])", "own position"},
-      {R"([{"time": 0, "position": [0,0,0], "look_at": [0,0,1], "fov": 180}])", "'fov'"},
-      {R"([{"time": 0, "position": [0,0,0], "look_at": [0,0,1], "roll": 1}])", "'roll'"},
-      {R"([{"time": 0, "position": [0,0,0], "look_at": [0,0,1], "up": [0,0,0]}])", "'up'"},
-      {R"({"interpolation": "cubic", "keyframes": [{"time": 0, "position": [0,0,0],
-           "look_at": [0,0,1]}]})",
-       "'interpolation'"},
-  }));
-  INFO(text);
-  CHECK_THROWS_AS(read(text), InputError);
-  CHECK_THROWS_WITH(read(text), Contains("path.json") && Contains(expected));
-  CHECK_THROWS_WITH(read(R"([{"time": 1, "position": [0,0,0], "look_at": [0,0,1]},
-                             {"time": 1, "position": [0,0,0], "look_at": [0,0,1]}])"),
-                    Contains("keyframe 2") && Contains("'time'"));
-}
-
 // Animations of glTF cameras, against values worked out by hand from the specification.
 
 /// A glTF file with one camera "eye" under a node "dolly" at (0, 1, 0).
