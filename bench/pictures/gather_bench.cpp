@@ -170,10 +170,6 @@ void measure_gathering(const std::string& name, const RayScene& rays, Device& de
                        {"looks", light_samples},
                        {"set_up_processor_seconds", set_up},
                        {"processor_seconds_a_point", seconds},
-                       {"wall_seconds",
-                        {{"rays", costs.ray_seconds},
-                         {"estimates", costs.estimate_seconds},
-                         {"looks and sums", costs.sum_seconds}}},
                        {"hits", costs.hits},
                        {"estimated", costs.estimated}};
     double stated = 0, squares = 0;

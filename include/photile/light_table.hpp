@@ -24,8 +24,8 @@ struct LightTable {
   LightTable(std::size_t lights, bool sparse);
 
   std::vector<glm::vec3> irradiance;  ///< W/m2 or lm/m2, linear RGB
-  /// Reflected radiance towards the eye, W/(m2 sr) or cd/m2. Where it is empty, as photon maps leave
-  /// it unless the scene is glossy, radiance is albedo / pi x irradiance.
+  /// Reflected radiance towards the eye, W/(m2 sr) or cd/m2. Where it is empty, as photon maps
+  /// leave it unless the scene is glossy, radiance is albedo / pi x irradiance.
   std::vector<glm::vec3> radiance;
   /// Luminance of irradiance by the normal, to first order: a plane of unit normal n there gets
   /// dot(xyz, n) + w. Only of nodes that rays value, in scenes with smooth shading.
@@ -63,7 +63,6 @@ struct LightTable {
 
   /// Appends the rows of a table of the same form.
   void append(LightTable rows);
-  void append_row(const LightTable& from, std::size_t row);
   /// Row i of the result is row at[i]. Work is shared by TBB.
   LightTable gathered(std::span<const std::uint32_t> at) const;
   /// Rows [begin, begin + count).

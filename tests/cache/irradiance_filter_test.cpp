@@ -204,7 +204,7 @@ TEST_CASE("filter: noise of a lamp falls beside the border of the sun as it does
   LightTable both;
   both.batches = batches;
   for (std::size_t i = 0; i < std::size_t{side * side}; ++i) {
-    for (const LightTable* one : {&sun, &lamp}) both.append_row(*one, i);
+    for (const LightTable* one : {&sun, &lamp}) both.append(one->slice(i, 1));
   }
   both.lights = 2;
   const LightTable layers = cache::filter_irradiance(both, lattice(), std::vector<double>{1, 1});

@@ -66,7 +66,7 @@ TEST_CASE("rows of a table of light are appended, gathered and cut out as they a
   check_rows(all.slice(4, 3), all, {4, 5, 6});
   check_rows(all.slice(4, 0), all, {});
   LightTable one_by_one;
-  for (const std::size_t row : {8, 0, 1}) one_by_one.append_row(all, row);
+  for (const std::size_t row : {8, 0, 1}) one_by_one.append(all.slice(row, 1));
   check_rows(one_by_one, all, {8, 0, 1});
   LightTable joined;
   for (const auto& [first, count] : {std::pair{0, 4}, {4, 0}, {4, 6}}) {

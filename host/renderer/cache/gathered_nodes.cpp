@@ -82,10 +82,11 @@ double times_where_few(const Scene& scene, double spacing) {
                     defaults::most_times_where_few);
 }
 
-void append(const GatheredParts& from, std::size_t point, GatheredParts& to) {
-  to.indirect.append_row(from.indirect, point);
-  to.direct.append_row(from.direct, point);
-  to.distance.push_back(from.distance[point]);
+/// The light of some of the points, in this order.
+GatheredParts gathered(const GatheredParts& from, std::span<const std::uint32_t> rows) {
+  GatheredParts parts{from.indirect.gathered(rows), from.direct.gathered(rows), {}};
+  for (const std::uint32_t row : rows) parts.distance.push_back(from.distance[row]);
+  return parts;
 }
 
 /// The light that all rays and light samples found at the same points.
@@ -155,35 +156,33 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   }
   gather_new(batch, coarse, rays_.coarse, progress);
   gather_new(batch, fine, rays_.fine, progress);
-  std::vector<std::size_t> rows;
+  std::vector<std::uint32_t> rows;
   for (const std::uint64_t number : batch.number) rows.push_back(raw_.row_of.at(number));
   const PointLinks links = visible_links(batch, rows);
-  const GatheredParts smooth = smoothed(links, rows, coarse);
+  GatheredParts all = smoothed(links, rows, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  const LightTable indirect = with_neighbours(raw_.light.indirect, links, rows, fine, of_indirect);
-  const LightTable direct = with_neighbours(raw_.light.direct, links, rows, fine, of_direct);
+  all.indirect.append(with_neighbours(raw_.light.indirect, links, rows, fine, of_indirect));
+  all.direct.append(with_neighbours(raw_.light.direct, links, rows, fine, of_direct));
 
-  GatheredParts own;
-  std::size_t next_coarse = 0, next_fine = 0;
+  std::vector<std::uint32_t> row_of_node;
+  auto next_coarse = std::uint32_t{0}, next_fine = static_cast<std::uint32_t>(coarse.size());
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
-    if (batch.coarse[node]) {
-      append(smooth, next_coarse++, own);
-    } else {
-      own.indirect.append_row(indirect, next_fine);
-      own.direct.append_row(direct, next_fine++);
-      own.distance.push_back(raw_.light.distance[rows[node]]);
-    }
+    row_of_node.push_back(batch.coarse[node] ? next_coarse++ : next_fine++);
   }
-  LightTable all = sum_of(own.indirect, own.direct);
+  LightTable indirect = all.indirect.gathered(row_of_node);
+  LightTable direct = all.direct.gathered(row_of_node);
   NodeValues values;
-  for (std::size_t node = 0; node < batch.nodes; ++node) {
-    values.error.push_back(static_cast<float>(all.total(node, layer_powers_).error));
-    values.distance.push_back(own.distance[node]);
+  values.light = sum_of(indirect, direct);
+  values.error.resize(batch.nodes);
+  tbb::parallel_for(std::size_t{0}, batch.nodes, [&](std::size_t node) {
+    values.error[node] = static_cast<float>(values.light.total(node, layer_powers_).error);
+  });
+  values.light.drop_batches();
+  for (std::uint32_t node = 0; node < batch.nodes; ++node) {
+    values.distance.push_back(raw_.light.distance[rows[node]]);
   }
-  all.drop_batches();
-  values.light = std::move(all);
-  nodes_.indirect.append(std::move(own.indirect));
-  nodes_.direct.append(std::move(own.direct));
+  nodes_.indirect.append(std::move(indirect));
+  nodes_.direct.append(std::move(direct));
   return values;
 }
 
@@ -219,9 +218,9 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
                              more.light_samples, progress, before);
     }
     if (before != NodeRays{}) {
-      for (const std::uint64_t number : numbers) {
-        append(former_.light, former_.row_of.at(number), known);
-      }
+      std::vector<std::uint32_t> former;
+      for (const std::uint64_t number : numbers) former.push_back(former_.row_of.at(number));
+      known = gathered(former_.light, former);
       light = more == NodeRays{} ? std::move(known) : mean_of(known, before, light, more);
     }
     raw_.append(numbers, {before.rays + more.rays, before.light_samples + more.light_samples},
@@ -234,7 +233,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
 /// bright one with a large error would brighten a dark one.
 ///   rows   of all points
 PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
-                                        std::span<const std::size_t> rows) const {
+                                        std::span<const std::uint32_t> rows) const {
   PointLinks links{{0}, {}, batch.points.position};
   if (batch.first_neighbour.empty()) return links;
   const KnownPoints indirect(raw_.light.indirect, {rows.begin(), rows.end()}, layer_powers_);
@@ -268,13 +267,12 @@ PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
 }
 
 /// Coarse points averaged with those around them.
-GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const std::size_t> rows,
+GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const std::uint32_t> rows,
                                       std::span<const std::uint32_t> coarse) const {
-  GatheredParts parts;
-  for (const std::uint32_t point : coarse) {
-    append(raw_.light, rows[point], parts);
-  }
-  if (coarse.empty()) return parts;
+  if (coarse.empty()) return {};
+  std::vector<std::uint32_t> of_coarse;
+  for (const std::uint32_t point : coarse) of_coarse.push_back(rows[point]);
+  GatheredParts parts = gathered(raw_.light, of_coarse);
   const PointLinks between = links_between(links, coarse);
   parts.indirect = filter_irradiance(std::move(parts.indirect), between, layer_powers_,
                                      {.rounds = averaged.rounds, .tolerated = of_indirect});
@@ -285,7 +283,7 @@ GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const s
 
 /// Finer nodes averaged with the points next to them, as gathered.
 LightTable GatheredNodes::with_neighbours(const LightTable& raw, const PointLinks& links,
-                                          std::span<const std::size_t> rows,
+                                          std::span<const std::uint32_t> rows,
                                           std::span<const std::uint32_t> fine,
                                           const NoiseTolerance& tolerated) const {
   if (fine.empty()) return means_of(raw, 0, layer_powers_, [](std::size_t, auto&) {});

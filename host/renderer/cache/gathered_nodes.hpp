@@ -64,11 +64,12 @@ class GatheredNodes : public NodeSource {
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points, NodeRays rays,
                   const Progress& progress);
-  PointLinks visible_links(const NodeBatch& batch, std::span<const std::size_t> rows) const;
-  GatheredParts smoothed(const PointLinks& links, std::span<const std::size_t> rows,
+  PointLinks visible_links(const NodeBatch& batch, std::span<const std::uint32_t> rows) const;
+  GatheredParts smoothed(const PointLinks& links, std::span<const std::uint32_t> rows,
                          std::span<const std::uint32_t> coarse) const;
   LightTable with_neighbours(const LightTable& raw, const PointLinks& links,
-                             std::span<const std::size_t> rows, std::span<const std::uint32_t> fine,
+                             std::span<const std::uint32_t> rows,
+                             std::span<const std::uint32_t> fine,
                              const NoiseTolerance& tolerated) const;
 
   IrradianceGather& gather_;

@@ -1,11 +1,14 @@
 #include "cache/irradiance_gather.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -32,6 +35,11 @@ namespace {
 constexpr std::size_t rays_at_a_time = std::size_t{1} << 16;
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t points_per_task = 16;
+
+/// Runs of points: enough that while one waits the others have work for all threads.
+std::size_t runs_on_their_way() {
+  return 2 + static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()) / 4;
+}
 
 /// Whole rays of a batch.
 int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
@@ -220,8 +228,8 @@ struct RunLight {
   }
 };
 
-/// Adds the points of a run, in their order.
-void add_run(const RunLight& light, std::size_t first, std::size_t count, GatheredParts& all) {
+/// The light of the points of a run, in their order, in parts that tasks wrote.
+std::vector<GatheredParts> sums_of(const RunLight& light, std::size_t first, std::size_t count) {
   std::vector<GatheredParts> parts((count + points_per_task - 1) / points_per_task);
   const SceneNeeds& needs = light.rays.needs();
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
@@ -246,12 +254,16 @@ void add_run(const RunLight& light, std::size_t first, std::size_t count, Gather
       own.distance.push_back(light.distance(i));
     }
   });
-  for (GatheredParts& part : parts) {
-    all.indirect.append(std::move(part.indirect));
-    all.direct.append(std::move(part.direct));
-    all.distance.insert(all.distance.end(), part.distance.begin(), part.distance.end());
-  }
+  return parts;
 }
+
+/// A run of points on its way.
+struct Run {
+  std::size_t first, count;
+  trace::HemisphereRays rays;
+  RayEnds ends;
+  std::vector<GatheredParts> light;
+};
 
 void put(const LightTable& part, ByteWriter& bytes) {
   bytes.put(part.irradiance);
@@ -374,9 +386,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
                                            int light_samples, NodeRays before, std::size_t most,
                                            const Progress& progress) {
   const std::uint64_t nodes_before = ends_.statistics().nodes;
-  const Stopwatch caustics_watch;
   const LightTable caustics = caustics_ ? caustics_->at(points, progress) : LightTable{};
-  costs_.estimate_seconds += caustics_watch.seconds();
   costs_.estimated += caustics_ ? points.size() : 0;
 
   const int rays_per_batch = per_batch(rays, parameters_.batches);
@@ -408,45 +418,79 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
   const std::size_t at_a_time =
       std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
   GatheredParts all = none_yet();
-  for (std::size_t round = 0; round < most; round += at_a_time) {
+  // Several runs are on their way: while one has its ends looked up, which changes the light maps
+  // and may take the device, rays of later ones are traced and earlier ones are summed.
+  using RunPointer = std::shared_ptr<Run>;
+  std::size_t round = 0;
+  const auto begin = [&](tbb::flow_control& control) -> RunPointer {
+    if (round >= most) {
+      control.stop();
+      return nullptr;
+    }
     progress.throw_if_cancelled();
     const std::size_t first = std::min(round, points.size());
-    const std::size_t count = std::min(at_a_time, points.size() - first);
-    RayEnds traced;
+    round += at_a_time;
+    return std::make_shared<Run>(
+        Run{first, std::min(at_a_time, points.size() - first), {}, {}, {}});
+  };
+  const auto trace_rays = [&](RunPointer run) {
     if (rays_per_batch > 0) {
-      const Stopwatch stopwatch;
-      trace::HemisphereRays hemispheres =
-          trace::trace_hemispheres(rays_, points, first, count, number, hemisphere);
-      costs_.ray_seconds += stopwatch.seconds();
-      const Stopwatch estimate_watch;
-      traced = light_at_ends(std::move(hemispheres), photons_, ends_, progress);
-      costs_.estimate_seconds += estimate_watch.seconds();
-      costs_.rays += traced.rays.ray_hits.rays;
-      costs_.hits += traced.slot.size();
-      costs_.estimated += traced.found.size();
+      run->rays =
+          trace::trace_hemispheres(rays_, points, run->first, run->count, number, hemisphere);
     }
-    const Stopwatch sum_watch;
-    add_run(
-        {.rays = rays_,
-         .light_sampler = light_sampler_,
-         .parameters = parameters_,
-         .rays_per_batch = rays_per_batch,
-         .light_samples_per_batch = light_samples_per_batch,
-         .most_light_samples_per_batch = most_light_samples_per_batch,
-         // Earlier rounds may have taken up to this factor more, where light was uncertain.
-         .first_light_sample = static_cast<std::uint32_t>(
-             defaults::light_samples_again * per_batch(before.light_samples, parameters_.batches)),
-         .points = points,
-         .number = number,
-         .traced = rays_per_batch > 0 ? &traced : nullptr,
-         .of_ends = ends_.values(),
-         .caustics = caustics,
-         .caustic_relative_variance =
-             caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
-         .layer_powers = layer_powers_},
-        first, count, all);
-    costs_.sum_seconds += sum_watch.seconds();
-  }
+    return run;
+  };
+  const auto look_up = [&](RunPointer run) {
+    if (rays_per_batch == 0) return run;
+    run->ends = light_at_ends(std::move(run->rays), photons_, ends_, progress);
+    costs_.rays += run->ends.rays.ray_hits.rays;
+    costs_.hits += run->ends.slot.size();
+    costs_.estimated += run->ends.found.size();
+    return run;
+  };
+  const auto sum = [&](RunPointer run) {
+    const auto stays = ends_.hold_values();
+    // A thread that holds the values must not take up a look-up while it waits for its tasks.
+    tbb::this_task_arena::isolate([&] {
+      run->light = sums_of(
+          {.rays = rays_,
+           .light_sampler = light_sampler_,
+           .parameters = parameters_,
+           .rays_per_batch = rays_per_batch,
+           .light_samples_per_batch = light_samples_per_batch,
+           .most_light_samples_per_batch = most_light_samples_per_batch,
+           // Earlier rounds may have taken up to this factor more, where light was uncertain.
+           .first_light_sample =
+               static_cast<std::uint32_t>(defaults::light_samples_again *
+                                          per_batch(before.light_samples, parameters_.batches)),
+           .points = points,
+           .number = number,
+           .traced = rays_per_batch > 0 ? &run->ends : nullptr,
+           .of_ends = ends_.values(),
+           .caustics = caustics,
+           .caustic_relative_variance =
+               caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
+           .layer_powers = layer_powers_},
+          run->first, run->count);
+    });
+    run->ends = {};
+    return run;
+  };
+  const auto append_run = [&](const RunPointer& run) {
+    for (GatheredParts& part : run->light) {
+      all.indirect.append(std::move(part.indirect));
+      all.direct.append(std::move(part.direct));
+      all.distance.insert(all.distance.end(), part.distance.begin(), part.distance.end());
+    }
+  };
+  using tbb::filter_mode;
+  tbb::parallel_pipeline(
+      runs_on_their_way(),
+      tbb::make_filter<void, RunPointer>(filter_mode::serial_in_order, begin) &
+          tbb::make_filter<RunPointer, RunPointer>(filter_mode::parallel, trace_rays) &
+          tbb::make_filter<RunPointer, RunPointer>(filter_mode::serial_in_order, look_up) &
+          tbb::make_filter<RunPointer, RunPointer>(filter_mode::parallel, sum) &
+          tbb::make_filter<RunPointer, void>(filter_mode::serial_in_order, append_run));
   costs_.estimated += ends_.statistics().nodes - nodes_before;
   return all;
 }

@@ -102,9 +102,6 @@ class IrradianceGather {
 
   /// The costs of all calls so far.
   struct Costs {
-    double ray_seconds = 0;       ///< tracing rays to surfaces
-    double estimate_seconds = 0;  ///< photons, at ray hits and at points
-    double sum_seconds = 0;       ///< light samples, and sums
     std::uint64_t rays = 0;       ///< to surfaces; those along mirrors and glass included
     std::uint64_t hits = 0;       ///< that met a surface
     std::uint64_t estimated = 0;  ///< points at which photons were searched

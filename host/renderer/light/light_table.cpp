@@ -79,15 +79,6 @@ void LightTable::append(LightTable more) {
   }
 }
 
-void LightTable::append_row(const LightTable& from, std::size_t at) {
-  lights = from.lights;
-  batches = from.batches;
-  append_entries(*this, from, from.row(at));
-  if (!from.sparse()) return;
-  if (first.empty()) first.push_back(0);
-  first.push_back(irradiance.size());
-}
-
 LightTable LightTable::gathered(std::span<const std::uint32_t> at) const {
   LightTable result(lights, sparse());
   result.batches = batches;
