@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -65,6 +66,17 @@ enum class DensityKernel {
 /// "constant", "cone".
 std::string_view name_of(DensityKernel kernel);
 inline constexpr std::array all_density_kernels = {DensityKernel::constant, DensityKernel::cone};
+
+/// What a photon counts where the squares of its distance and of that of the k-th have this ratio.
+inline double kernel_weight(DensityKernel kernel, double relative_squared) {
+  switch (kernel) {
+    case DensityKernel::constant:
+      return 1;
+    case DensityKernel::cone:
+      return 1 - std::sqrt(relative_squared);
+  }
+  return 0;
+}
 
 /// The kernel in use with k neighbours: one photon alone lies at r, where the others are 0.
 inline DensityKernel kernel_used(DensityKernel kernel, int neighbours) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "photile/camera.hpp"
@@ -255,6 +256,11 @@ struct Material {
 
 enum class LightKind : std::uint8_t { area, point, spot, directional, environment };
 
+/// "area", "point", "spot", "directional", "environment".
+std::string_view name_of(LightKind kind);
+inline constexpr std::array all_light_kinds = {LightKind::area, LightKind::point, LightKind::spot,
+                                               LightKind::directional, LightKind::environment};
+
 /// A light. Its photons carry `color` with luminance 1, so that `power` alone scales its layer.
 struct Light {
   std::string name;   ///< unique; no dots; at most limits::max_light_name_bytes bytes
@@ -292,6 +298,8 @@ struct Light {
 
   std::uint32_t environment = none;  ///< of an environment light: into Scene::environments
 
+  /// Whether all of the light comes from `position`.
+  bool has_position() const { return kind == LightKind::point || kind == LightKind::spot; }
   /// Whether rays can meet the light: a surface, a disc in the sky or surroundings.
   bool has_size() const {
     return kind == LightKind::area || kind == LightKind::environment ||

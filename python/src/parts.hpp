@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -59,6 +60,17 @@ T value_of(const pybind11::handle& value, const std::string& name) {
 template <class T>
 T field(const pybind11::dict& fields, const char* name, const std::string& of = "") {
   return value_of<T>(fields[name], of + name);
+}
+
+/// The enumerator of a name. Errors: UsageError that names all of them.
+template <class Enum, std::size_t count>
+Enum named(const std::array<Enum, count>& all, const std::string& name, const std::string& what) {
+  std::string names;
+  for (const Enum one : all) {
+    if (name_of(one) == name) return one;
+    names += (names.empty() ? "" : ", ") + std::string(name_of(one));
+  }
+  throw UsageError(what + ": '" + name + "' is not one of " + names);
 }
 
 /// The devices that a selector means, opened when they are first asked for. Errors: DeviceError.

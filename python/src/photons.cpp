@@ -25,13 +25,7 @@ std::shared_ptr<PhotonTracerResult> trace(const std::shared_ptr<Scene>& scene,
   parameters.seed = field<std::uint64_t>(options, "seed");
   parameters.store_direct = field<bool>(options, "store_direct");
   parameters.max_path_length = field<int>(options, "max_path_length");
-  const auto quota = field<std::string>(options, "quota");
-  const auto found = std::find_if(all_photon_quotas.begin(), all_photon_quotas.end(),
-                                  [&](PhotonQuota one) { return name_of(one) == quota; });
-  if (found == all_photon_quotas.end()) {
-    throw UsageError("quota: '" + quota + "' is not one of balanced, power, equal");
-  }
-  parameters.quota = *found;
+  parameters.quota = named(all_photon_quotas, field<std::string>(options, "quota"), "quota");
   return run(progress, [&](Progress& told) {
     return std::make_shared<PhotonTracerResult>(trace_photons(RayScene(*scene), parameters, told));
   });
@@ -51,13 +45,6 @@ py::object normals_of(const PhotonTracerResult& traced, const Scene& scene) {
   }
   const auto count = static_cast<py::ssize_t>(normals.size());
   return taken<float>(std::move(normals), {count, 3});
-}
-
-DensityKernel kernel_named(const std::string& name) {
-  for (const DensityKernel kernel : all_density_kernels) {
-    if (name_of(kernel) == name) return kernel;
-  }
-  throw UsageError("kernel: '" + name + "' is not one of constant, cone");
 }
 
 /// Arrays that may be empty: a span of nothing.
@@ -137,7 +124,7 @@ class Maps {
     const CloudEstimateParameters parameters{
         .neighbours = field<int>(options, "k"),
         .radius = field<double>(options, "radius"),
-        .kernel = kernel_named(field<std::string>(options, "kernel"))};
+        .kernel = named(all_density_kernels, field<std::string>(options, "kernel"), "kernel")};
     LightTable found = [&] {
       const Unlocked unlocked;
       const std::lock_guard lock(devices_->mutex);

@@ -160,17 +160,10 @@ py::object mixed_layers(const Picture& picture, const Changes& changes) {
   return taken<float>(std::move(sum), picture.shape(3));
 }
 
-DisplayView view_named(const std::string& name) {
-  for (const DisplayView display : all_display_views) {
-    if (name_of(display) == name) return display;
-  }
-  throw UsageError("view: '" + name + "' is not one of neutral, standard");
-}
-
 ToneMapping tone_mapping(const Picture& picture, const py::dict& display) {
   return {.automatic_exposure = field<bool>(display, "automatic"),
           .exposure = field<double>(display, "exposure"),
-          .view = view_named(field<std::string>(display, "view")),
+          .view = named(all_display_views, field<std::string>(display, "view"), "view"),
           .white = *image::kept_white(picture.header)};
 }
 
@@ -241,13 +234,8 @@ py::list statistics_of(const Picture& picture) {
 
 void set_all(RenderParameters& parameters, const py::dict& settings) {
   if (settings.contains("quality")) {
-    const auto name = field<std::string>(settings, "quality");
-    const auto found = std::find_if(all_qualities.begin(), all_qualities.end(),
-                                    [&](Quality one) { return name_of(one) == name; });
-    if (found == all_qualities.end()) {
-      throw UsageError("quality: '" + name + "' is not one of draft, good, final");
-    }
-    set_quality(parameters, *found);
+    set_quality(parameters,
+                named(all_qualities, field<std::string>(settings, "quality"), "quality"));
   }
   for (const auto& [key, value] : settings) {
     const auto name = key.cast<std::string>();

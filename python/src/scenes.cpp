@@ -29,7 +29,6 @@ py::tuple triple(const V& v) {
 }
 
 constexpr std::array interactions{"opaque", "mirror", "glass"};
-constexpr std::array light_kinds{"area", "point", "spot", "directional", "environment"};
 
 template <class E, std::size_t n>
 E word(const std::array<const char*, n>& words, const std::string& found, const std::string& what) {
@@ -103,7 +102,7 @@ std::uint32_t add_light(SceneBuilder& builder, const py::dict& fields, const glm
   light.name = field<std::string>(fields, "name", "light: ");
   const std::string of = "light '" + light.name + "': ";
   light.group = field<std::string>(fields, "group", of);
-  light.kind = word<LightKind>(light_kinds, field<std::string>(fields, "kind", of), of + "kind");
+  light.kind = named(all_light_kinds, field<std::string>(fields, "kind", of), of + "kind");
   light.power = field<double>(fields, "power", of);
   light.color = vec(field<Vector3>(fields, "color", of));
   light.position = vec(field<Vector3>(fields, "position", of)) - origin;
@@ -216,7 +215,7 @@ py::list lights_of_scene(const Scene& scene) {
     py::dict row;
     row["name"] = light.name;
     row["group"] = light.group;
-    row["kind"] = light_kinds[static_cast<std::size_t>(light.kind)];
+    row["kind"] = std::string(name_of(light.kind));
     row["power"] = light.power;
     row["color"] = triple(light.color);
     row["position"] = triple(position_in_world(scene, glm::dvec3(light.position)));

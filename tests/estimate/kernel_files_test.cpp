@@ -79,13 +79,13 @@ std::vector<EstimateTuning> all_tunings() {
 /// kernel.
 std::vector<device::Defines> with_queries(const device::Defines& defines) {
   std::vector<device::Defines> all;
-  for (const auto& [clipped, kernel] :
-       {std::pair{false, DensityKernel::constant}, std::pair{true, DensityKernel::constant},
-        std::pair{true, DensityKernel::cone}, std::pair{false, DensityKernel::cone}}) {
-    device::Defines one = defines;
-    estimate::set_density_defines(one, clipped, kernel);
-    if (clipped) one.set("NORMALS");
-    all.push_back(one);
+  for (const bool clipped : {false, true}) {
+    for (const DensityKernel kernel : all_density_kernels) {
+      device::Defines one = defines;
+      estimate::set_density_defines(one, clipped, kernel);
+      if (clipped) one.set("NORMALS");
+      all.push_back(one);
+    }
   }
   return all;
 }

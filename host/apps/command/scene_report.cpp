@@ -171,22 +171,11 @@ json camera_json(const Camera& camera) {
 
 }  // namespace
 
-const char* kind_name(const Light& light) {
+std::string_view kind_name(const Light& light) {
   if (light.distribution != none) return "photometric";
-  switch (light.kind) {
-    case LightKind::area:
-      return "area";
-    case LightKind::point:
-      return "point";
-    case LightKind::spot:
-      return "spot";
-    case LightKind::directional:
-      if (!light.is_sky_patch()) return light.has_size() ? "sun" : "directional";
-      [[fallthrough]];
-    case LightKind::environment:
-      return "environment";
-  }
-  return "";
+  if (light.is_sky_patch()) return name_of(LightKind::environment);
+  if (light.kind == LightKind::directional && light.has_size()) return "sun";
+  return name_of(light.kind);
 }
 
 std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {

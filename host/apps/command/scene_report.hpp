@@ -21,7 +21,7 @@ struct Extents {
 Extents extents_of(const Scene& scene);
 
 /// "area", "point", "spot", "photometric", "sun", "directional" or "environment".
-const char* kind_name(const Light& light);
+std::string_view kind_name(const Light& light);
 
 /// Power of each light in the mix; lights of a group change together.
 std::vector<double> powers_of(const Scene& scene, const LightMix& mix);

@@ -79,7 +79,9 @@ std::vector<TradeSettings> settings_around(const RenderParameters& parameters) {
   vary("angle_degrees", {30., 90.});
   vary("photons_per_cell", {of("photons_per_cell", 0.25), of("photons_per_cell", 4)});
   vary("area", {"disc"});
-  vary("kernel", {"constant", "cone"});
+  for (const DensityKernel kernel : all_density_kernels) {
+    vary("kernel", {std::string(name_of(kernel))});
+  }
   vary("direct_rays", {std::uint64_t{1}, std::uint64_t{4}});
   vary("maps", {"naive", "triangle", "patch"});
   return all;

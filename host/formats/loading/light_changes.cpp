@@ -114,7 +114,7 @@ void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,
                     files::Warnings& warnings) {
   for (const LightProfile& profile : profiles) {
     Light& light = light_named(profile.light, "photometric file for", scene);
-    if (light.kind != LightKind::point && light.kind != LightKind::spot) {
+    if (!light.has_position()) {
       throw UsageError(
           fmt::format("photometric file for {}: the light is neither a point nor a spot light; "
                       "name one of those",

@@ -68,10 +68,9 @@ Luminaires::Luminaires(const RayScene& rays, int samples)
   const Scene& scene = rays.scene();
   const std::vector<glm::vec3> radiance = emitted_radiance_at_unit_power(scene);
   for (std::uint32_t light = 0; light < scene.lights.size(); ++light) {
-    const LightKind kind = scene.lights[light].kind;
-    if (kind == LightKind::area) {
+    if (scene.lights[light].kind == LightKind::area) {
       add_area_light(light, radiance[light], samples);
-    } else if (kind == LightKind::point || kind == LightKind::spot) {
+    } else if (scene.lights[light].has_position()) {
       const std::uint32_t file = scene.lights[light].distribution;
       Luminaire luminaire{scene.lights[light].name, light, glm::vec3(0.0f), {{{}, 1.0f}}, {}};
       luminaire.patches.front().point.position = scene.lights[light].position;

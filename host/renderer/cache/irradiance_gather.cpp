@@ -440,7 +440,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
     }
     return run;
   };
-  const auto look_up = [&](RunPointer run) {
+  const auto read_ends = [&](RunPointer run) {
     if (rays_per_batch == 0) return run;
     run->ends = light_at_ends(std::move(run->rays), photons_, ends_, progress);
     costs_.rays += run->ends.rays.ray_hits.rays;
@@ -488,7 +488,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
       runs_on_their_way(),
       tbb::make_filter<void, RunPointer>(filter_mode::serial_in_order, begin) &
           tbb::make_filter<RunPointer, RunPointer>(filter_mode::parallel, trace_rays) &
-          tbb::make_filter<RunPointer, RunPointer>(filter_mode::serial_in_order, look_up) &
+          tbb::make_filter<RunPointer, RunPointer>(filter_mode::serial_in_order, read_ends) &
           tbb::make_filter<RunPointer, RunPointer>(filter_mode::parallel, sum) &
           tbb::make_filter<RunPointer, void>(filter_mode::serial_in_order, append_run));
   costs_.estimated += ends_.statistics().nodes - nodes_before;

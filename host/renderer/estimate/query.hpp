@@ -58,8 +58,11 @@ std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParame
 /// Sets CLIPPED and DENSITY_KERNEL.
 inline void set_density_defines(device::Defines& defines, bool clipped, DensityKernel kernel) {
   if (clipped) defines.set("CLIPPED");
-  constexpr long long cone = PHOTILE_CONE_KERNEL;
-  if (kernel == DensityKernel::cone) defines.set("DENSITY_KERNEL", cone);
+  static_assert(static_cast<int>(DensityKernel::constant) == PHOTILE_CONSTANT_KERNEL &&
+                static_cast<int>(DensityKernel::cone) == PHOTILE_CONE_KERNEL);
+  if (kernel != DensityKernel::constant) {
+    defines.set("DENSITY_KERNEL", static_cast<long long>(kernel));
+  }
 }
 
 /// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,

@@ -155,7 +155,7 @@ bool VisiblePhotons::is_before_cavity(const trace::SurfaceLocation& here, float 
 }
 
 double VisiblePhotons::weight(double relative_squared) const {
-  return kernel_ == DensityKernel::constant ? 1 : 1 - std::sqrt(relative_squared);
+  return kernel_weight(kernel_, relative_squared);
 }
 
 trace::SurfaceLocation VisiblePhotons::location_of(std::uint32_t photon) const {

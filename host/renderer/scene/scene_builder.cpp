@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_emission.hpp"
@@ -16,6 +17,10 @@
 #include "trace/place_camera.hpp"
 
 namespace photile {
+
+std::string_view name_of(LightKind kind) {
+  return name_in({"area", "point", "spot", "directional", "environment"}, kind);
+}
 
 using scene::Corner;
 using scene::MeshBuilder;

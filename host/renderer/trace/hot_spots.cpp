@@ -33,10 +33,6 @@ constexpr std::size_t rows = 96, columns = 48;
 /// Panes and cutouts that light may pass on its way.
 constexpr int most_surfaces = 4096;
 
-bool may_have(const Light& light) {
-  return light.kind == LightKind::point || light.kind == LightKind::spot;
-}
-
 /// By a number in [0, 1) that is as even afterwards.
 std::size_t choose(const std::vector<double>& up_to, double& u) {
   const double target = u * up_to.back();
@@ -68,14 +64,17 @@ double HotSpots::Spot::solid_angle(std::size_t row) const {
 
 HotSpots::HotSpots(const RayScene::Impl& rays) : rays_(&rays) {
   const Scene& scene = *rays.scene;
-  if (std::none_of(scene.lights.begin(), scene.lights.end(), may_have)) return;
+  if (std::none_of(scene.lights.begin(), scene.lights.end(),
+                   [](const Light& light) { return light.has_position(); })) {
+    return;
+  }
   const std::vector<double> fractions = light_fractions(scene.lights, PhotonQuota::balanced);
   std::vector<std::optional<Spot>> found(scene.lights.size());
   std::vector<double> reach(scene.lights.size(), 0.0);
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(found.size()),
                     [&](std::uint32_t light) {
                       const FlushDenormals flush_denormals;
-                      if (!may_have(scene.lights[light])) return;
+                      if (!scene.lights[light].has_position()) return;
                       reach[light] = reach_of_surroundings * surroundings_of(light);
                       if (reach[light] > 0) found[light] = spot_of(light, reach[light]);
                     });

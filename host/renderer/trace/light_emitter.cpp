@@ -77,10 +77,14 @@ EmittedRay LightEmitter::emit(const RandomStream& random) const {
               Frame(light_->direction).to_world(direction_at(cosine, numbers.uniform(2))),
               light_->color};
     }
-    default:  // parallel light; lights with a size were handled above
-      return {entrance(bounds_, light_->direction, numbers.uniform(0), numbers.uniform(1)),
-              light_->direction, light_->color};
+    case LightKind::directional:
+    case LightKind::area:
+    case LightKind::environment:
+      break;
   }
+  // Parallel light; lights with a size were handled above.
+  return {entrance(bounds_, light_->direction, numbers.uniform(0), numbers.uniform(1)),
+          light_->direction, light_->color};
 }
 
 EmittedRay LightEmitter::emit_from_beyond(const RandomStream& random) const {

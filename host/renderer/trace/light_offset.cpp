@@ -89,7 +89,7 @@ void offset_lights(Scene& scene) {
   const geometry::Box bounds = scene::bounds_of(scene);
   tbb::parallel_for(std::size_t{0}, scene.lights.size(), [&](std::size_t i) {
     Light& light = scene.lights[i];
-    if (light.kind == LightKind::point || light.kind == LightKind::spot) {
+    if (light.has_position()) {
       light.position = position_off_surfaces(scene, light, bounds);
     }
   });
