@@ -144,6 +144,8 @@ def main():
     figures = {name: figure for name, figure in figures.items() if name in MEASURED}
     for name, (find, file, measures) in FOUND.items():
         figures[name] = {"values": find(), "command": file, **measured.of_file(file), "measures": measures}
+        if file.startswith("results/cuda/"):
+            figures[name]["card"] = "NVIDIA H100"
     for name, (measure, command, measures) in MEASURED.items():
         if any(part in name for part in given.measure):
             figures[name] = {"values": measure(given.photile), "command": command, **measured.now(),
