@@ -18,7 +18,6 @@
 namespace photile::test {
 namespace {
 
-using Catch::Contains;
 using Room = RoomWithWindow;
 using namespace photile::daylight;
 using std::numbers::pi;
@@ -154,25 +153,16 @@ TEST_CASE("working days are counted by the calendar of the weather") {
   CHECK(count(occupancy) == 8 * 53);
   occupancy.set_days("sat-mon,wed");
   CHECK(count(occupancy) == 8 * (53 + 3 * 52));
-  CHECK_THROWS_WITH(occupancy.set_days("mo-fr"), Contains("--days mo-fr"));
-  CHECK_THROWS_WITH(occupancy.set_hours("18-8"), Contains("--occupied 18-8"));
 }
 
 TEST_CASE("a schedule has a value for each hour") {
   const TemporaryFolder folder;
-  const auto write = [&](const char* name, const std::string& content) {
-    std::ofstream(folder.path / name) << content;
-    return folder.path / name;
-  };
   std::string text = "hour,occupancy\n";
   for (int i = 0; i < 8760; ++i) text += i % 24 == 10 ? "x,0.5\n" : "x,0\n";
   Occupancy occupancy;
-  occupancy.schedule = write("a.csv", text);
+  occupancy.schedule = folder.path / "a.csv";
+  std::ofstream(occupancy.schedule) << text;
   CHECK(count(occupancy) == 365);
-  occupancy.schedule = write("b.csv", text + "x,1\n");
-  CHECK_THROWS_WITH(count(occupancy), Contains("8761 hours"));
-  occupancy.schedule = write("c.csv", "0\n-1\n");
-  CHECK_THROWS_WITH(count(occupancy), Contains("line 2: '-1'"));
 }
 
 // Blinds: panes that let less through, and hours in which they close, by hand.
@@ -311,21 +301,6 @@ TEST_CASE("a closed pane lets through what is asked for") {
   // Both faces of glass of index 1.5 together reflect 7.7% of light at normal incidence.
   CHECK(all(states[0]) == Approx(bare * 0.923).epsilon(0.02));
   CHECK(all(states[1]) == Approx(bare * 0.05).epsilon(0.02));
-}
-
-TEST_CASE("blinds are refused in a line where they cannot be") {
-  CHECK_THROWS_WITH(BlindGroup::parse("glass"), Contains("--blinds glass"));
-  CHECK_THROWS_WITH(BlindGroup::parse("glass=2"), Contains("--blinds glass=2"));
-  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
-  builder.add(pane("glazing"));
-  const Scene scene = builder.build();
-  const auto close = [&](const char* text) {
-    const std::vector<BlindGroup> groups{BlindGroup::parse(text)};
-    return materials_with(scene, groups, 1);
-  };
-  CHECK_THROWS_WITH(close("window=0.1"), Contains("there is no such material"));
-  CHECK_THROWS_WITH(close("glazing=0.95"), Contains("lets 0.923 through"));
-  CHECK_THROWS_WITH(close("*=0.1"), Contains("is no thin pane"));
 }
 
 TEST_CASE("blinds close panes that are partly there, as IFC has them") {

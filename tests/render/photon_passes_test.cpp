@@ -1,7 +1,4 @@
 // Pictures of several photon passes.
-#define TBB_PREVIEW_GLOBAL_CONTROL 1
-
-#include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -112,14 +109,6 @@ TEST_CASE("with more passes the error falls as theory says, where the radius bou
 TEST_CASE("one pass is the picture without passes") {
   CHECK(test::same_bits(render_room(small_parameters(1)).layers,
                         render_room(small_parameters(0)).layers));
-}
-
-TEST_CASE("passes on one, two and three threads render the same bits") {
-  const LightLayers expected = render_room(small_parameters(3)).layers;
-  for (const std::size_t threads : {1u, 2u, 3u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    CHECK(test::same_bits(expected, render_room(small_parameters(3)).layers));
-  }
 }
 
 TEST_CASE("passes share the photons and the samples of a pixel") {

@@ -1,19 +1,12 @@
-// A seed gives the same picture each time, bit for bit, and a scene with instances that of the same
-// scene without.
-#include <tbb/global_control.h>
-
+// What changes no picture: lamps of more power, and instances in place of copies. Threads, devices,
+// processes, windings and kept photons are in tests/equal_bits.
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <random>
-#include <set>
 
 #include "instanced_scenes.hpp"
 #include "neighbour_comparison.hpp"
 #include "photile/errors.hpp"
-#include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "temporary_folder.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -38,30 +31,6 @@ std::vector<double> sums(const LightLayers& picture) {
 
 }  // namespace
 
-TEST_CASE("one, two and three threads render the same bits") {
-  const Scene scene = test::furnished_room(4);
-  std::vector<LightLayers> pictures;
-  for (const std::size_t threads : {1u, 2u, 3u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    pictures.push_back(render(scene, room_camera(), test::device(), small_parameters()).layers);
-  }
-  CHECK(same_bits(pictures[0], pictures[1]));
-  CHECK(same_bits(pictures[0], pictures[2]));
-}
-
-TEST_CASE("one, two and three threads render the same bits of many lights") {
-  Scene scene = test::furnished_room(4);
-  add_lamps(scene, 20);
-  std::vector<LightLayers> pictures;
-  for (const std::size_t threads : {1u, 2u, 3u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    pictures.push_back(render(scene, room_camera(), test::device(), small_parameters()).layers);
-  }
-  REQUIRE(pictures[0].sparse());
-  CHECK(same_bits(pictures[0], pictures[1]));
-  CHECK(same_bits(pictures[0], pictures[2]));
-}
-
 TEST_CASE("lamps of twice the power render the same bits per unit of power") {
   Scene scene = test::furnished_room(2);
   RenderParameters parameters = small_parameters();
@@ -80,42 +49,6 @@ TEST_CASE("another seed renders another picture") {
   const auto first = render(scene, room_camera(), test::device(), parameters).layers;
   parameters.seed = 2;
   CHECK_FALSE(same_bits(first, render(scene, room_camera(), test::device(), parameters).layers));
-}
-
-TEST_CASE("the same mesh with inconsistent winding renders the same bits") {
-  const TemporaryFolder folder;
-  const Scene room = test::furnished_room(4);
-  // Where faces lie in one place, their winding says which of them counts on either side.
-  const std::set<std::uint32_t> in_one_place = triangles_in_one_place(room);
-  REQUIRE(2 * in_one_place.size() < room.triangle_count());
-  std::mt19937 random(9);
-  const auto write = [&](const std::string& name, bool flip) {
-    std::ofstream obj(folder.path / (name + ".obj"));
-    obj.precision(9);
-    obj << "mtllib room.mtl\n";
-    for (const glm::vec3& v : room.vertices) obj << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
-    for (std::size_t t = 0; t < room.triangle_count(); ++t) {
-      const bool lamp = room.triangle_light[t] != none;
-      glm::uvec3 corners = room.triangles[t] + 1u;
-      // A lamp's winding says where it shines; only the others may be wrong.
-      const bool may_be_wrong = !lamp && !in_one_place.contains(static_cast<std::uint32_t>(t));
-      const bool backwards =
-          (room.front_side[t] == 1) != (may_be_wrong && flip && random() % 2 == 0);
-      if (backwards) std::swap(corners.y, corners.z);
-      obj << "usemtl " << (lamp ? "lamp" : "wall") << "\nf " << corners.x << ' ' << corners.y << ' '
-          << corners.z << '\n';
-    }
-  };
-  std::ofstream(folder.path / "room.mtl")
-      << "newmtl wall\nKd 0.6 0.5 0.4\nnewmtl lamp\nKd 0 0 0\nKe 10 9 8\n";
-  write("consistent", false);
-  write("inconsistent", true);
-  const Scene consistent = load_scene(folder.path / "consistent.obj");
-  const Scene inconsistent = load_scene(folder.path / "inconsistent.obj");
-  REQUIRE(consistent.front_side != inconsistent.front_side);
-  const auto first = render(consistent, room_camera(), test::device(), small_parameters());
-  const auto second = render(inconsistent, room_camera(), test::device(), small_parameters());
-  CHECK(same_bits(first.layers, second.layers));
 }
 
 TEST_CASE("a cancelled rendering stops with Interrupted") {

@@ -1,65 +1,18 @@
-// A rendering that several processes share; threads stand in for them, each with a device of its
-// own. tests/mpi has real ones.
+// Photons that several processes share; threads stand in for them. Pictures of real processes are
+// in tests/equal_bits and tests/cluster.
 #include <catch2/catch.hpp>
 #include <mutex>
 #include <numeric>
 
-#include "photile/errors.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "photile/surface_index.hpp"
-#include "pictures.hpp"
 #include "render/shared_photons.hpp"
-#include "test_device.hpp"
 #include "test_scenes.hpp"
 #include "thread_communicator.hpp"
 
 namespace photile::test {
-namespace {
-
-using test::room_camera;
-using test::same_bits;
-
-Scene glossy_room() {
-  Scene scene = test::furnished_room(4);
-  scene.materials[0] = test::glossy({0.6f, 0.6f, 0.5f}, glm::vec3(0.04f), 0.3f);
-  scene.materials[1] = test::mirror(glm::vec3(0.9f));  // caustics have maps of their own
-  return scene;
-}
-
-/// The picture of rank 0.
-LightLayers shared_picture(const Scene& scene, std::uint32_t processes,
-                           RenderParameters parameters) {
-  LightLayers picture;
-  on_threads(processes, [&](Communicator& communicator) {
-    Device own;
-    RenderParameters shared = parameters;
-    shared.processes = &communicator;
-    RenderResult result = render(scene, test::room_camera(), own, shared);
-    if (communicator.rank() == 0) picture = std::move(result.layers);
-  });
-  return picture;
-}
-
-}  // namespace
-
-TEST_CASE("processes that share a rendering make the bits of one: light maps, nodes that gather") {
-  const Scene scene = glossy_room();
-  RenderParameters parameters = small_picture(30'000, 32, 24);
-  parameters.light_map_rays = GENERATE(0, 8);
-  const LightLayers expected =
-      render(scene, test::room_camera(), test::device(), parameters).layers;
-  CHECK(same_bits(shared_picture(scene, 3, parameters), expected));
-}
-
-TEST_CASE("estimates at hits are the same bits for any number of processes") {
-  const Scene scene = glossy_room();
-  RenderParameters parameters = small_picture(30'000, 32, 24);
-  parameters.light_maps = LightMapMode::off;
-  CHECK(same_bits(shared_picture(scene, 4, parameters), shared_picture(scene, 1, parameters)));
-}
-
 TEST_CASE("each process has all photons of its maps, in the order of one process, and no others") {
   const Scene scene = test::furnished_room(6);
   const RayScene rays(scene);
