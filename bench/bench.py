@@ -44,7 +44,6 @@ def benches():
         comment = re.match(r"((?://.*\n)+)", source.read_text())
         words = " ".join(line[2:].strip() for line in comment[1].splitlines()) if comment else ""
         found[source.name.removesuffix("_bench.cpp")] = re.split(r"(?<=[.])\s+(?=[A-Z])|: ", words)[0]
-    del found["groups"]  # it has the options and the files of Google Benchmark
     return found
 
 

@@ -56,7 +56,6 @@ fonts-dejavu-core      | the font of legends and of photile compare's pictures
 catch2                 | tests
 libfcl-dev             | tests: an independent triangle distance
 libnanoflann-dev       | tests and benches: an independent nearest-neighbour search
-libbenchmark-dev       | benches
 python3-matplotlib     | benches: plots
 python3-jinja2         | reports: pages
 python3-contourpy      | reports: isolines of plans
