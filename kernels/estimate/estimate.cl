@@ -20,15 +20,17 @@
 // ...] in flux per square metre; radiance likewise. With many lights the first slots_taken[hit] of
 // LIGHT_SLOTS slots in place of lights.
 __kernel WORKER_GROUP void estimate_by_selection(
-    const PhotileQuery query, __global const PhotileHit* hits,
-    __global const PhotileHitSurface* hit_surfaces, __global const PhotileHitLobe* hit_lobes,
-    __global const PhotileGrid* grids, __global const uint* cell_start,
-    __global const uint* record_photon, __global const float* record_position,
-    __global const float* record_flux, __global const LightIndex* record_light,
-    __global const float* record_incoming, __global const float* record_normal,
-    __global const PhotileSurfaceNode* surface_nodes,
-    __global const PhotileSurfaceLeaf* surface_leaves, __global float* irradiance,
-    __global float* radiance, __global ushort* slot_light, __global uint* slots_taken) {
+    const PhotileQuery query, __global const PhotileHit* restrict hits,
+    __global const PhotileHitSurface* restrict hit_surfaces,
+    __global const PhotileHitLobe* restrict hit_lobes, __global const PhotileGrid* restrict grids,
+    __global const uint* restrict cell_start, __global const uint* restrict record_photon,
+    __global const float* restrict record_position, __global const float* restrict record_flux,
+    __global const LightIndex* restrict record_light,
+    __global const float* restrict record_incoming, __global const float* restrict record_normal,
+    __global const PhotileSurfaceNode* restrict surface_nodes,
+    __global const PhotileSurfaceLeaf* restrict surface_leaves, __global float* restrict irradiance,
+    __global float* restrict radiance, __global ushort* restrict slot_light,
+    __global uint* restrict slots_taken) {
   WORKER_MEMORY(WorkerMemory, memory);
   const PhotonRecords records = {query.record_stride, record_photon, record_position,
                                  record_flux,         record_light,  record_incoming};

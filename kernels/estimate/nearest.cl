@@ -8,11 +8,12 @@
 // After: neighbours[hit * k ...] of hits on maps with photons holds photon indices in any order,
 // followed by what was there; squared_radius[hit] is that of the estimate's disc.
 __kernel WORKER_GROUP void nearest_by_selection(
-    const PhotileQuery query, __global const PhotileHit* hits,
-    __global const PhotileHitSurface* hit_surfaces, __global const PhotileGrid* grids,
-    __global const uint* cell_start, __global const uint* record_photon,
-    __global const float* record_position, __global const float* record_normal,
-    __global uint* neighbours, __global float* squared_radius) {
+    const PhotileQuery query, __global const PhotileHit* restrict hits,
+    __global const PhotileHitSurface* restrict hit_surfaces,
+    __global const PhotileGrid* restrict grids, __global const uint* restrict cell_start,
+    __global const uint* restrict record_photon, __global const float* restrict record_position,
+    __global const float* restrict record_normal, __global uint* restrict neighbours,
+    __global float* restrict squared_radius) {
   WORKER_MEMORY(WorkerMemory, memory);
   WORKER_MEMORY(uint, listed);
   const uint k = query.k;

@@ -11,12 +11,13 @@
 
 //   light, record_light         where there are several lights
 //   incoming, record_incoming   with GLOSSY
-__kernel void copy_records(const PhotilePhotonPage page, uint record_count, uint record_stride,
-                           __global const uint* record_photon, __global const float* position,
-                           __global const float* flux, __global const ushort* light,
-                           __global const float* incoming, __global float* record_position,
-                           __global float* record_flux, __global LightIndex* record_light,
-                           __global float* record_incoming) {
+__kernel void copy_records(
+    const PhotilePhotonPage page, uint record_count, uint record_stride,
+    __global const uint* restrict record_photon, __global const float* restrict position,
+    __global const float* restrict flux, __global const ushort* restrict light,
+    __global const float* restrict incoming, __global float* restrict record_position,
+    __global float* restrict record_flux, __global LightIndex* restrict record_light,
+    __global float* restrict record_incoming) {
   for (uint i = get_global_id(0); i < record_count; i += get_global_size(0)) {
     const uint photon = record_photon[i] - page.first_photon;
     if (photon >= page.photon_count) continue;  // also photons before the page: it wraps
@@ -33,8 +34,10 @@ __kernel void copy_records(const PhotilePhotonPage page, uint record_count, uint
 //   oriented_face   per photon
 //   normal           3 floats per oriented face
 __kernel void gather_normals(const PhotilePhotonPage page, uint record_count, uint record_stride,
-                             __global const uint* record_photon, __global const uint* oriented_face,
-                             __global const float* normal, __global float* record_normal) {
+                             __global const uint* restrict record_photon,
+                             __global const uint* restrict oriented_face,
+                             __global const float* restrict normal,
+                             __global float* restrict record_normal) {
   for (uint i = get_global_id(0); i < record_count; i += get_global_size(0)) {
     const uint photon = record_photon[i] - page.first_photon;
     if (photon >= page.photon_count) continue;

@@ -3,17 +3,10 @@
 #include "grid/insertion.clh"
 #include "shared/symbols.clh"
 
-// One work-item per photon of a page; arguments as members of InsertedPhotons.
+// One work-item per photon of a page.
 // After: bit m of inserted[i] says whether photon i enters its m-th candidate.
-__kernel void find_insertions(const PhotilePhotonPage page, __global const float* position,
-                              __global const uint* oriented_face, __global const uint* map_of,
-                              __global const uint* list, __global const uint* list_offsets,
-                              __global const uint* list_members,
-                              __global const PhotileMapShape* shapes, __global const float* corners,
-                              __global uint* inserted) {
-  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
-                                   page.first_list, list_offsets,      list_members, shapes,
-                                   corners,         page.squared_reach};
+__kernel void find_insertions(INSERTED_PHOTONS_ARGUMENTS, __global uint* restrict inserted) {
+  const InsertedPhotons photons = INSERTED_PHOTONS;
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
     InsertedPhoton photon;
     load_photon(&photons, i, 0u, &photon);
@@ -32,16 +25,11 @@ __kernel void find_insertions(const PhotilePhotonPage page, __global const float
 //   the first page
 // After: map_count holds the photons of this page, too; map_normal_filtered is 1 for maps with a
 // photon that need not agree with every triangle of the map.
-__kernel void count_photons(const PhotilePhotonPage page, __global const float* position,
-                            __global const uint* oriented_face, __global const uint* map_of,
-                            __global const uint* list, __global const uint* list_offsets,
-                            __global const uint* list_members,
-                            __global const PhotileMapShape* shapes, __global const float* corners,
-                            __global const uint* inserted, __global uint* map_count,
-                            __global const float* normal, __global uint* map_normal_filtered) {
-  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
-                                   page.first_list, list_offsets,      list_members, shapes,
-                                   corners,         page.squared_reach};
+__kernel void count_photons(INSERTED_PHOTONS_ARGUMENTS, __global const uint* restrict inserted,
+                            __global uint* restrict map_count,
+                            __global const float* restrict normal,
+                            __global uint* restrict map_normal_filtered) {
+  const InsertedPhotons photons = INSERTED_PHOTONS;
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
     InsertedPhoton photon;
     load_photon(&photons, i, inserted[i], &photon);

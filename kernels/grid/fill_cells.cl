@@ -7,21 +7,16 @@
 #include "grid/cell.clh"
 #include "grid/insertion.clh"
 
-// Arguments of both kernels, besides members of InsertedPhotons:
+// Arguments of both kernels, besides the photons:
 //   maps    of the page
 //   grids   one per map of the page
 
 // One work-item per photon. Before: cell_start is zero. After: photons per cell.
-__kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange maps,
-                          __global const float* position, __global const uint* oriented_face,
-                          __global const uint* map_of, __global const uint* list,
-                          __global const uint* list_offsets, __global const uint* list_members,
-                          __global const PhotileMapShape* shapes, __global const float* corners,
-                          __global const uint* inserted, __global const PhotileGrid* grids,
-                          __global uint* cell_start) {
-  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
-                                   page.first_list, list_offsets,      list_members, shapes,
-                                   corners,         page.squared_reach};
+__kernel void count_cells(INSERTED_PHOTONS_ARGUMENTS, const PhotileMapRange maps,
+                          __global const uint* restrict inserted,
+                          __global const PhotileGrid* restrict grids,
+                          __global uint* restrict cell_start) {
+  const InsertedPhotons photons = INSERTED_PHOTONS;
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
     InsertedPhoton photon;
     load_photon(&photons, i, inserted[i], &photon);
@@ -39,16 +34,11 @@ __kernel void count_cells(const PhotilePhotonPage page, const PhotileMapRange ma
 // One work-item per photon. Before: cell_start is the exclusive scan of what count_cells left.
 // After: record_photon holds the photons of each cell in the order in which work-items came
 // (sort_cells makes it stable); once all pages are scattered, cell_start[c] is where cell c starts.
-__kernel void scatter(const PhotilePhotonPage page, const PhotileMapRange maps,
-                      __global const float* position, __global const uint* oriented_face,
-                      __global const uint* map_of, __global const uint* list,
-                      __global const uint* list_offsets, __global const uint* list_members,
-                      __global const PhotileMapShape* shapes, __global const float* corners,
-                      __global const uint* inserted, __global const PhotileGrid* grids,
-                      __global uint* cell_start, __global uint* record_photon) {
-  const InsertedPhotons photons = {position,        oriented_face,     map_of,       list,
-                                   page.first_list, list_offsets,      list_members, shapes,
-                                   corners,         page.squared_reach};
+__kernel void scatter(INSERTED_PHOTONS_ARGUMENTS, const PhotileMapRange maps,
+                      __global const uint* restrict inserted,
+                      __global const PhotileGrid* restrict grids,
+                      __global uint* restrict cell_start, __global uint* restrict record_photon) {
+  const InsertedPhotons photons = INSERTED_PHOTONS;
   for (uint i = get_global_id(0); i < page.photon_count; i += get_global_size(0)) {
     InsertedPhoton photon;
     load_photon(&photons, i, inserted[i], &photon);

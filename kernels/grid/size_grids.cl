@@ -20,11 +20,13 @@
 //
 // The cell size aims at photons_per_cell where photons are, on the surface grown by the radius (its
 // Minkowski sum with a disc), which is where photons of the map can be.
-__kernel void size_grids(uint map_total, uint first_map, __global const PhotileMapShape* shapes,
-                         __global const uint* map_count, __global const float* map_density_ratio,
-                         __global const uint* map_normal_filtered, float radius,
-                         float photons_per_cell, __global PhotileGrid* grids,
-                         __global uint* cell_total) {
+__kernel void size_grids(uint map_total, uint first_map,
+                         __global const PhotileMapShape* restrict shapes,
+                         __global const uint* restrict map_count,
+                         __global const float* restrict map_density_ratio,
+                         __global const uint* restrict map_normal_filtered, float radius,
+                         float photons_per_cell, __global PhotileGrid* restrict grids,
+                         __global uint* restrict cell_total) {
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
     const uint map = first_map + i;
     const uint count = map_count[map];
@@ -71,8 +73,8 @@ __kernel void size_grids(uint map_total, uint first_map, __global const PhotileM
 }
 
 // One work-item per map. Before: first_cell holds the exclusive scan of cell_total.
-__kernel void lay_out_grids(uint map_total, __global const uint* first_cell,
-                            __global PhotileGrid* grids) {
+__kernel void lay_out_grids(uint map_total, __global const uint* restrict first_cell,
+                            __global PhotileGrid* restrict grids) {
   for (uint i = get_global_id(0); i < map_total; i += get_global_size(0)) {
     grids[i].first_cell = first_cell[i];
   }

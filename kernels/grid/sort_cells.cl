@@ -43,9 +43,9 @@ static void heap_sort(__global uint* values, uint count) {
 
 // One work-item per cell: sorts it, or with IN_GROUPS lists crowded ones in crowded_cell. Before:
 // crowded[0] is zero.
-__kernel void sort_cells(uint cell_count, __global const uint* cell_start,
-                         __global uint* record_photon, __global uint* crowded,
-                         __global uint* crowded_cell) {
+__kernel void sort_cells(uint cell_count, __global const uint* restrict cell_start,
+                         __global uint* restrict record_photon, __global uint* restrict crowded,
+                         __global uint* restrict crowded_cell) {
   for (uint cell = get_global_id(0); cell < cell_count; cell += get_global_size(0)) {
     const uint start = cell_start[cell];
     const uint count = cell_start[cell + 1] - start;
@@ -67,8 +67,8 @@ __kernel void sort_cells(uint cell_count, __global const uint* cell_start,
 // cell are those of Batcher's merge exchange (Knuth, "The Art of Computer Programming", 5.2.2,
 // algorithm M), for any number of values.
 __kernel __attribute__((reqd_work_group_size(SORT_GROUP, 1, 1))) void sort_crowded(
-    __global const uint* cell_start, __global uint* record_photon, __global const uint* crowded,
-    __global const uint* crowded_cell) {
+    __global const uint* restrict cell_start, __global uint* restrict record_photon,
+    __global const uint* restrict crowded, __global const uint* restrict crowded_cell) {
   const uint cells = crowded[0];
   for (uint i = get_group_id(0); i < cells; i += get_num_groups(0)) {
     const uint cell = crowded_cell[i];

@@ -37,8 +37,8 @@ static uint scan_group(uint value, __local uint* sums) {
 
 // One group per block. After: as below.
 __kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1))) void sum_blocks(
-    uint count, __global const uint* values, uint block_size, uint block_count,
-    __global uint* block_sum) {
+    uint count, __global const uint* restrict values, uint block_size, uint block_count,
+    __global uint* restrict block_sum) {
   __local uint sums[SCAN_GROUP];
   const uint item = (uint)get_local_id(0), b = (uint)get_group_id(0);
   const uint part = block_size / SCAN_GROUP;
@@ -70,8 +70,8 @@ __kernel __attribute__((reqd_work_group_size(SCAN_GROUP, 1, 1))) void scan_block
 
 // One work-item per block. After: block_sum[b] = sum of values
 // [b * block_size, (b + 1) * block_size).
-__kernel void sum_blocks(uint count, __global const uint* values, uint block_size, uint block_count,
-                         __global uint* block_sum) {
+__kernel void sum_blocks(uint count, __global const uint* restrict values, uint block_size,
+                         uint block_count, __global uint* restrict block_sum) {
   for (uint b = get_global_id(0); b < block_count; b += get_global_size(0)) {
     const uint end = min(count, (b + 1) * block_size);
     uint sum = 0;

@@ -11,8 +11,9 @@
 //   position   3 floats per photon
 
 // Before: cell_start is zero. After: photons per bucket.
-__kernel void count_buckets(uint photon_count, __global const float* position,
-                            __global const PhotileHashedGrid* grid, __global uint* cell_start) {
+__kernel void count_buckets(uint photon_count, __global const float* restrict position,
+                            __global const PhotileHashedGrid* restrict grid,
+                            __global uint* restrict cell_start) {
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const uint bucket = bucket_of(grid, hashed_cell_of(grid, vload3(i, position)));
     atomic_inc(&cell_start[bucket + 1u]);
@@ -20,9 +21,10 @@ __kernel void count_buckets(uint photon_count, __global const float* position,
 }
 
 // Before: cell_start is scanned.
-__kernel void fill_buckets(uint photon_count, __global const float* position,
-                           __global const PhotileHashedGrid* grid, __global uint* cell_start,
-                           __global uint* record_photon) {
+__kernel void fill_buckets(uint photon_count, __global const float* restrict position,
+                           __global const PhotileHashedGrid* restrict grid,
+                           __global uint* restrict cell_start,
+                           __global uint* restrict record_photon) {
   for (uint i = get_global_id(0); i < photon_count; i += get_global_size(0)) {
     const uint bucket = bucket_of(grid, hashed_cell_of(grid, vload3(i, position)));
     record_photon[atomic_inc(&cell_start[bucket + 1u])] = i;

@@ -107,16 +107,20 @@ static float predicted_within(float reach, uint records, const Block* block,
 // As estimate_by_list (structures/kernels.clh); workers take HITS_PER_ITEM hits in a row.
 //   rows   WORDS_PER_ITEM per work-item, for its block
 __kernel void estimate_by_radix(
-    const PhotileQuery query, __global const PhotileHit* hits,
-    __global const PhotileHitSurface* hit_surfaces, __global const PhotileHitLobe* hit_lobes,
-    uint record_count, __global const uint* root, __global const PhotileGrid* frames,
-    __global const uint* nodes, __global const uint* cell_start, __global const uint* record_photon,
-    __global const float* record_position, __global const float* record_flux,
-    __global const LightIndex* record_light, __global const float* record_incoming,
-    __global const float* record_normal, __global const PhotileSurfaceNode* surface_nodes,
-    __global const PhotileSurfaceLeaf* surface_leaves, __global float* list_distance,
-    __global uint* list_record, __global uint* rows, __global float* irradiance, __global float* radiance,
-    __global ushort* slot_light, __global uint* slots_taken) {
+    const PhotileQuery query, __global const PhotileHit* restrict hits,
+    __global const PhotileHitSurface* restrict hit_surfaces,
+    __global const PhotileHitLobe* restrict hit_lobes, uint record_count,
+    __global const uint* restrict root, __global const PhotileGrid* restrict frames,
+    __global const uint* restrict nodes, __global const uint* restrict cell_start,
+    __global const uint* restrict record_photon, __global const float* restrict record_position,
+    __global const float* restrict record_flux, __global const LightIndex* restrict record_light,
+    __global const float* restrict record_incoming, __global const float* restrict record_normal,
+    __global const PhotileSurfaceNode* restrict surface_nodes,
+    __global const PhotileSurfaceLeaf* restrict surface_leaves,
+    __global float* restrict list_distance, __global uint* restrict list_record,
+    __global uint* restrict rows, __global float* restrict irradiance,
+    __global float* restrict radiance, __global ushort* restrict slot_light,
+    __global uint* restrict slots_taken) {
   WorkerMemory memory;
   const PhotonRecords records = {query.record_stride, record_photon, record_position,
                                  record_flux,         record_light,  record_incoming};

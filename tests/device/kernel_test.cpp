@@ -244,31 +244,6 @@ TEST_CASE("includes are resolved once each, with line markers") {
         "#include <stdint.h>\nlast\n");
 }
 
-TEST_CASE("a file under a condition is there for whoever includes it without one") {
-  // Compilers see what is wrong: with the guards of the first include alone, `value` is missing.
-  register_kernel_source("source/value.clh", "#pragma once\nconstant int value = 3;\n");
-  register_kernel_source("source/twice.clh",
-                         "#pragma once\n#include \"source/value.clh\"\n"
-                         "static int twice(void) { return 2 * value; }\n");
-  register_kernel_source("source/conditional.cl",
-                         "#if FIRST\n#include \"source/twice.clh\"\n#endif\n"
-                         "#include \"source/twice.clh\"\n#include \"source/value.clh\"\n"
-                         "kernel void k(global int* out) { *out = twice() + value; }\n");
-  photile::device::Context context({});
-  for (const long long first : {0ll, 1ll}) {
-    CAPTURE(first);
-    photile::device::Defines defines;
-    defines.set("FIRST", first);
-    auto out = context.allocate<int>(1, "result");
-    photile::device::Launch(context, context.kernel("source/conditional.cl", "k", defines))
-        .set("out", out)
-        .run_no_more(1, 1);
-    int result = 0;
-    context.read(out, std::span(&result, 1));
-    CHECK(result == 9);
-  }
-}
-
 TEST_CASE("a classic guard may stand around includes") {
   register_kernel_source(
       "source/guarded.h",

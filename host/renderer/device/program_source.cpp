@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "common/files.hpp"
 #include "device/context.hpp"
@@ -102,72 +103,34 @@ std::optional<std::string> included_path(std::string_view line) {
   return std::string(rest->substr(1, end - 1));
 }
 
-/// What a line adds to the number of conditions that are open behind it.
-int opened_conditions(std::string_view line) {
-  if (directive(line, "if")) return 1;  // #ifdef and #ifndef, too
-  return directive(line, "endif") ? -1 : 0;
-}
-
-/// Puts included files in the place of their #include lines as a preprocessor with `#pragma once`
-/// does, without one: conditions are left to the compiler. A file that was included under none is
-/// there, whatever the symbols are; one that was included under a condition may not be, and guards
-/// decide.
+/// Puts included files in the place of their first #include lines.
 class Assembler {
  public:
-  /// `conditional`: whether the line that includes the file stands under a condition.
-  void add(const std::string& name, const std::string& includer, bool conditional) {
-    if (present_.count(name) > 0 || open_.count(name) > 0) return;
+  void add(const std::string& name, const std::string& includer) {
+    if (!included_.insert(name).second) return;
     const auto text = find_source(name);
     if (!text) {
       throw KernelBuildError(fmt::format("there is no kernel file '{}'{}", name, includer), {}, 0);
     }
-    const bool guarded = conditional || possible_.count(name) > 0;
-    (conditional ? possible_ : present_).insert(name);
-    open_.insert(name);
-    const std::string guard = guard_of(name);
-    if (guarded) output_ += fmt::format("#ifndef {0}\n#define {0}\n", guard);
-    add_lines(*text, name, conditional);
-    if (guarded) output_ += "#endif\n";
-    open_.erase(name);
+    output_ += fmt::format("#line 1 \"{}\"\n", name);
+    std::istringstream lines(*text);
+    std::size_t number = 0;
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      if (const auto path = included_path(line)) {
+        add(*path, fmt::format(" (included by '{}' line {})", name, number));
+        output_ += fmt::format("#line {} \"{}\"\n", number + 1, name);
+      } else if (directive(line, "pragma").value_or("").starts_with("once")) {
+        output_ += '\n';  // a main file's would be warned of
+      } else {
+        output_ += line + '\n';
+      }
+    }
   }
   std::string take() { return std::move(output_); }
 
  private:
-  static std::string guard_of(const std::string& name) {
-    std::string guard = "PHOTILE_INCLUDED_";
-    for (const char c : name) {
-      const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-      guard += plain ? c : '_';
-    }
-    return guard;
-  }
-
-  void add_lines(const std::string& text, const std::string& name, bool conditional) {
-    output_ += fmt::format("#line 1 \"{}\"\n", name);
-    int conditions = 0;
-    std::size_t line_number = 0;
-    for (std::size_t begin = 0; begin < text.size();) {
-      const auto end = std::min(text.find('\n', begin), text.size());
-      const std::string_view line = std::string_view(text).substr(begin, end - begin);
-      ++line_number;
-      conditions += opened_conditions(line);
-      if (const auto path = included_path(line)) {
-        add(*path, fmt::format(" (included by '{}' line {})", name, line_number),
-            conditional || conditions > 0);
-        output_ += fmt::format("#line {} \"{}\"\n", line_number + 1, name);
-      } else if (directive(line, "pragma").value_or("").starts_with("once")) {
-        output_ += '\n';  // a main file's would be warned of
-      } else {
-        output_ += line;
-        output_ += '\n';
-      }
-      begin = end + 1;
-    }
-  }
-
-  std::set<std::string> present_;   ///< included already, whatever the symbols are
-  std::set<std::string> possible_;  ///< included already under some condition
-  std::set<std::string> open_;      ///< being included
+  std::set<std::string> included_;
   std::string output_;
 };
 
@@ -175,7 +138,7 @@ class Assembler {
 
 std::string assemble_source(const std::string& file) {
   Assembler assembler;
-  assembler.add(file, "", false);
+  assembler.add(file, "");
   return assembler.take();
 }
 

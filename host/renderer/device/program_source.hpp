@@ -11,11 +11,12 @@ namespace photile::device {
 /// folder without any is a UsageError.
 inline constexpr const char* kernel_folder_variable = "PHOTILE_KERNEL_DIR";
 
-/// The text of kernel file `file` with every `#include "path"` line replaced by that file's text.
-/// Each file is compiled at most once, as with `#pragma once`, whatever conditions its includes
-/// stand under. Paths are below kernels/, or "photile/device/<name>.h". `#line` markers keep the
-/// names and lines of build errors right; `#include <...>` lines stay. Errors: KernelBuildError for
-/// an unknown file, naming who included it.
+/// The text of kernel file `file` with every `#include "path"` line replaced by that file's text,
+/// the first time that it is included. A file that is included under a condition of the
+/// preprocessor is there only where that holds: no file may be included without it later. Paths are
+/// below kernels/, or "photile/device/<name>.h". `#line` markers keep the names and lines of build
+/// errors right; `#include <...>` lines stay. Errors: KernelBuildError for an unknown file, naming
+/// who included it.
 std::string assemble_source(const std::string& file);
 
 /// Makes `text` known as kernel file `name`, before any embedded one of that name: kernels that the
