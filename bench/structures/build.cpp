@@ -11,7 +11,7 @@
 
 #include "maps/build_maps.hpp"
 #include "maps/build_steps.hpp"
-#include "maps/map_pages.hpp"
+#include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
 #include "photile/statistics.hpp"

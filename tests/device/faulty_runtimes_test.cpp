@@ -87,11 +87,11 @@ TEST_CASE("a call that runs out of memory once is made again, with the same resu
 TEST_CASE("a failing clFinish is reported where a result depends on it, and ignored at the end") {
   const Failure failure{"clFinish", -36, "CL_INVALID_COMMAND_QUEUE"};
   const long calls = count_calls(failure);
-  REQUIRE(calls == 2);
+  REQUIRE(calls >= 2);
   const auto first = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, 1, false, ""));
   CHECK(first.exit_code == 4);
   CHECK_THAT(first.errors, Catch::Contains("clFinish failed: CL_INVALID_COMMAND_QUEUE (-36)"));
-  const auto last = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, 2, false, ""));
+  const auto last = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, calls, false, ""));
   CHECK(last.exit_code == 0);
 }
 

@@ -385,7 +385,6 @@ TEST_CASE("a hash is XXH3-128 as its specification gives it for the empty text")
 
 namespace fs = std::filesystem;
 using photile::device::CacheKey;
-using photile::device::checked_file_header_bytes;
 using photile::device::read_checked_file;
 using photile::device::write_checked_file;
 
@@ -397,7 +396,7 @@ TEST_CASE("a checked file reads back, and each that is damaged is a miss with a 
   const auto file = folder.path / "entry";
   write_checked_file(file, key, payload);
   const auto good = bytes_of(file);
-  REQUIRE(good.size() == checked_file_header_bytes + payload.size());
+  REQUIRE(good.size() == CacheKey{}.size() + payload.size());
   CHECK(read_checked_file(file, key).payload == payload);
   CHECK_FALSE(read_checked_file(file, key_of("another")).payload);
   std::vector<std::string> damaged{good + "x"};

@@ -1,5 +1,4 @@
 // Maps in parts of the device's memory.
-#include "maps/map_pages.hpp"
 
 #include <catch2/catch.hpp>
 #include <random>

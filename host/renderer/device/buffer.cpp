@@ -27,18 +27,20 @@ void check_range(const RawBuffer& buffer, std::size_t bytes, std::size_t offset,
   }
 }
 
-void release(void* memory) { clReleaseMemObject(static_cast<cl_mem>(memory)); }
-
-/// Counts the bytes of a buffer. Returns what releases it, and counts them off.
-std::function<void(void*)> counted(std::size_t bytes,
-                                   const std::shared_ptr<MemoryCounter>& counter) {
-  counter->live += bytes;
-  counter->peak = std::max(counter->peak, counter->live.load());
-  return [bytes, counter](void* memory) {
-    release(memory);
-    counter->live -= bytes;
+/// Counts the bytes of a buffer. Returns what counts them off, and releases its memory or keeps it.
+std::function<void(void*)> counted(std::size_t bytes, const std::shared_ptr<BufferMemory>& memory,
+                                   bool is_kept) {
+  memory->live += bytes;
+  memory->peak = std::max(memory->peak, memory->live.load());
+  return [=](void* released) {
+    BufferMemory::Piece piece{MemoryHandle(static_cast<cl_mem>(released)), bytes};
+    memory->live -= bytes;
+    if (is_kept) memory->keep(std::move(piece));
   };
 }
+
+/// Released memory that is kept, at most: a batch of hits and its estimates.
+constexpr std::uint64_t most_kept_bytes = std::uint64_t{512} << 20;
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 constexpr std::size_t least_bytes = 4 * huge_page;
@@ -97,6 +99,36 @@ std::vector<unsigned char> repeated(const void* element, std::size_t element_byt
 
 }  // namespace
 
+BufferMemory::Piece BufferMemory::take_kept(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  auto best = kept_.end();
+  for (auto piece = kept_.begin(); piece != kept_.end(); ++piece) {
+    const bool serves = piece->bytes >= bytes && piece->bytes / 2 <= bytes;
+    if (serves && (best == kept_.end() || piece->bytes <= best->bytes)) best = piece;
+  }
+  if (best == kept_.end()) return {};
+  Piece taken = std::move(*best);
+  kept_.erase(best);
+  kept_bytes_ -= taken.bytes;
+  return taken;
+}
+
+void BufferMemory::keep(Piece piece) {
+  const std::lock_guard lock(mutex_);
+  kept_bytes_ += piece.bytes;
+  kept_.push_back(std::move(piece));
+  while (kept_bytes_ > most_kept_bytes) {
+    kept_bytes_ -= kept_.front().bytes;
+    kept_.erase(kept_.begin());
+  }
+}
+
+void BufferMemory::release_kept() {
+  const std::lock_guard lock(mutex_);
+  kept_.clear();
+  kept_bytes_ = 0;
+}
+
 RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_bytes,
                                      std::string_view what, MemoryPages pages) {
   // OpenCL has no empty buffers; 16 bytes hold an element of any basic type.
@@ -110,12 +142,14 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
     impl_->check(CL_INVALID_BUFFER_SIZE, "clCreateBuffer", asked());
   }
   const std::size_t bytes = count * element_bytes;
+  const bool is_large = pages == MemoryPages::large;
+  if (auto kept = is_large ? BufferMemory::Piece{} : impl_->memory->take_kept(bytes); kept.memory) {
+    return RawBuffer({kept.memory.detach(), counted(kept.bytes, impl_->memory, true)}, bytes);
+  }
   cl_mem memory = nullptr;
   const cl_int status = impl_->persevere([&] {
     // Runtimes that allocate on first use accept more than there is and fail, or are killed, later.
-    const std::uint64_t live = impl_->memory->live;
-    if (bytes > impl_->memory_limit - std::min(impl_->memory_limit, live) ||
-        !has_addresses(info, bytes)) {
+    if (!impl_->has_room(bytes) || !has_addresses(info, bytes)) {
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     cl_int created = CL_SUCCESS;
@@ -124,10 +158,10 @@ RawBuffer Context::allocate_elements(std::size_t count, std::size_t element_byte
     return created;
   });
   if (status != CL_SUCCESS) impl_->check(status, "clCreateBuffer", asked());
-  if (pages == MemoryPages::large && info.type == DeviceType::cpu) {
+  if (is_large && info.type == DeviceType::cpu) {
     prefer_huge_pages(impl_->queue.get(), memory, bytes);
   }
-  return RawBuffer({memory, counted(bytes, impl_->memory)}, bytes);
+  return RawBuffer({memory, counted(bytes, impl_->memory, !is_large)}, bytes);
 }
 
 void Context::write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
@@ -163,9 +197,7 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
                                SharedMemory counts) {
   cl_mem memory = nullptr;
   const cl_int status = impl_->persevere([&] {
-    const std::uint64_t live = impl_->memory->live;
-    if (counts == SharedMemory::counted &&
-        bytes > impl_->memory_limit - std::min(impl_->memory_limit, live)) {
+    if (counts == SharedMemory::counted && !impl_->has_room(bytes)) {
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     cl_int created = CL_SUCCESS;
@@ -180,19 +212,24 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
   // The host's memory is in use until the queue is empty.
   cl_command_queue queue = impl_->queue.get();
   clRetainCommandQueue(queue);
-  const auto release_memory =
-      counts == SharedMemory::counted ? counted(bytes, impl_->memory) : std::function(release);
+  const auto release = counted(counts == SharedMemory::counted ? bytes : 0, impl_->memory, false);
   return RawBuffer({memory,
                     [=](void* shared) {
-                      release_memory(shared);
+                      release(shared);
                       clFinish(queue);
                       clReleaseCommandQueue(queue);
                     }},
                    bytes);
 }
 
-void Context::fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
-                                  std::size_t bytes, std::size_t first) {
+void Context::write_by(const RawBuffer& buffer, std::size_t bytes, std::size_t first,
+                       const std::function<void(void*)>& set) {
+  if (bytes == 0) return;
+  if (!shares_host_memory()) {
+    const auto values = std::make_unique_for_overwrite<unsigned char[]>(bytes);
+    set(values.get());
+    return write_bytes(buffer, values.get(), bytes, first);
+  }
   void* mapped = nullptr;
   const cl_int status = impl_->persevere([&] {
     cl_int done = CL_SUCCESS;
@@ -202,12 +239,7 @@ void Context::fill_from_all_cores(const RawBuffer& buffer, std::span<const unsig
     return done;
   });
   impl_->check(status, "clEnqueueMapBuffer", fmt::format("{} bytes", bytes));
-  const std::size_t blocks = (bytes + block.size() - 1) / block.size();
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
-    const std::size_t offset = i * block.size();
-    std::memcpy(static_cast<unsigned char*>(mapped) + offset, block.data(),
-                std::min(block.size(), bytes - offset));
-  });
+  set(mapped);
   impl_->check(
       clEnqueueUnmapMemObject(impl_->queue.get(), memory_of(buffer), mapped, 0, nullptr, nullptr),
       "clEnqueueUnmapMemObject", fmt::format("{} bytes", bytes));
@@ -217,8 +249,15 @@ void Context::fill_bytes(const RawBuffer& buffer, const void* pattern, std::size
                          std::size_t bytes, std::size_t first) {
   check_range(buffer, bytes, first, "fill");
   if (shares_host_memory() && bytes >= least_bytes_for_all_cores) {
-    fill_from_all_cores(buffer, repeated(pattern, pattern_bytes, bytes), bytes, first);
-    return;
+    const std::vector<unsigned char> block = repeated(pattern, pattern_bytes, bytes);
+    const std::size_t blocks = (bytes + block.size() - 1) / block.size();
+    return write_by(buffer, bytes, first, [&](void* memory) {
+      tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
+        const std::size_t offset = i * block.size();
+        std::memcpy(static_cast<unsigned char*>(memory) + offset, block.data(),
+                    std::min(block.size(), bytes - offset));
+      });
+    });
   }
   if (std::has_single_bit(pattern_bytes) && pattern_bytes <= 128) {
     const cl_int status = impl_->persevere([&] {

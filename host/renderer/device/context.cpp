@@ -106,12 +106,9 @@ bool Context::Impl::reclaim() {
   return any;
 }
 
-ReclaimerEntry::ReclaimerEntry(Context& context, Reclaimer& reclaimer)
-    : list_(context.impl_->reclaimers), reclaimer_(&reclaimer) {
-  list_->push_back(reclaimer_);
-}
+Reclaimer::Reclaimer(Context& context) : all_(context.impl_->reclaimers) { all_->push_back(this); }
 
-ReclaimerEntry::~ReclaimerEntry() { std::erase(*list_, reclaimer_); }
+Reclaimer::~Reclaimer() { std::erase(*all_, this); }
 
 Context::Context(const DeviceOptions& options) : Context(find_one(options.selector), options) {}
 

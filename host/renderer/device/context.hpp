@@ -3,7 +3,6 @@
 // OpenCL.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -23,37 +22,22 @@ namespace photile::device {
 class Context;
 struct ListedDevice;  // device_list.hpp
 
-/// Bytes in the live buffers of a context. Shared with them: a buffer may outlive its context.
-struct MemoryCounter {
-  std::atomic<std::uint64_t> live{0};
-  std::uint64_t peak = 0;
-};
-
 /// Holds buffers whose content can be restored. It is asked to release memory where an allocation
-/// or a launch fails for lack of it.
+/// or a launch fails for lack of it, the one made last first. May outlive its context.
 class Reclaimer {
  public:
+  explicit Reclaimer(Context& context);
+  Reclaimer(const Reclaimer&) = delete;
+  Reclaimer& operator=(const Reclaimer&) = delete;
+
   /// Releases some memory. False where nothing is left to release.
   virtual bool reclaim() = 0;
 
  protected:
-  ~Reclaimer() = default;
-};
-
-/// The reclaimers of a context, the one to ask first at the end.
-using ReclaimerList = std::vector<Reclaimer*>;
-
-/// Keeps a reclaimer in its context's list. May outlive the context.
-class ReclaimerEntry {
- public:
-  ReclaimerEntry(Context& context, Reclaimer& reclaimer);
-  ~ReclaimerEntry();
-  ReclaimerEntry(const ReclaimerEntry&) = delete;
-  ReclaimerEntry& operator=(const ReclaimerEntry&) = delete;
+  ~Reclaimer();
 
  private:
-  std::shared_ptr<ReclaimerList> list_;
-  Reclaimer* reclaimer_;
+  std::shared_ptr<std::vector<Reclaimer*>> all_;  ///< of the context
 };
 
 /// A device buffer. Move-only; released on destruction.
@@ -198,6 +182,15 @@ class Context {
     if (!shares_host_memory() || values.empty()) return upload(values, what);
     return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what, counts), values.size());
   }
+  /// Allocates and has `set(values)` write all elements, into the memory of the device itself where
+  /// that is the host's.
+  template <class T, class Set>
+  Buffer<T> upload_by(std::size_t size, std::string_view what, const Set& set) {
+    auto buffer = allocate<T>(size, what);
+    write_by(buffer.raw(), buffer.bytes(), 0,
+             [&](void* memory) { set(std::span(static_cast<T*>(memory), size)); });
+    return buffer;
+  }
   template <class T>
   void write(Buffer<T>& buffer, std::span<const T> values, std::size_t first = 0) {
     write_bytes(buffer.raw(), values.data(), values.size_bytes(), first * sizeof(T));
@@ -224,12 +217,7 @@ class Context {
   /// Sets every element.
   template <class T>
   void fill(Buffer<T>& buffer, T value) {
-    fill(buffer, value, buffer.size());
-  }
-  /// Sets the first `count` elements.
-  template <class T>
-  void fill(Buffer<T>& buffer, T value, std::size_t count) {
-    fill(buffer, value, 0, count);
+    fill(buffer, value, 0, buffer.size());
   }
   /// Sets elements [first, first + count).
   template <class T>
@@ -259,7 +247,7 @@ class Context {
   const std::vector<ProgramTime>& program_times() const;  ///< in the order of their first use
 
  private:
-  friend class ReclaimerEntry;
+  friend class Reclaimer;
   friend class Launch;  // launch.hpp
   struct Impl;
   std::unique_ptr<Impl> impl_;
@@ -271,9 +259,9 @@ class Context {
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
-  /// With blocks of bytes one after the other, where the device shares memory with the host.
-  void fill_from_all_cores(const RawBuffer& buffer, std::span<const unsigned char> block,
-                           std::size_t bytes, std::size_t first);
+  /// `set(memory)` writes these bytes.
+  void write_by(const RawBuffer& buffer, std::size_t bytes, std::size_t first,
+                const std::function<void(void*)>& set);
   void fill_bytes(const RawBuffer& buffer, const void* pattern, std::size_t pattern_bytes,
                   std::size_t bytes, std::size_t offset);
   bool shares_host_memory() const;

@@ -4,13 +4,14 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "device/context.hpp"
 #include "device/device_list.hpp"
-#include "device/kernel.hpp"
 #include "device/opencl.hpp"
 #include "device/program_library.hpp"
 
@@ -25,20 +26,52 @@ struct Kernel::Impl {
   bool launched = false;
 };
 
-/// Counts the contexts of this process.
-class LiveContext {
+/// Device time per kernel, from profiling events.
+class KernelTimes {
  public:
-  LiveContext() { ++live(); }
-  ~LiveContext() { --live(); }
-  LiveContext(const LiveContext&) = delete;
-  LiveContext& operator=(const LiveContext&) = delete;
-  static int count() { return live(); }
+  /// Takes over the event of one launch.
+  void add(const std::string& kernel, EventHandle event);
+  /// Takes over the event of a launch that took `seconds` from its call to its end: the part of
+  /// them in which it did not run is preparation.
+  void add_first(const std::string& kernel, EventHandle event, double seconds);
+  /// Adds seconds spent until a kernel could run.
+  void add_preparation(const std::string& kernel, double seconds);
+  /// Waits for the launches so far and sums them, by name of the kernels launched.
+  std::vector<KernelTime> total();
 
  private:
-  static std::atomic<int>& live() {
-    static std::atomic<int> count{0};
-    return count;
-  }
+  void collect();
+
+  std::vector<std::pair<std::string, EventHandle>> pending_;
+  std::map<std::string, KernelTime> totals_;
+};
+
+/// The memory of a context's buffers. Shared with them: a buffer may outlive its context.
+///
+/// What buffers release is kept for later ones. A batch of hits is like the one before, and new
+/// memory, which the operating system must clear first, takes as long as a good part of the
+/// estimates that are written to it.
+class BufferMemory {
+ public:
+  struct Piece {
+    MemoryHandle memory{};
+    std::size_t bytes = 0;
+  };
+
+  /// A kept piece of at least so many bytes, and less than twice as many; else none.
+  Piece take_kept(std::size_t bytes);
+  void keep(Piece piece);
+  void release_kept();
+  /// Of live buffers and of what is kept.
+  std::uint64_t bytes() const { return live + kept_bytes_; }
+
+  std::atomic<std::uint64_t> live{0};  ///< bytes in live buffers
+  std::uint64_t peak = 0;              ///< the most of these
+
+ private:
+  std::mutex mutex_;
+  std::vector<Piece> kept_;  ///< the one released last at the end
+  std::atomic<std::uint64_t> kept_bytes_{0};
 };
 
 struct Context::Impl {
@@ -50,21 +83,27 @@ struct Context::Impl {
 
   /// The status of `call()`, which has no effect where it runs out of memory. Then it is called
   /// again: once the queue is empty, since runtimes keep released buffers while kernels use them,
-  /// and after each reclaimer that has released something.
+  /// without what is kept for later buffers, and after each reclaimer that has released something.
   template <class Call>
   cl_int persevere(const Call& call) {
     cl_int status = call();
     if (!is_out_of_memory(status)) return status;
     clFinish(queue.get());  // should it fail, so does the call
-    status = call();
-    while (is_out_of_memory(status) && reclaim()) status = call();
+    do {
+      memory->release_kept();
+      status = call();
+    } while (is_out_of_memory(status) && reclaim());
     return status;
   }
 
   /// Whether a reclaimer has released memory.
   bool reclaim();
 
-  LiveContext live;
+  /// Whether so many bytes more are within the limit on memory.
+  bool has_room(std::uint64_t bytes) const {
+    return bytes <= memory_limit - std::min(memory_limit, memory->bytes());
+  }
+
   DeviceInfo info;
   SubDeviceHandle sub_device;  ///< outlives all that is made on it
   cl_device_id device = nullptr;
@@ -75,8 +114,9 @@ struct Context::Impl {
   std::unique_ptr<ProgramLibrary> programs;
   std::map<std::tuple<std::string, std::string, std::string>, Kernel>
       kernels;  ///< file, name, defines
-  std::shared_ptr<MemoryCounter> memory = std::make_shared<MemoryCounter>();
-  std::shared_ptr<ReclaimerList> reclaimers = std::make_shared<ReclaimerList>();
+  std::shared_ptr<BufferMemory> memory = std::make_shared<BufferMemory>();
+  std::shared_ptr<std::vector<Reclaimer*>> reclaimers =
+      std::make_shared<std::vector<Reclaimer*>>();  ///< the one to ask first at the end
   bool reclaiming = false;  ///< what a reclaimer itself calls must not ask for memory again
   bool profile = false;
   KernelTimes times;

@@ -191,7 +191,7 @@ void require_address_space() {
 DeviceList enumerate_devices() {
   require_address_space();
   bound_pocl_threads();
-  prepare_pocl_work_folder();
+  pocl_work_folder();
   keep_intel_from_vectorizing();
   DeviceList list;
   const auto found = platforms();

@@ -1,6 +1,4 @@
 // Kernels: creation, arguments, launches.
-#include "device/kernel.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,12 +24,11 @@ constexpr std::size_t max_work_items = std::size_t{1} << 31;
 /// version 60 ms.
 constexpr std::size_t least_unspecialised = std::size_t{1} << 16;
 
-/// Held while PoCL compiles for one of several devices: two threads of a process that compile the
-/// same kernel at the same time crash PoCL 3.1 once in a while (docs/runtimes.md).
+/// Held while PoCL compiles: two threads of a process that compile the same kernel at the same time
+/// crash PoCL 3.1 once in a while (docs/runtimes.md).
 std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
   static std::mutex mutex;
-  const bool alone = LiveContext::count() < 2;
-  return is_pocl && !alone ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
+  return is_pocl ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();
 }
 
 template <class T>

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <cstring>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -43,6 +41,7 @@ std::set<std::string> variables_of(std::string_view runtime) {
 CacheKey program_key(const DeviceInfo& device, std::string_view options, std::string_view source) {
   ContentHash hash;
   const auto add = [&](std::string_view field) { hash.add(std::string(field)); };
+  add("format 2");  // of what is kept
   add(device.platform);
   add(device.platform_version);
   add(device.name);
@@ -58,23 +57,12 @@ CacheKey program_key(const DeviceInfo& device, std::string_view options, std::st
 
 namespace {
 
-constexpr std::string_view magic = "PHOTILEC";
-constexpr std::uint32_t format_version = 1;
-constexpr std::size_t checksum_offset = 40;
-
-std::string header_of(const CacheKey& key, std::string_view payload) {
-  std::string header(checked_file_header_bytes, '\0');
-  const std::uint64_t length = payload.size();
-  std::memcpy(header.data(), magic.data(), magic.size());
-  std::memcpy(header.data() + 8, &format_version, sizeof format_version);
-  std::memcpy(header.data() + 16, key.data(), key.size());
-  std::memcpy(header.data() + 32, &length, sizeof length);
+std::string checksum_of(const CacheKey& key, std::string_view payload) {
   ContentHash hash;
-  hash.add_bytes(header.data(), checksum_offset);
+  hash.add_bytes(key.data(), key.size());
   hash.add_bytes(payload.data(), payload.size());
-  const auto checksum = hash.digest();
-  std::memcpy(header.data() + checksum_offset, checksum.data(), checksum.size());
-  return header;
+  const auto digest = hash.digest();
+  return {digest.begin(), digest.end()};
 }
 
 }  // namespace
@@ -84,25 +72,18 @@ namespace fs = std::filesystem;
 CheckedRead read_checked_file(const fs::path& path, const CacheKey& key) {
   std::error_code error;
   if (!fs::exists(path, error) && !error) return {};
-  std::string bytes;
   try {
-    bytes = read_own_text(path);
+    const std::string bytes = read_own_text(path);
+    std::string payload = bytes.substr(std::min(bytes.size(), CacheKey{}.size()));
+    if (bytes != checksum_of(key, payload) + payload) return {{}, "damaged"};
+    return {std::move(payload), {}};
   } catch (const InputError& problem) {
     return {{}, problem.what()};
   }
-  if (bytes.size() < checked_file_header_bytes) {
-    return {{}, fmt::format("{} bytes, no header", bytes.size())};
-  }
-  std::string payload = bytes.substr(checked_file_header_bytes);
-  // Magic, version, key, length and checksum are all functions of key and payload.
-  if (bytes.compare(0, checked_file_header_bytes, header_of(key, payload)) != 0) {
-    return {{}, "damaged"};
-  }
-  return {std::move(payload), {}};
 }
 
 void write_checked_file(const fs::path& path, const CacheKey& key, std::string_view payload) {
-  write_file(path, header_of(key, payload).append(payload));
+  write_file(path, checksum_of(key, payload).append(payload));
 }
 
 KernelStore::KernelStore(fs::path folder, std::vector<fs::path> installed, std::string ending)

@@ -20,18 +20,8 @@ using CacheKey = ContentHash::Digest;
 /// several of which change the code that it generates.
 CacheKey program_key(const DeviceInfo& device, std::string_view options, std::string_view source);
 
-// A file that is either whole and of the expected key, or not used at all.
-//
-//   offset  bytes  content
-//        0      8  magic "PHOTILEC"
-//        8      4  format version, host byte order
-//       12      4  zero
-//       16     16  key
-//       32      8  length of the payload
-//       40     16  XXH3-128 of bytes 0..39 and the payload
-//       56      -  payload
-
-inline constexpr std::size_t checked_file_header_bytes = 56;
+// A file that is either whole and of the expected key, or not used at all: the XXH3-128 of the key
+// and the payload, and the payload.
 
 struct CheckedRead {
   std::optional<std::string> payload;  ///< set only when every check passed

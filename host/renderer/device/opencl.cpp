@@ -2,87 +2,89 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
+
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::device {
 namespace {
 
-const char* name_of(int status) {
-#define PHOTILE_STATUS(code) \
-  case code:                 \
-    return #code;
-  switch (status) {
-    PHOTILE_STATUS(CL_SUCCESS)
-    PHOTILE_STATUS(CL_DEVICE_NOT_FOUND)
-    PHOTILE_STATUS(CL_DEVICE_NOT_AVAILABLE)
-    PHOTILE_STATUS(CL_COMPILER_NOT_AVAILABLE)
-    PHOTILE_STATUS(CL_MEM_OBJECT_ALLOCATION_FAILURE)
-    PHOTILE_STATUS(CL_OUT_OF_RESOURCES)
-    PHOTILE_STATUS(CL_OUT_OF_HOST_MEMORY)
-    PHOTILE_STATUS(CL_PROFILING_INFO_NOT_AVAILABLE)
-    PHOTILE_STATUS(CL_MEM_COPY_OVERLAP)
-    PHOTILE_STATUS(CL_IMAGE_FORMAT_MISMATCH)
-    PHOTILE_STATUS(CL_IMAGE_FORMAT_NOT_SUPPORTED)
-    PHOTILE_STATUS(CL_BUILD_PROGRAM_FAILURE)
-    PHOTILE_STATUS(CL_MAP_FAILURE)
-    PHOTILE_STATUS(CL_MISALIGNED_SUB_BUFFER_OFFSET)
-    PHOTILE_STATUS(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST)
-    PHOTILE_STATUS(CL_COMPILE_PROGRAM_FAILURE)
-    PHOTILE_STATUS(CL_LINKER_NOT_AVAILABLE)
-    PHOTILE_STATUS(CL_LINK_PROGRAM_FAILURE)
-    PHOTILE_STATUS(CL_DEVICE_PARTITION_FAILED)
-    PHOTILE_STATUS(CL_KERNEL_ARG_INFO_NOT_AVAILABLE)
-    PHOTILE_STATUS(CL_INVALID_VALUE)
-    PHOTILE_STATUS(CL_INVALID_DEVICE_TYPE)
-    PHOTILE_STATUS(CL_INVALID_PLATFORM)
-    PHOTILE_STATUS(CL_INVALID_DEVICE)
-    PHOTILE_STATUS(CL_INVALID_CONTEXT)
-    PHOTILE_STATUS(CL_INVALID_QUEUE_PROPERTIES)
-    PHOTILE_STATUS(CL_INVALID_COMMAND_QUEUE)
-    PHOTILE_STATUS(CL_INVALID_HOST_PTR)
-    PHOTILE_STATUS(CL_INVALID_MEM_OBJECT)
-    PHOTILE_STATUS(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR)
-    PHOTILE_STATUS(CL_INVALID_IMAGE_SIZE)
-    PHOTILE_STATUS(CL_INVALID_SAMPLER)
-    PHOTILE_STATUS(CL_INVALID_BINARY)
-    PHOTILE_STATUS(CL_INVALID_BUILD_OPTIONS)
-    PHOTILE_STATUS(CL_INVALID_PROGRAM)
-    PHOTILE_STATUS(CL_INVALID_PROGRAM_EXECUTABLE)
-    PHOTILE_STATUS(CL_INVALID_KERNEL_NAME)
-    PHOTILE_STATUS(CL_INVALID_KERNEL_DEFINITION)
-    PHOTILE_STATUS(CL_INVALID_KERNEL)
-    PHOTILE_STATUS(CL_INVALID_ARG_INDEX)
-    PHOTILE_STATUS(CL_INVALID_ARG_VALUE)
-    PHOTILE_STATUS(CL_INVALID_ARG_SIZE)
-    PHOTILE_STATUS(CL_INVALID_KERNEL_ARGS)
-    PHOTILE_STATUS(CL_INVALID_WORK_DIMENSION)
-    PHOTILE_STATUS(CL_INVALID_WORK_GROUP_SIZE)
-    PHOTILE_STATUS(CL_INVALID_WORK_ITEM_SIZE)
-    PHOTILE_STATUS(CL_INVALID_GLOBAL_OFFSET)
-    PHOTILE_STATUS(CL_INVALID_EVENT_WAIT_LIST)
-    PHOTILE_STATUS(CL_INVALID_EVENT)
-    PHOTILE_STATUS(CL_INVALID_OPERATION)
-    PHOTILE_STATUS(CL_INVALID_GL_OBJECT)
-    PHOTILE_STATUS(CL_INVALID_BUFFER_SIZE)
-    PHOTILE_STATUS(CL_INVALID_MIP_LEVEL)
-    PHOTILE_STATUS(CL_INVALID_GLOBAL_WORK_SIZE)
-    PHOTILE_STATUS(CL_INVALID_PROPERTY)
-    PHOTILE_STATUS(CL_INVALID_IMAGE_DESCRIPTOR)
-    PHOTILE_STATUS(CL_INVALID_COMPILER_OPTIONS)
-    PHOTILE_STATUS(CL_INVALID_LINKER_OPTIONS)
-    PHOTILE_STATUS(CL_INVALID_DEVICE_PARTITION_COUNT)
-    case -1001:  // of the loader (cl_khr_icd), not of OpenCL
-      return "CL_PLATFORM_NOT_FOUND_KHR";
-    default:
-      return "unknown status";
-  }
-#undef PHOTILE_STATUS
-}
+/// Without CL_, from code 0 downwards, and from -30.
+constexpr std::array names_from_0 = {"SUCCESS",
+                                     "DEVICE_NOT_FOUND",
+                                     "DEVICE_NOT_AVAILABLE",
+                                     "COMPILER_NOT_AVAILABLE",
+                                     "MEM_OBJECT_ALLOCATION_FAILURE",
+                                     "OUT_OF_RESOURCES",
+                                     "OUT_OF_HOST_MEMORY",
+                                     "PROFILING_INFO_NOT_AVAILABLE",
+                                     "MEM_COPY_OVERLAP",
+                                     "IMAGE_FORMAT_MISMATCH",
+                                     "IMAGE_FORMAT_NOT_SUPPORTED",
+                                     "BUILD_PROGRAM_FAILURE",
+                                     "MAP_FAILURE",
+                                     "MISALIGNED_SUB_BUFFER_OFFSET",
+                                     "EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST",
+                                     "COMPILE_PROGRAM_FAILURE",
+                                     "LINKER_NOT_AVAILABLE",
+                                     "LINK_PROGRAM_FAILURE",
+                                     "DEVICE_PARTITION_FAILED",
+                                     "KERNEL_ARG_INFO_NOT_AVAILABLE"};
+constexpr std::array names_from_30 = {"INVALID_VALUE",
+                                      "INVALID_DEVICE_TYPE",
+                                      "INVALID_PLATFORM",
+                                      "INVALID_DEVICE",
+                                      "INVALID_CONTEXT",
+                                      "INVALID_QUEUE_PROPERTIES",
+                                      "INVALID_COMMAND_QUEUE",
+                                      "INVALID_HOST_PTR",
+                                      "INVALID_MEM_OBJECT",
+                                      "INVALID_IMAGE_FORMAT_DESCRIPTOR",
+                                      "INVALID_IMAGE_SIZE",
+                                      "INVALID_SAMPLER",
+                                      "INVALID_BINARY",
+                                      "INVALID_BUILD_OPTIONS",
+                                      "INVALID_PROGRAM",
+                                      "INVALID_PROGRAM_EXECUTABLE",
+                                      "INVALID_KERNEL_NAME",
+                                      "INVALID_KERNEL_DEFINITION",
+                                      "INVALID_KERNEL",
+                                      "INVALID_ARG_INDEX",
+                                      "INVALID_ARG_VALUE",
+                                      "INVALID_ARG_SIZE",
+                                      "INVALID_KERNEL_ARGS",
+                                      "INVALID_WORK_DIMENSION",
+                                      "INVALID_WORK_GROUP_SIZE",
+                                      "INVALID_WORK_ITEM_SIZE",
+                                      "INVALID_GLOBAL_OFFSET",
+                                      "INVALID_EVENT_WAIT_LIST",
+                                      "INVALID_EVENT",
+                                      "INVALID_OPERATION",
+                                      "INVALID_GL_OBJECT",
+                                      "INVALID_BUFFER_SIZE",
+                                      "INVALID_MIP_LEVEL",
+                                      "INVALID_GLOBAL_WORK_SIZE",
+                                      "INVALID_PROPERTY",
+                                      "INVALID_IMAGE_DESCRIPTOR",
+                                      "INVALID_COMPILER_OPTIONS",
+                                      "INVALID_LINKER_OPTIONS",
+                                      "INVALID_DEVICE_PARTITION_COUNT"};
+static_assert(CL_KERNEL_ARG_INFO_NOT_AVAILABLE == 1 - static_cast<int>(names_from_0.size()) &&
+              CL_INVALID_DEVICE_PARTITION_COUNT == -29 - static_cast<int>(names_from_30.size()));
 
 }  // namespace
 
-std::string status_name(int status) { return fmt::format("{} ({})", name_of(status), status); }
+std::string status_name(int status) {
+  const std::size_t code = -static_cast<std::int64_t>(status);
+  const char* name = nullptr;
+  if (code < names_from_0.size()) name = names_from_0[code];
+  if (code - 30 < names_from_30.size()) name = names_from_30[code - 30];
+  if (status == -1001) name = "PLATFORM_NOT_FOUND_KHR";  // of the loader (cl_khr_icd)
+  return name ? fmt::format("CL_{} ({})", name, status)
+              : fmt::format("unknown status ({})", status);
+}
 
 std::string failure_text(std::string_view call, int status) {
   // A buffer may be too large for a device that has memory left.

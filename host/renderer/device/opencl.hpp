@@ -47,6 +47,8 @@ class Handle {
     if (object_ != nullptr) release(object_);
   }
   T get() const { return object_; }
+  /// Gives the reference away: the caller releases it.
+  T detach() { return std::exchange(object_, nullptr); }
   explicit operator bool() const { return object_ != nullptr; }
 
  private:
@@ -55,6 +57,7 @@ class Handle {
 
 /// Only sub-devices are counted: a device that a platform lists is never released.
 using SubDeviceHandle = Handle<cl_device_id, clReleaseDevice>;
+using MemoryHandle = Handle<cl_mem, clReleaseMemObject>;
 using ContextHandle = Handle<cl_context, clReleaseContext>;
 using QueueHandle = Handle<cl_command_queue, clReleaseCommandQueue>;
 using ProgramHandle = Handle<cl_program, clReleaseProgram>;

@@ -117,23 +117,14 @@ class WorkFolder {
   pid_t owner_ = ::getpid();
 };
 
-WorkFolder& work_folder() {
-  static WorkFolder folder;
-  return folder;
-}
-
 }  // namespace
 
-void prepare_pocl_work_folder() { work_folder(); }
-
-std::optional<fs::path> pocl_work_folder() {
-  const auto& path = work_folder().path();
-  return path.empty() ? std::nullopt : std::optional(path);
+const fs::path& pocl_work_folder() {
+  static const WorkFolder folder;
+  return folder.path();
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// PoCL's folders of programs, "XX/name" below its work folder.
 std::set<fs::path> program_folders(const fs::path& work) {

@@ -19,13 +19,10 @@
 
 namespace photile::device {
 
-/// Creates the folder and names it to PoCL by POCL_CACHE_DIR. Call before the first OpenCL call; a
-/// second call does nothing. Where the user set POCL_CACHE_DIR to a folder that can be written, it
-/// is left alone. Errors: DeviceError when no folder can be written at all.
-void prepare_pocl_work_folder();
-
-/// The prepared folder; none where the user's own POCL_CACHE_DIR is in force.
-std::optional<std::filesystem::path> pocl_work_folder();
+/// The folder, which the first call creates and names to PoCL by POCL_CACHE_DIR: before the first
+/// OpenCL call. Empty where the user set POCL_CACHE_DIR to a folder that can be written, which is
+/// left alone. Errors: DeviceError when no folder can be written at all.
+const std::filesystem::path& pocl_work_folder();
 
 // PoCL's compiled kernels, kept between runs as one checked file per program.
 //

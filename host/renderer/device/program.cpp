@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -22,21 +21,6 @@
 #include "photile/errors.hpp"
 
 namespace photile::device {
-
-namespace {
-
-constexpr std::string_view format_line = "arguments 1";
-
-/// Takes a line off the text, without its end; none where there is no whole line.
-std::optional<std::string_view> take_line(std::string_view& text) {
-  const auto end = text.find('\n');
-  if (end == std::string_view::npos) return std::nullopt;
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end + 1);
-  return line;
-}
-
-}  // namespace
 
 std::optional<std::vector<std::string>> argument_names(cl_kernel kernel) {
   cl_uint count = 0;
@@ -74,34 +58,6 @@ std::optional<ArgumentNames> argument_names(cl_program program) {
                   std::move(*arguments));
   }
   return names;
-}
-
-std::string joined(const NamedBinary& program) {
-  std::string text(format_line);
-  text += '\n';
-  for (const auto& [kernel, arguments] : program.arguments) {
-    text += kernel;
-    for (const std::string& argument : arguments) text += ' ' + argument;
-    text += '\n';
-  }
-  return text + '\n' + program.binary;
-}
-
-std::optional<NamedBinary> split(std::string_view text) {
-  if (take_line(text) != format_line) return std::nullopt;
-  NamedBinary program;
-  for (;;) {
-    const auto line = take_line(text);
-    if (!line) return std::nullopt;
-    if (line->empty()) break;
-    std::istringstream words{std::string(*line)};
-    std::string kernel;
-    words >> kernel;
-    auto& arguments = program.arguments[kernel];
-    for (std::string argument; words >> argument;) arguments.push_back(argument);
-  }
-  program.binary = text;
-  return program;
 }
 
 namespace {
@@ -214,9 +170,9 @@ ProgramHandle build_from_source(const BuildTarget& target, const std::string& fi
   return program;
 }
 
-ProgramHandle build_from_binary(const BuildTarget& target, const std::string& binary,
+ProgramHandle build_from_binary(const BuildTarget& target, const std::vector<std::uint8_t>& binary,
                                 const std::string& options) {
-  const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
+  const unsigned char* bytes = binary.data();
   const std::size_t length = binary.size();
   cl_int status = CL_SUCCESS, binary_status = CL_SUCCESS;
   ProgramHandle program(clCreateProgramWithBinary(target.context, 1, &target.device, &length,

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "device/opencl.hpp"
@@ -19,17 +18,6 @@ std::optional<std::vector<std::string>> argument_names(cl_kernel kernel);
 /// The names of the arguments of each kernel of a program, by its name.
 using ArgumentNames = std::map<std::string, std::vector<std::string>>;
 std::optional<ArgumentNames> argument_names(cl_program program);
-
-struct NamedBinary {
-  ArgumentNames arguments;
-  std::string binary;
-};
-
-/// Names and binary as one text: a line for the format, one for each kernel, an empty one, the
-/// binary.
-std::string joined(const NamedBinary& program);
-/// What `joined` made; none of any other text.
-std::optional<NamedBinary> split(std::string_view text);
 
 /// Whether this thread is in a device's compiler, through which no exception may pass: its locks
 /// would stay held.
@@ -55,7 +43,7 @@ ProgramHandle build_from_source(const BuildTarget& target, const std::string& fi
                                 const std::string& source, const std::string& options);
 
 /// Builds a binary that `program_binary` gave; an empty handle where the device refuses it.
-ProgramHandle build_from_binary(const BuildTarget& target, const std::string& binary,
+ProgramHandle build_from_binary(const BuildTarget& target, const std::vector<std::uint8_t>& binary,
                                 const std::string& options);
 
 /// The program's binary; none where the runtime has none to give.

@@ -1,5 +1,6 @@
 #include "device/program_library.hpp"
 
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "device/cache_folder.hpp"
@@ -22,10 +23,9 @@ std::optional<KernelStore> kernel_store(const char* ending) {
 /// can be kept.
 PoclCache* shared_pocl_cache() {
   static const auto cache = []() -> std::unique_ptr<PoclCache> {
-    const auto work = pocl_work_folder();
-    if (!work) return nullptr;
-    auto store = kernel_store(".pocl");
-    return store ? std::make_unique<PoclCache>(*work, std::move(*store)) : nullptr;
+    const auto& work = pocl_work_folder();
+    auto store = work.empty() ? std::nullopt : kernel_store(".pocl");
+    return store ? std::make_unique<PoclCache>(work, std::move(*store)) : nullptr;
   }();
   return cache.get();
 }
@@ -87,7 +87,9 @@ Program ProgramLibrary::load_or_build(const std::string& file, const std::string
     auto binary = program_binary(program.handle.get());
     auto arguments = argument_names(program.handle.get());
     if (binary && arguments) {
-      cache_->store(key, joined({std::move(*arguments), std::move(*binary)}));
+      const nlohmann::json::binary_t bytes({binary->begin(), binary->end()});
+      const auto text = nlohmann::json::to_cbor({{"arguments", *arguments}, {"binary", bytes}});
+      cache_->store(key, {reinterpret_cast<const char*>(text.data()), text.size()});
     }
   }
   return program;
@@ -96,10 +98,10 @@ Program ProgramLibrary::load_or_build(const std::string& file, const std::string
 Program ProgramLibrary::load(const CacheKey& key, const std::string& options) {
   const auto stored = cache_->load(key);
   if (!stored) return {};
-  if (auto program = split(*stored)) {
-    if (auto handle = build_from_binary(target_, program->binary, options)) {
-      return {std::move(handle), std::move(program->arguments)};
-    }
+  const auto program = nlohmann::json::from_cbor(*stored);
+  const std::vector<std::uint8_t>& binary = program.at("binary").get_binary();
+  if (auto handle = build_from_binary(target_, binary, options)) {
+    return {std::move(handle), program.at("arguments").get<ArgumentNames>()};
   }
   warn("the device refuses '" + cache_->file(key).string() + "'; compiling again");
   return {};

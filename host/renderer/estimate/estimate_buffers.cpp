@@ -38,49 +38,20 @@ EstimateBytes LightSums::bytes_per_hit() const {
   return {largest, together};
 }
 
-EstimateBuffers::EstimateBuffers(device::Context& context, const LightSums& sums)
-    : context_(context), sums_(sums), reclaimer_(context, *this) {}
-
-void EstimateBuffers::begin(std::uint32_t hits) {
-  // A batch that was not read has failed, most likely for lack of memory. Slots of many lights are
-  // as many as their hits: they are scanned.
-  const bool fits = sums_.many_lights ? hits == capacity_ : hits <= capacity_;
-  if (in_use_ || !fits) release();
-  in_use_ = true;
-  hits_ = hits;
-  if (capacity_ == 0) allocate();
-  if (sums_.many_lights) {
-    context_.fill(slots_taken, 0u);
-    return;
+EstimateBuffers::EstimateBuffers(device::Context& context, const LightSums& sums,
+                                 std::uint32_t hits)
+    : context_(context), sums_(sums), hits_(hits) {
+  const std::size_t estimates = std::size_t{hits} * sums.per_hit;
+  irradiance = context.allocate<float>(3 * estimates, "irradiance estimates");
+  radiance = context.allocate<float>(sums.glossy ? 3 * estimates : 0, "radiance estimates");
+  if (sums.many_lights) {
+    slot_light = context.allocate<std::uint16_t>(estimates, "lights of estimates");
+    slots_taken = context.allocate<std::uint32_t>(std::size_t{hits} + 1, "lights per hit");
+    context.fill(slots_taken, 0u);
+  } else {
+    context.fill(irradiance, 0.0f);
+    context.fill(radiance, 0.0f);
   }
-  const std::size_t floats = 3 * std::size_t{hits} * sums_.per_hit;
-  context_.fill(irradiance, 0.0f, floats);
-  if (sums_.glossy) context_.fill(radiance, 0.0f, floats);
-}
-
-void EstimateBuffers::allocate() {
-  const std::size_t estimates = std::size_t{hits_} * sums_.per_hit;
-  irradiance = context_.allocate<float>(3 * estimates, "irradiance estimates");
-  radiance = context_.allocate<float>(sums_.glossy ? 3 * estimates : 0, "radiance estimates");
-  if (sums_.many_lights) {
-    slot_light = context_.allocate<std::uint16_t>(estimates, "lights of estimates");
-    slots_taken = context_.allocate<std::uint32_t>(std::size_t{hits_} + 1, "lights per hit");
-  }
-  capacity_ = hits_;
-}
-
-void EstimateBuffers::release() {
-  irradiance = {};
-  radiance = {};
-  slot_light = {};
-  slots_taken = {};
-  capacity_ = 0;
-}
-
-bool EstimateBuffers::reclaim() {
-  if (in_use_ || capacity_ == 0) return false;
-  release();
-  return true;
 }
 
 void EstimateBuffers::read(LightTable& result, std::size_t first) {
@@ -93,7 +64,6 @@ void EstimateBuffers::read(LightTable& result, std::size_t first) {
     read_vectors(irradiance, part(result.irradiance));
     if (sums_.glossy) read_vectors(radiance, part(result.radiance));
   }
-  in_use_ = false;
 }
 
 void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,

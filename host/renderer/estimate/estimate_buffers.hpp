@@ -44,18 +44,12 @@ struct LightSums {
   EstimateBytes bytes_per_hit() const;
 };
 
-/// Kept from batch to batch and from call to call: new memory, which the operating system must
-/// clear first, takes as long as a good part of the estimates that are written to it. Released
-/// where memory runs out between two batches.
-class EstimateBuffers final : private device::Reclaimer {
+/// The estimates of a batch.
+class EstimateBuffers {
  public:
-  /// Buffers for kernels that are compiled with the symbols of `sums`.
-  EstimateBuffers(device::Context& context, const LightSums& sums);
-  EstimateBuffers(const EstimateBuffers&) = delete;
-  EstimateBuffers& operator=(const EstimateBuffers&) = delete;
+  /// Those of this many hits, all zero, for kernels that are compiled with the symbols of `sums`.
+  EstimateBuffers(device::Context& context, const LightSums& sums, std::uint32_t hits);
 
-  /// Makes room for the estimates of this many hits, all zero.
-  void begin(std::uint32_t hits);
   /// What the kernels left becomes the estimates of the hits [first, first + hits) in `result`,
   /// which has room for them; with many lights it is appended. Waits for the kernels.
   void read(LightTable& result, std::size_t first);
@@ -66,18 +60,12 @@ class EstimateBuffers final : private device::Reclaimer {
   device::Buffer<std::uint32_t> slots_taken;  ///< per hit, and a 0
 
  private:
-  bool reclaim() override;
-  void release();
-  void allocate();
   LightTable read_slots();
   void read_vectors(const device::Buffer<float>& buffer, std::span<glm::vec3> values);
 
   device::Context& context_;
   LightSums sums_;
-  std::uint32_t hits_ = 0;      ///< of the batch
-  std::uint32_t capacity_ = 0;  ///< hits that the buffers have room for
-  bool in_use_ = false;         ///< from begin() to the end of read()
-  device::ReclaimerEntry reclaimer_;
+  std::uint32_t hits_;
 };
 
 }  // namespace photile::estimate

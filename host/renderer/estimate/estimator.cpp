@@ -40,7 +40,6 @@ struct Estimator::Impl {
   std::shared_ptr<const SurfaceIndex> surface;  ///< where areas are clipped
   std::optional<estimate::SurfaceBuffers> surface_buffers;
   std::unique_ptr<estimate::Query> query;
-  std::optional<estimate::EstimateBuffers> estimates;
 
   Impl(const PhotonMaps& photon_maps, const Scene& scene, const EstimateParameters& parameters)
       : store(maps::store_of(photon_maps)),
@@ -66,7 +65,6 @@ struct Estimator::Impl {
                 .tuning = parameters.tuning.value_or(shipped_tuning(photon_maps.device().info())),
                 .surface = clipped_to(),
                 .kernel = kernel_used(parameters.kernel, parameters.neighbours)});
-    estimates.emplace(context, query->sums());
   }
 
   /// What areas are clipped to, or null.
@@ -88,11 +86,11 @@ struct Estimator::Impl {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
                                                      clipped_to(), store.needs);
-    estimates->begin(static_cast<std::uint32_t>(count));
+    estimate::EstimateBuffers estimates(context, query->sums(), static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
-      query->estimate(page_hits, *estimates);
+      query->estimate(page_hits, estimates);
     });
-    estimates->read(result, offset);
+    estimates.read(result, offset);
   }
 
   /// The neighbours of hits [first, first + count).

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <cstring>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -78,14 +77,13 @@ PhotileHitLobe hit_lobe(const PrimaryHits& hits, std::size_t hit, bool normal_ma
   return on_device;
 }
 
-/// A buffer of make(i) for each i < count. Made by all cores, which touch the memory first, too: a
-/// GPU waits for it.
+/// A buffer of make(i) for each i < count, made by all cores.
 template <class T, class Make>
 device::Buffer<T> upload_each(device::Context& context, std::size_t count, std::string_view what,
                               const Make& make) {
-  const auto values = std::make_unique_for_overwrite<T[]>(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { values[i] = make(i); });
-  return context.upload(std::span<const T>(values.get(), count), what);
+  return context.upload_by<T>(count, what, [&](std::span<T> values) {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { values[i] = make(i); });
+  });
 }
 
 }  // namespace

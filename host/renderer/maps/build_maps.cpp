@@ -16,7 +16,6 @@
 #include "maps/build_steps.hpp"
 #include "maps/candidate_maps.hpp"
 #include "maps/map_page.hpp"
-#include "maps/map_pages.hpp"
 #include "maps/map_shapes.hpp"
 #include "maps/photon_pages.hpp"
 #include "scene/scene_queries.hpp"

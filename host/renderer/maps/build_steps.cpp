@@ -60,13 +60,13 @@ device::Launch entered_launch(const Build& build, const char* kernel, const Phot
 void try_to_count(Build& build) {
   build.context.fill(build.counts.photons, 0u);
   build.context.fill(build.counts.normal_filtered, 0u);
-  for (const PhotonPage& page : *build.photon_pages) {
+  build.photon_pages->for_each([&](const PhotonPage& page) {
     device::Launch launch = entered_launch(build, "count_photons", page);
     launch.set("map_count", build.counts.photons)
         .set("normal", build.normals)
         .set("map_normal_filtered", build.counts.normal_filtered);
     launch.run(page.count, work_group_size);
-  }
+  });
 }
 
 /// The sum of the cells of maps. Errors: DeviceMemoryError where they are too many for one page.
@@ -179,21 +179,23 @@ void fill_cells(const Build& build, MapPage& page) {
         .set("cell_start", page.cell_start);
     return launch;
   };
-  const auto photon_pages = build.photon_pages->entering(page.first_map, page.last_map);
-  for (const PhotonPage& photons : photon_pages) {
+  const auto for_each_entering = [&](const auto& visit) {
+    build.photon_pages->for_each_entering(page.first_map, page.last_map, visit);
+  };
+  for_each_entering([&](const PhotonPage& photons) {
     over_photons("count_cells", photons).run(photons.count, work_group_size);
-  }
+  });
   exclusive_prefix_sum(build.kernels, page.cell_start);
   build.context.read(page.cell_start, std::span(&page.record_count, 1),
                      std::size_t{page.cell_count} + 1);
 
   page.record_photon =
       build.context.allocate<std::uint32_t>(page.record_count, "photon references");
-  for (const PhotonPage& photons : photon_pages) {
+  for_each_entering([&](const PhotonPage& photons) {
     over_photons("scatter", photons)
         .set("record_photon", page.record_photon)
         .run(photons.count, work_group_size);
-  }
+  });
   sort_cells(build.kernels, page);
 }
 
@@ -221,7 +223,7 @@ void copy_records(const device::KernelSet& build, const SceneNeeds& needs,
   if (needs.glossy) page.record_incoming = planes("photon map directions");
   if (gathering.normals != nullptr) page.record_normal = planes("photon map normals");
   const PhotonRelease* const release = photon_pages.single() ? gathering.release : nullptr;
-  for (const PhotonPage& photons : photon_pages.entering(page.first_map, page.last_map)) {
+  photon_pages.for_each_entering(page.first_map, page.last_map, [&](const PhotonPage& photons) {
     if (release != nullptr) {  // all memory is allocated: the page in use stays to the end
       context.finish();
       photon_pages.release_lists();
@@ -257,7 +259,55 @@ void copy_records(const device::KernelSet& build, const SceneNeeds& needs,
           .set("record_normal", page.record_normal)
           .run(page.record_count, work_group_size);
     }
+  });
+}
+
+namespace {
+
+constexpr std::uint32_t scan_block = 2048;
+
+}  // namespace
+
+void exclusive_prefix_sum(const device::KernelSet& kernels,
+                          const device::Buffer<std::uint32_t>& values,
+                          device::Buffer<std::uint32_t>& scanned) {
+  const auto count = static_cast<std::uint32_t>(values.size());
+  if (count == 0) return;
+  const std::uint32_t blocks = (count + scan_block - 1) / scan_block;
+  device::Context& context = kernels.context();
+  const bool in_groups = works_in_groups(context.info());
+  const auto run = [&](device::Launch& launch) {
+    if (in_groups) {
+      launch.run(blocks * group_size, group_size);
+    } else {
+      launch.run(blocks, work_group_size);
+    }
+  };
+  auto block_sum = context.allocate<std::uint32_t>(blocks, "block sums of a prefix sum");
+  if (blocks == 1) {
+    context.fill(block_sum, 0u);
+  } else {
+    device::Launch launch = kernels.launch("sum_blocks");
+    launch.set("count", count)
+        .set("values", values)
+        .set("block_size", scan_block)
+        .set("block_count", blocks)
+        .set("block_sum", block_sum);
+    run(launch);
+    exclusive_prefix_sum(kernels, block_sum, block_sum);
   }
+  device::Launch launch = kernels.launch("scan_blocks");
+  launch.set("count", count)
+      .set("values", values)
+      .set("block_size", scan_block)
+      .set("block_count", blocks)
+      .set("block_start", block_sum)
+      .set("scanned", scanned);
+  run(launch);
+}
+
+void exclusive_prefix_sum(const device::KernelSet& kernels, device::Buffer<std::uint32_t>& values) {
+  exclusive_prefix_sum(kernels, values, values);
 }
 
 }  // namespace photile::maps

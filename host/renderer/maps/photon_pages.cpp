@@ -125,24 +125,6 @@ PhotonPages::PhotonPages(device::Context& context, Plan plan, Upload upload,
       ranges_(plan_(max_bytes)),
       pages_(ranges_.size()) {}
 
-const PhotonPage& PhotonPages::Iterator::operator*() const {
-  pages_.use(page_);
-  return pages_.pages_[page_];
-}
-
-void PhotonPages::Iterator::skip_others() {
-  while (page_ < pages_.pages_.size() && !pages_.ranges_[page_].may_enter(first_map_, last_map_)) {
-    ++page_;
-  }
-}
-
-PhotonPages::Iterator& PhotonPages::Iterator::operator++() {
-  ++page_;
-  skip_others();
-  pages_.release();
-  return *this;
-}
-
 std::uint64_t PhotonPages::largest_array() const {
   std::uint64_t largest = 0;
   for (const PhotonRange& range : ranges_) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "device/context.hpp"
@@ -57,9 +58,7 @@ PhotonPage upload_photon_page(device::Context& context, const Photons& photons,
                               const CandidateMaps& candidates, PhotonRange range);
 
 /// The photons of a build, page by page: on the device while there is memory, otherwise uploaded
-/// again when they are used. `for (const PhotonPage& page : pages)` goes through all of them, `for
-/// (const PhotonPage& page : pages.entering(first_map, last_map))` through those that those maps
-/// may hold photons of; a page stays until the next one is reached.
+/// again when they are used.
 class PhotonPages final : private Residents {
  public:
   using Plan = std::function<std::vector<PhotonRange>(std::uint64_t max_bytes)>;
@@ -68,36 +67,21 @@ class PhotonPages final : private Residents {
   /// `max_bytes`: of any buffer, for the plan.
   PhotonPages(device::Context& context, Plan plan, Upload upload, std::uint64_t max_bytes);
 
-  class Iterator {
-   public:
-    Iterator(PhotonPages& pages, std::size_t page, std::uint32_t first_map, std::uint32_t last_map)
-        : pages_(pages), page_(page), first_map_(first_map), last_map_(last_map) {
-      skip_others();
-    }
-    /// Errors: DeviceMemoryError.
-    const PhotonPage& operator*() const;
-    Iterator& operator++();
-    bool operator!=(const Iterator& other) const { return page_ != other.page_; }
-
-   private:
-    void skip_others();
-
-    PhotonPages& pages_;
-    std::size_t page_;
-    std::uint32_t first_map_, last_map_;
-  };
-  struct View {
-    PhotonPages& pages;
-    std::uint32_t first_map, last_map;
-
-    Iterator begin() const { return {pages, 0, first_map, last_map}; }
-    Iterator end() const { return {pages, pages.pages_.size(), first_map, last_map}; }
-  };
-  View entering(std::uint32_t first_map, std::uint32_t last_map) {
-    return {*this, first_map, last_map};
+  /// Calls visit(page) for each. Errors: DeviceMemoryError, as visit().
+  template <class Visit>
+  void for_each(const Visit& visit) {
+    for_each_entering(0, none, visit);
   }
-  Iterator begin() { return entering(0, none).begin(); }
-  Iterator end() { return entering(0, none).end(); }
+  /// The same for those that maps of [first_map, last_map) may hold photons of.
+  template <class Visit>
+  void for_each_entering(std::uint32_t first_map, std::uint32_t last_map, const Visit& visit) {
+    for (std::size_t i = 0; i < pages_.size(); ++i) {
+      if (!ranges_[i].may_enter(first_map, last_map)) continue;
+      use(i);
+      visit(std::as_const(pages_[i]));
+      release();
+    }
+  }
 
   /// Device memory that the largest page takes, about.
   std::uint64_t page_bytes() const;

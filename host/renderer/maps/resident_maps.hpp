@@ -15,7 +15,7 @@ namespace photile::maps {
 /// unloaded first, and as many as fit stay through all rounds.
 class Residents : public device::Reclaimer {
  public:
-  explicit Residents(device::Context& context) : entry_(context, *this) {}
+  explicit Residents(device::Context& context) : Reclaimer(context) {}
 
   std::size_t resident_count() const { return in_use_order_.size(); }
 
@@ -39,7 +39,6 @@ class Residents : public device::Reclaimer {
  private:
   static constexpr std::size_t nothing = static_cast<std::size_t>(-1);
 
-  device::ReclaimerEntry entry_;
   std::vector<std::size_t> in_use_order_;  ///< those resident, the one used last at the end
   std::size_t used_ = nothing;
 };
