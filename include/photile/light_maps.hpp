@@ -14,8 +14,8 @@ namespace photile {
 /// Whether the light of matt surfaces is read from light maps.
 enum class LightMapMode {
   off,       ///< an estimate at each hit: the method of the paper
-  on,        ///< nodes, which the photon estimate values
-  automatic  ///< on for pictures, but where rays gather, with naive maps and with several passes
+  on,        ///< nodes, which rays value or the photon estimate (light_map_rays)
+  automatic  ///< on for pictures, but with naive maps and with several passes
 };
 
 /// "off", "on", "auto".

@@ -161,8 +161,10 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   const PointLinks links = visible_links(batch, rows);
   GatheredParts all = smoothed(links, rows, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
-  all.indirect.append(with_neighbours(raw_.light.indirect, links, rows, fine, of_indirect));
-  all.direct.append(with_neighbours(raw_.light.direct, links, rows, fine, of_direct));
+  all.indirect.append(
+      means_with_neighbours(raw_.light.indirect, rows, links, fine, layer_powers_, of_indirect));
+  all.direct.append(
+      means_with_neighbours(raw_.light.direct, rows, links, fine, layer_powers_, of_direct));
 
   std::vector<std::uint32_t> row_of_node;
   auto next_coarse = std::uint32_t{0}, next_fine = static_cast<std::uint32_t>(coarse.size());
@@ -279,20 +281,6 @@ GatheredParts GatheredNodes::smoothed(const PointLinks& links, std::span<const s
   parts.direct = filter_irradiance(std::move(parts.direct), between, layer_powers_,
                                    {.rounds = averaged.rounds, .tolerated = of_direct});
   return parts;
-}
-
-/// Finer nodes averaged with the points next to them, as gathered.
-LightTable GatheredNodes::with_neighbours(const LightTable& raw, const PointLinks& links,
-                                          std::span<const std::uint32_t> rows,
-                                          std::span<const std::uint32_t> fine,
-                                          const NoiseTolerance& tolerated) const {
-  if (fine.empty()) return means_of(raw, 0, layer_powers_, [](std::size_t, auto&) {});
-  const KnownPoints points(raw, {rows.begin(), rows.end()}, layer_powers_);
-  return means_of(raw, fine.size(), layer_powers_, [&](std::size_t i, auto& mean) {
-    const std::uint32_t node = fine[i];
-    mean.add_own(points, node);
-    for (const std::uint32_t other : links.of(node)) mean.add_other(points, other, tolerated);
-  });
 }
 
 }  // namespace photile::cache

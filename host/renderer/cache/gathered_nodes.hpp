@@ -67,10 +67,6 @@ class GatheredNodes : public NodeSource {
   PointLinks visible_links(const NodeBatch& batch, std::span<const std::uint32_t> rows) const;
   GatheredParts smoothed(const PointLinks& links, std::span<const std::uint32_t> rows,
                          std::span<const std::uint32_t> coarse) const;
-  LightTable with_neighbours(const LightTable& raw, const PointLinks& links,
-                             std::span<const std::uint32_t> rows,
-                             std::span<const std::uint32_t> fine,
-                             const NoiseTolerance& tolerated) const;
 
   IrradianceGather& gather_;
   std::span<const double> layer_powers_;
