@@ -44,7 +44,7 @@ inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
 /// Metres from the scene's origin. Areas times photons, and squares of distances, stay within the
 /// range of a float.
 inline constexpr double max_coordinate = 1e12;
-inline constexpr std::uint64_t max_materials = 1'000'000;
+inline constexpr std::uint64_t max_materials = 100'000;  ///< an empty one takes 2 kB
 inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulated in a second or two
 inline constexpr int max_node_depth = 512;

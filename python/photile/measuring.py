@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
-from .errors import InputError
-from .scenes import Scene, floats
+from .errors import InputError, UsageError
+from .scenes import Scene, floats, vector
 
 __all__ = ["Illuminance", "grid", "measure"]
 
@@ -64,10 +64,13 @@ def grid(
     (rows * columns, 3) array
         Metres, row by row.
     """
+    for name, count in (("columns", columns), ("rows", rows)):
+        if not isinstance(count, (int, np.integer)) or count < 1:
+            raise UsageError(f"{name}: {count!r} is no whole number above 0")
     u, v = (np.arange(count) + 0.5 for count in (columns, rows))
     places = np.stack(np.meshgrid(u / columns, v / rows), axis=-1).reshape(-1, 2)
-    sides = np.stack([np.asarray(along, float), np.asarray(across, float)])
-    middles: NDArray[np.float64] = np.asarray(corner, float) + places @ sides
+    sides = np.array([vector(along, "along"), vector(across, "across")])
+    middles: NDArray[np.float64] = vector(corner, "corner") + places @ sides
     return middles
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _photile
-from .errors import UsageError
+from .errors import InputError, UsageError
 from .scenes import Camera, Scene
 
 __all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
@@ -219,6 +219,9 @@ class Picture(Mapping[str, NDArray[np.float32]]):
 
 def png_of(pixels: NDArray[np.uint8]) -> bytes:
     """A PNG of (height, width, 3) sRGB values, such as those of `Picture.display`."""
+    if pixels.ndim != 3 or pixels.shape[2] != 3 or pixels.dtype != np.uint8:
+        raise InputError(f"pixels: the array of {pixels.dtype} has shape {pixels.shape}, and has to "
+                         "be one of uint8 and have (height, width, 3)")
     height, width, _ = pixels.shape
     rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], axis=1)
     file = io.BytesIO(b"")

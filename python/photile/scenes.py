@@ -139,7 +139,7 @@ class Camera:
 
     def _parts(self) -> _photile.CameraParts:
         position, target, up = (
-            _vector(getattr(self, name), f"camera '{self.name}': {name}")
+            vector(getattr(self, name), f"camera '{self.name}': {name}")
             for name in ("position", "target", "up")
         )
         forward = np.subtract(target, position)
@@ -148,7 +148,7 @@ class Camera:
         return (
             self.name,
             position,
-            _vector(forward, "target"),
+            vector(forward, "target"),
             up,
             float(np.radians(_number(self.field_of_view, f"camera '{self.name}': field_of_view"))),
             self.aspect_ratio,
@@ -159,21 +159,23 @@ def floats(values: ArrayLike, name: str, kind: Any = np.float32) -> NDArray[Any]
     """A C-contiguous array: the same one where it is such. Raises InputError where it is none."""
     try:
         return np.ascontiguousarray(values, kind)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{name}: {reprlib.repr(values)} is no array of numbers") from None
 
 
 def _number(value: Any, name: str) -> float:
     try:
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise UsageError(f"{name}: {reprlib.repr(value)} is no number") from None
 
 
-def _vector(values: ArrayLike, name: str) -> Vector:
+def vector(values: ArrayLike, name: str) -> Vector:
     array = floats(values, name, np.float64)
     if array.shape != (3,):
         raise InputError(f"{name}: {reprlib.repr(values)} is no three numbers")
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"{name}: {reprlib.repr(values)} holds a number that is none")
     x, y, z = (float(value) for value in array)
     return (x, y, z)
 
@@ -198,7 +200,10 @@ def _per_corner(
 
 def _indices(values: ArrayLike, count: int, name: str) -> NDArray[np.uint32]:
     """Whole numbers from 0 to below ``count``."""
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of several lengths
+        raise InputError(f"{name}: {reprlib.repr(values)} is no array of whole numbers") from None
     if array.size == 0:
         return np.empty(array.shape, np.uint32)
     if array.dtype.kind not in "iu":
@@ -385,7 +390,7 @@ class Scene:
     def cameras(self) -> list[Camera]:
         """Those of the file, or the one that was placed; never none."""
         return [
-            Camera(position, _vector(np.add(position, forward), "target"), up, float(np.degrees(angle)),
+            Camera(position, vector(np.add(position, forward), "target"), up, float(np.degrees(angle)),
                    name, aspect)
             for name, position, forward, up, angle, aspect in self._core.cameras()
         ]

@@ -143,7 +143,9 @@ struct pybind11::detail::type_caster<photile::python::Array<T>> {
       value = photile::python::Array<T>(reinterpret_borrow<buffer>(array).request());
       return true;
     } catch (error_already_set& error) {
-      if (error.matches(PyExc_TypeError) || error.matches(PyExc_ValueError)) return false;
+      for (PyObject* const type : {PyExc_TypeError, PyExc_ValueError, PyExc_OverflowError}) {
+        if (error.matches(type)) return false;
+      }
       throw;
     }
   }

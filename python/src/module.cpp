@@ -36,6 +36,8 @@ void translate(std::exception_ptr thrown) {
     raise("OutputError", error);
   } catch (const photile::Error& error) {
     raise("Error", error);
+  } catch (const py::cast_error&) {
+    raise("UsageError", photile::UsageError("a value is of another type than its parameter's"));
   }
 }
 

@@ -241,20 +241,19 @@ void set_all(RenderParameters& parameters, const py::dict& settings) {
     const auto name = key.cast<std::string>();
     if (name == "quality") continue;
     if (py::isinstance<py::str>(value)) {
-      const auto text = value.cast<std::string>();
+      const auto text = value_of<std::string>(value, name);
       set_by_name(parameters, name, std::string_view(text));
       continue;
     }
     // Whole numbers of numpy are some, too; those below 0 and beyond 64 bits are in no range.
-    if (PyIndex_Check(value.ptr()) != 0) {
-      const std::uint64_t whole =
-          PyLong_AsUnsignedLongLong(py::int_(py::reinterpret_borrow<py::object>(value)).ptr());
+    if (const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()))) {
+      const std::uint64_t whole = PyLong_AsUnsignedLongLong(number.ptr());
       if (PyErr_Occurred() == nullptr) {
         set_by_name(parameters, name, whole);
         continue;
       }
-      PyErr_Clear();
     }
+    PyErr_Clear();
     set_by_name(parameters, name, value_of<double>(value, name));
   }
 }

@@ -139,7 +139,7 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
   load.metres_per_unit = field<double>(options, "metres_per_unit");
   load.lumen_per_watt = field<double>(options, "lumen_per_watt");
   const auto texts = [&](const char* name) {
-    return options[name].cast<std::vector<std::string>>();
+    return field<std::vector<std::string>>(options, name);
   };
   for (const auto& text : texts("light_groups"))
     load.light_groups.push_back(LightGrouping::parse(text));
@@ -151,9 +151,9 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
   load.environment = {field<std::string>(options, "environment"),
                       field<double>(options, "environment_scale"),
                       field<double>(options, "environment_rotation")};
-  if (const auto text = options["sun"].cast<std::string>(); !text.empty())
+  if (const auto text = field<std::string>(options, "sun"); !text.empty())
     load.sun = Sun::parse(text);
-  if (const auto text = options["sky"].cast<std::string>(); !text.empty())
+  if (const auto text = field<std::string>(options, "sky"); !text.empty())
     load.sky = Sky::parse(text);
   load.ground = field<double>(options, "ground");
   return run(progress, [&](Progress& told) {

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <pty.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,20 +51,12 @@ Channel open_terminal() {
   setenv("TERM", "xterm", 1);
   for (const auto& [name, value] : run.environment) setenv(name.c_str(), value.c_str(), 1);
   if (run.held_to_permissions) HeldToPermissions::for_good();
-  if (run.file_size_limit) {
-    const rlimit limit{*run.file_size_limit, *run.file_size_limit};
-    setrlimit(RLIMIT_FSIZE, &limit);
+  for (const auto& [resource, most] : run.limits) {
+    const rlimit limit{most, most};
+    setrlimit(resource, &limit);
   }
-  if (run.address_limit) {
-    const rlimit limit{*run.address_limit, *run.address_limit};
-    setrlimit(RLIMIT_AS, &limit);
-  }
-  if (run.thread_limit) {
-    // The limit is of a user, and not of root; nobody else runs as this one.
-    const rlimit limit{*run.thread_limit, *run.thread_limit};
-    setrlimit(RLIMIT_NPROC, &limit);
-    if (getuid() == 0 && setuid(65'533) != 0) _exit(126);
-  }
+  // The limit of threads is of a user, and not of root; nobody else runs as this one.
+  if (run.limits.contains(RLIMIT_NPROC) && getuid() == 0 && setuid(65'533) != 0) _exit(126);
   std::vector<char*> arguments{const_cast<char*>("photile")};
   for (const auto& argument : run.arguments) {
     arguments.push_back(const_cast<char*>(argument.c_str()));

@@ -1,13 +1,13 @@
 // Runs the command `photile` as a child process and keeps what it printed.
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -46,9 +46,7 @@ struct Run {
   bool terminal = false;                           ///< standard error is a terminal, 100 columns
   std::string standard_output;                     ///< a file to write it to; "" = keep it
   bool held_to_permissions = false;                ///< root, too, reads no file that denies it
-  std::optional<std::uint64_t> file_size_limit;    ///< bytes; writes beyond it fail
-  std::optional<std::uint64_t> address_limit;      ///< bytes of address space
-  std::optional<std::uint64_t> thread_limit;       ///< threads that the process may have
+  std::map<decltype(RLIMIT_AS), std::uint64_t> limits;  ///< of setrlimit
   std::string signal_when;  ///< once standard error holds this text, `signal` is sent
   std::chrono::milliseconds signal_delay{0};  ///< after that text, or after the start without one
   int signal = SIGINT;

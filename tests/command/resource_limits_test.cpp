@@ -37,7 +37,7 @@ TEST_CASE("where threads cannot be made, every command says so in one line") {
   CAPTURE(words, limit);
   Run run;
   run.arguments = typed(filled(words, folder).c_str());
-  run.thread_limit = limit;
+  run.limits[RLIMIT_NPROC] = limit;
   CHECK_THAT(only_error(run_photile(run), failure), Contains("threads can be made"));
 }
 
@@ -54,8 +54,19 @@ TEST_CASE("an address space that is too small for a device's compiler is told be
   Run run = small_render(folder);
   run.environment["XDG_CACHE_HOME"] = folder / "cache";  // kernels are to be compiled
   const std::uint64_t megabytes = GENERATE(600, 650, 700, 1'000);
-  run.address_limit = megabytes << 20;
+  run.limits[RLIMIT_AS] = megabytes << 20;
   CHECK_THAT(last_error(run_photile(run), no_device), Contains("ulimit -v"));
+}
+
+TEST_CASE(
+    "files and stacks that are too small for a device's compiler are told before it is asked") {
+  const FileFolder folder;
+  Run run = small_render(folder);
+  run.environment["XDG_CACHE_HOME"] = folder / "cache";
+  run.limits[RLIMIT_FSIZE] = GENERATE(0, 10'000, 100'000, 1'000'000);
+  CHECK_THAT(last_error(run_photile(run), no_device), Contains("ulimit -f"));
+  run.limits = {{RLIMIT_STACK, 128 << 10}};
+  CHECK_THAT(only_error(run_photile(run), failure), Contains("ulimit -s"));
 }
 
 /// glibc reserves 64 MiB for each thread that happens to allocate while another does, else.
@@ -67,7 +78,7 @@ std::uint64_t least_address_space(const FileFolder& folder) {
   constexpr std::uint64_t refused = 800, requested = 1'024, margin = 8;  // MiB
   Run run = small_render(folder);
   run.environment["MALLOC_ARENA_MAX"] = one_arena;
-  run.address_limit = refused << 20;
+  run.limits[RLIMIT_AS] = refused << 20;
   const std::string line = last_error(run_photile(run), no_device);
   CAPTURE(line);
   const std::size_t number = line.find_first_of("0123456789");
@@ -82,7 +93,7 @@ Outcome render_in_least_address_space(const FileFolder& folder, const std::strin
   run.arguments = typed("render", write_box(folder), "-q -o", folder / "out.png",
                         "--size 16x12 --set light_map_rays=0 --photons", photons);
   run.environment["MALLOC_ARENA_MAX"] = one_arena;
-  run.address_limit = least_address_space(folder);
+  run.limits[RLIMIT_AS] = least_address_space(folder);
   return run_photile(run);
 }
 

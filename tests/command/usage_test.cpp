@@ -189,8 +189,8 @@ TEST_CASE("counts of 64 bits keep every digit") {
 }
 
 TEST_CASE("what is no whole number is no count") {
-  const std::string text = GENERATE("", "k", "-1", "1.5", "1e-3", "nan", "inf", "1e30", "12x",
-                                    " 12", "0x10", "1kk", "18446744073709551616");
+  const std::string text = GENERATE("", "k", "-1", "1.5", "1e-3", "1e-6", "5.0001", "nan", "inf",
+                                    "1e30", "12x", " 12", "0x10", "1kk", "18446744073709551616");
   INFO(text);
   CHECK_FALSE(parse_count(text).has_value());
 }

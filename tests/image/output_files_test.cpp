@@ -46,6 +46,16 @@ TEST_CASE("a device is refused as an output and stays the device it was") {
   }
 }
 
+TEST_CASE("a file that is replaced keeps who may read it") {
+  const TemporaryFolder folder;
+  for (const mode_t mode : {mode_t{0600}, mode_t{0640}, mode_t{0444}, mode_t{0755}}) {
+    write_file(folder / "a.txt", "old");
+    fs::permissions(folder / "a.txt", fs::perms{mode});
+    write_file(folder / "a.txt", "new");
+    CHECK(fs::status(folder / "a.txt").permissions() == fs::perms{mode});
+  }
+}
+
 TEST_CASE("a run removes what killed runs left in the folder, and nothing that is in use") {
   const TemporaryFolder folder;
   // Files that no process holds; the last two names are not of photile's.

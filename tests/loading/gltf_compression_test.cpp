@@ -189,6 +189,28 @@ TEST_CASE("damaged or boundless meshopt data is refused by the view's name") {
   CHECK_THAT(refusal(changed), Catch::Contains("is damaged"));
 }
 
+TEST_CASE("packed bytes that many views name are unpacked once, and unused ones never") {
+  constexpr std::size_t count = 1 << 18, stride = 12;
+  const Sheet sheet;
+  PackedSheet from = packed(sheet);
+  const std::string zeros = packed_vertices(std::vector<float>(3 * count).data(), count, stride);
+  json view = from.document["bufferViews"][0], accessor = from.document["accessors"][0];
+  view["byteLength"] = count * stride, accessor["count"] = count;
+  view["extensions"]["EXT_meshopt_compression"].update(
+      {{"byteOffset", from.buffer.size()}, {"byteLength", zeros.size()}, {"count", count}});
+  for (accessor["bufferView"] = 3; accessor["bufferView"] < 43;  // of 126 MB
+       accessor["bufferView"] = accessor["bufferView"].get<int>() + 1) {
+    from.document["accessors"].push_back(accessor);
+    from.document["bufferViews"].push_back(view);
+  }
+  view["extensions"]["EXT_meshopt_compression"]["byteLength"] = 9;
+  from.document["bufferViews"].push_back(view);
+  from.buffer += zeros;
+  from.document["buffers"][0]["byteLength"] = from.buffer.size();
+  from.document["buffers"][1]["byteLength"] = count * stride;
+  CHECK(load(from.document, from.buffer).vertices == as_it_is(sheet).vertices);
+}
+
 /// The document with a Draco stream of the sheet, of so many bits a coordinate, as its buffer.
 std::pair<json, std::string> draco_sheet(const Sheet& sheet, int bits) {
   draco::TriangleSoupMeshBuilder builder;
@@ -233,8 +255,14 @@ std::pair<json, std::string> draco_sheet(const Sheet& sheet, int bits) {
 TEST_CASE("what Draco packed is the mesh to the bits that it kept") {
   const Sheet sheet;
   const Scene expected = as_it_is(sheet);
-  const auto [document, buffer] = draco_sheet(sheet, 16);
+  auto [document, buffer] = draco_sheet(sheet, 16);
   const Scene scene = load(document, buffer);
+  const json named = document["meshes"][0]["primitives"][0];
+  document["meshes"].push_back(json(document["meshes"][0]));  // that no node places
+  document["meshes"][1]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] =
+      9;
+  for (int i = 0; i < 20; ++i) document["meshes"][0]["primitives"].push_back(named);
+  CHECK(load(document, buffer).vertices == scene.vertices);
   CHECK(scene.report.warnings.empty());
   REQUIRE(scene.triangle_count() == expected.triangle_count());
   CHECK(area_of(scene) == Approx(area_of(expected)).epsilon(1e-4));
@@ -280,6 +308,12 @@ TEST_CASE("damaged Draco data is refused by the mesh's name") {
   json fewer = document;
   fewer["accessors"][0]["count"] = 5;
   CHECK_THAT(refusal(fewer, buffer), Catch::Contains("points of 5"));
+  // What follows the header and the kind of traversal are the numbers of vertices and of faces.
+  const std::size_t counts = 12;
+  REQUIRE(buffer[8] == 1);  // edgebreaker
+  std::string bomb = buffer;
+  bomb.replace(counts, 8, "\x80\x80\x80\x40\xFF\xFF\xFF\x40");
+  CHECK_THAT(refusal(document, bomb), Catch::Contains("larger than"));
   json absent = document;
   absent["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] =
       9;

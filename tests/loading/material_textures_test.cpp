@@ -60,6 +60,15 @@ TEST_CASE("a texture that is a WebP alone is read, as files require by EXT_textu
   CHECK(warns(load_scene(folder.write("scene.gltf", document.dump())), {"no picture"}));
 }
 
+TEST_CASE("one picture under many names is one texture") {
+  const Scene scene = square_with({{9, 9, 9}, {9, 9, 9}, {8, 9, 9}}, [](json& material) {
+    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    material["extensions"]["KHR_materials_specular"] = {{"specularColorTexture", {{"index", 1}}}};
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 2}};
+  });
+  CHECK(scene.textures.size() == 2);
+}
+
 TEST_CASE("specular textures multiply the factor by alpha, the colour by RGB") {
   const Scene scene = square_with({{0, 0, 0, 51}, {255, 0, 255}}, [](json& material) {
     material["extensions"]["KHR_materials_specular"] = {{"specularTexture", {{"index", 0}}},

@@ -181,6 +181,8 @@ TEST_CASE("a PNG header that promises too many pixels is refused before decoding
   const std::filesystem::path file = folder.path / "t.png";
   write_picture<std::uint8_t>(file, 1, 1, 3, {1, 2, 3}, OIIO::TypeDesc::UINT8);
   std::vector<unsigned char> bytes = read_bytes(file);
+  CHECK_THROWS_WITH(pictures::decode_texture("t.png", bytes, pictures::TextureContent::color, 3),
+                    Catch::Contains("1 x 1 texels"));
   // Width 20,000 in the IHDR chunk, and the checksum that makes it a valid header.
   bytes[18] = 0x4E;
   bytes[19] = 0x20;

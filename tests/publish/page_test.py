@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.parse
 
 try:
     import numpy as np
@@ -515,8 +516,13 @@ def check_link(browser, page):
     power, kelvin, stops = browser.run(
         "return [page.lights.states[0].power / room.lights[0].power, page.lights.states[1].kelvin, page.stops]")
     near([power, kelvin, stops], [0.5, 2700, 1.5], 1e-3)
-    browser.open(page, "%7Bdamaged")
-    assert "damaged" in browser.run("return document.getElementById('message').textContent")
+    sound = '{"eye":[2,1.5,3],"look":[0,0,1],"ev":1,"lights":{"left":[1,1,2700]},"hour":null}'
+    for old, new in (("{", "{damaged"), ("[0,0,1]", "[0,0]"), ("1,1,2700", "1e999,1,0"), ("1,1,2700", '"1",1,0'),
+                     ("[1,1,2700]", "null"), ("2700", "[1,1]"), ("2700", "[1,1,1e999]"), ("2700", '"red"'),
+                     ("null", "[1]"), ("null", '["a","b"]'), ("[2,1.5,3]", "[2,1.5,1e300]")):
+        browser.open(page, urllib.parse.quote(sound.replace(old, new, 1)))
+        told = browser.run("return document.getElementById('message').textContent")
+        assert "damaged" in told, (old, new, told)
 
 
 def saved_picture(browser, folder):

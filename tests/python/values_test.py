@@ -32,7 +32,8 @@ def check(field, make):
 
 @pytest.mark.parametrize("name, value", [
     ("diffuse", "red"), ("diffuse", (1, 2)), ("roughness", None), ("interaction", 5),
-    ("opacity", "x"), ("texture", "no"), ("specular", (1e300, 0, 0)),
+    ("opacity", "x"), ("texture", "no"), ("specular", (1e300, 0, 0)), ("roughness", -1), ("roughness", 1.5),
+    ("texture", float("inf")),
 ])
 def test_of_a_material(name, value):
     check("material.*m", lambda: scene(materials=[Material(**{"name": "m", name: value})]))
@@ -49,6 +50,7 @@ def test_of_a_light(name, value):
 @pytest.mark.parametrize("name, value", [
     ("position", (0, 0)), ("target", (1,)), ("up", None), ("up", (0, NAN, 0)),
     ("field_of_view", "x"), ("field_of_view", NAN), ("aspect_ratio", "x"), ("aspect_ratio", NAN),
+    ("position", (10**400, 0, 0)), ("field_of_view", 10**400),
 ])
 def test_of_a_camera(name, value):
     camera = Camera(**{"position": (0, 0, 1), "target": (1, 0, 0), name: value})
@@ -72,6 +74,7 @@ def test_of_a_file(tmp_path, name, value):
     ("photons_emitted", "x"), ("photons_emitted", None), ("photons_emitted", 10**400),
     ("radius", NAN), ("quality", 3), ("size", "x"), ("size", (10**12, 1)),
     ("lumen_per_watt", "x"), ("lumen_per_watt", NAN), ("integrator", 4), ("camera", b"x"),
+    ("seed", "\udcff"), ("seed", np.zeros((2, 2))), ("samples_per_pixel", np.array([["a"]])),
 ])
 def test_of_a_rendering(name, value):
     check(name, lambda: render(**{name: value}))
@@ -80,9 +83,27 @@ def test_of_a_rendering(name, value):
 @pytest.mark.parametrize("name, value", [
     ("rays", "x"), ("rays", 1.5), ("repeats", None), ("maintenance", -5), ("maintenance", 0),
     ("maintenance", NAN), ("lumen_per_watt", NAN), ("points", "x"), ("normals", "x"),
+    ("points", [[1, 2], [3]]), ("points", [[0, 10**400, 0]]), ("normals", [[0, 10**400, 0]]),
 ])
 def test_of_a_measurement(name, value):
     check(name, lambda: measure(**{name: value}))
+
+
+@pytest.mark.parametrize("name, value", [
+    ("corner", "x"), ("corner", (0, NAN, 0)), ("along", (1, 2)), ("across", (0, 10**400, 0)), ("columns", 0),
+    ("columns", NAN), ("rows", None), ("rows", 1.5),
+])
+def test_of_a_grid(name, value):
+    room = {"corner": (0, 0, 0), "along": (1, 0, 0), "across": (0, 1, 0), "columns": 2, "rows": 2}
+    check(name, lambda: photile.grid(**{**room, name: value}))
+
+
+def test_places_beyond_any_scene_are_refused():
+    for far in (1e13, 1e30, 1e300):
+        check("no place", lambda: measure(points=[[0, far, 0]]))
+        check("no place", lambda: scene(cameras=[Camera((0, far, 0), (1, 0, 0))]))
+    for pixels in (np.zeros((2, 2, 4), np.uint8), np.zeros((2, 2), np.uint8), np.zeros((2, 2, 3))):
+        check("pixels", lambda: photile.png_of(pixels))
 
 
 def test_of_surroundings():
@@ -110,6 +131,7 @@ def test_of_a_scene():
     check("triangles", lambda: photile.Scene("x", lights=[LAMP]))
     check("unit", lambda: scene(unit=3))
     check("lights", lambda: scene(lights=[3]))
+    check("triangle_materials", lambda: scene(triangle_materials=[[1, 2], [3]]))
 
 
 def test_numbers_of_numpy_are_numbers():

@@ -36,6 +36,21 @@ std::filesystem::path texture_file(const std::filesystem::path& file, std::uint3
   return beside(file, fmt::format("colour{:02}.png", texture));
 }
 
+/// The name of a file beside a glTF file as a URI, in which other bytes than these are escaped.
+std::string uri_of(const std::filesystem::path& file) {
+  constexpr std::string_view unreserved =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
+  std::string uri;
+  for (const char byte : file.filename().string()) {
+    if (unreserved.find(byte) != std::string_view::npos) {
+      uri += byte;
+    } else {
+      uri += fmt::format("%{:02X}", static_cast<unsigned char>(byte));
+    }
+  }
+  return uri;
+}
+
 /// Textures of base colours, each once, ascending.
 std::vector<std::uint32_t> textures_of(const Scene& scene) {
   std::vector<std::uint32_t> textures;
@@ -128,7 +143,7 @@ class Document {
       OutputFile picture(own);
       image::encode_png(picture, texture.width(), texture.height(), texels);
       picture.commit();
-      json_["images"].push_back({{"uri", own.filename().string()}});
+      json_["images"].push_back({{"uri", uri_of(own)}});
     }
     json_["textures"].push_back({{"source", json_["images"].size() - 1}});
   }
@@ -142,7 +157,7 @@ class Document {
       write_binary();
     } else {
       const std::filesystem::path buffer = beside(file_, "bin");
-      json_["buffers"][0]["uri"] = buffer.filename().string();
+      json_["buffers"][0]["uri"] = uri_of(buffer);
       write_file(buffer, buffer_);
       const std::string text = json_text(json_);
       output_.write(text.data(), text.size());
@@ -265,7 +280,7 @@ void write_baked(const std::filesystem::path& file, const Scene& scene, const Ba
     const MixedLight& light = mix.lights[i];
     write_layer(layer_file(file, i), baked, i, mix);
     layers.push_back({{"light", light.name},
-                      {"uri", layer_file(file, i).filename().string()},
+                      {"uri", uri_of(layer_file(file, i))},
                       {"texCoord", 1},
                       {"power", light.power},
                       {"unit", symbol_of(light.unit)},

@@ -23,6 +23,7 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
+#include "common/process_limits.hpp"
 #include "device/program.hpp"
 #include "photile/errors.hpp"
 
@@ -200,6 +201,7 @@ int run_command_line(int argument_count, const char* const* arguments) {
   end_where_a_compiler_aborts();
   std::signal(SIGPIPE, SIG_IGN);  // a reader that closes the pipe early does not end the rendering
   try {
+    require_stack();
     join_processes({arguments, static_cast<std::size_t>(argument_count)});
     CLI::App photile("Photon mapping on OpenCL devices, a layer of the picture per light.",
                      "photile");

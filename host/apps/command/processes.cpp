@@ -15,10 +15,12 @@
 #include <thread>
 
 #include "command/command_line.hpp"
+#include "common/content_hash.hpp"
 #include "common/module.hpp"
 #include "common/process_limits.hpp"
 #include "mpi_communicator.hpp"
 #include "photile/errors.hpp"
+#include "render/exchange.hpp"
 
 namespace photile::app {
 
@@ -116,6 +118,19 @@ bool names_its_frames(std::span<const char* const> arguments) {
   });
 }
 
+/// Adds the words of the command, without those of what each process may have its own of.
+void add_request(std::span<const char* const> arguments, ContentHash& request) {
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word.starts_with("--device=") || word.starts_with("--threads=")) continue;
+    if (word == "--device" || word == "--threads") {
+      ++i;
+    } else {
+      request.add(std::string(word));
+    }
+  }
+}
+
 }  // namespace
 
 void join_processes(std::span<const char* const> arguments) {
@@ -150,6 +165,9 @@ void join_processes(std::span<const char* const> arguments) {
     if (std::ranges::equal(other, std::as_bytes(std::span(version)))) continue;
     throw UsageError("the processes of one rendering are of several versions of photile");
   }
+  ContentHash request;
+  add_request(arguments, request);
+  require_same(*communicator, request, "options");
 }
 
 Communicator* processes() { return communicator; }

@@ -39,8 +39,8 @@ class ThreadLimit {
 
 /// Finds out whether mpirun or srun has started this process, and if so loads host/cluster. To be
 /// called once, before the command line is read.
-/// Errors: UsageError where it has started several, and this build has no MPI or the launcher
-/// offers none.
+/// Errors: UsageError where it has started several, and this build has no MPI, the launcher offers
+/// none, or not all have the same version and options (but for --device and --threads).
 void join_processes(std::span<const char* const> arguments);
 
 /// Null where this process is on its own.

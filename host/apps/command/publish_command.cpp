@@ -72,6 +72,7 @@ std::vector<std::filesystem::path> files_of(const std::vector<std::string>& outp
                                             const Scene& scene, const LightMix& mix) {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path file : outputs) {
+    if (is_page(file)) publish::check_materials(scene);
     const auto own = is_page(file) ? std::vector{file} : bake::files_of(file, scene, mix);
     files.insert(files.end(), own.begin(), own.end());
   }

@@ -18,9 +18,10 @@ namespace {
 
 /// A number that is whole up to rounding (1.1M is) and fits 64 bits.
 std::optional<std::uint64_t> whole(double number) {
-  const double value = std::round(number * 1e3) / 1e3;
+  const double value = std::round(number);
   constexpr double beyond = 18446744073709551616.0;  // 2^64
-  if (value < 0 || value >= beyond || value != std::floor(value)) return std::nullopt;
+  constexpr double rounding = 1e-12;                 // of a factor such as 1.1M
+  if (!(std::abs(number - value) <= rounding * value) || value >= beyond) return std::nullopt;
   return static_cast<std::uint64_t>(value);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -13,6 +14,7 @@
 #include "common/foreign_text.hpp"
 #include "image/display.hpp"
 #include "loading/surroundings.hpp"
+#include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
 #include "publish/page_template.hpp"
@@ -463,6 +465,13 @@ SkyHours sky_hours(const LightMix& mix, const SkySituation& situation) {
   hours.start_date = situation.time ? static_cast<std::size_t>(situation.time->month - 1) : 5;
   hours.start_time = situation.time ? std::min(2 * situation.time->hour, 47.0) : 24;
   return hours;
+}
+
+void check_materials(const Scene& scene) {
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max() + 1;
+  if (scene.materials.size() <= most) return;
+  throw InputError(fmt::format("{}: {} materials, of which a page holds {}; join equal ones",
+                               scene.source.string(), scene.materials.size(), most));
 }
 
 void write_page(const std::filesystem::path& file, const PublishedRoom& room) {

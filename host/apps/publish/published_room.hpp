@@ -51,6 +51,9 @@ struct PublishedRoom {
   std::string version;
 };
 
+/// Errors: InputError where there are more materials than the vertices of a page can name.
+void check_materials(const Scene& scene);
+
 /// Writes the page. It loads nothing from elsewhere. Errors: OutputError.
 void write_page(const std::filesystem::path& file, const PublishedRoom& room);
 

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,10 +20,13 @@ namespace {
 
 constexpr const char* meshopt = "EXT_meshopt_compression";
 constexpr const char* draco = "KHR_draco_mesh_compression";
+constexpr const char* unpacked_buffer = "unpacked by photile";
 
 /// The bound on the packing of a view: 16 bytes of a vertex take two bits at least, and three
 /// indices of four bytes one byte.
 constexpr std::uint64_t most_packed = 100;
+/// All packed meshes of a file unpack to so many bytes more, which are not worth a check.
+constexpr std::uint64_t unchecked_bytes = 64ull << 20;
 
 template <class Function>
 Function* codec(const char* name) {
@@ -69,14 +75,20 @@ Value value_named(const std::array<std::pair<std::string_view, Value>, count>& v
 
 /// The number of a new buffer with these bytes.
 int add_buffer(tinygltf::Model& model, std::vector<unsigned char> bytes) {
-  model.buffers.emplace_back().data = std::move(bytes);
+  tinygltf::Buffer& buffer = model.buffers.emplace_back();
+  buffer.name = unpacked_buffer;
+  buffer.data = std::move(bytes);
   return static_cast<int>(model.buffers.size()) - 1;
 }
 
+/// Packed bytes that several views or primitives name are unpacked once.
 class Unpacking {
  public:
   Unpacking(tinygltf::Model& model, const reading::ImportContext& context)
-      : model_(model), context_(context) {}
+      : model_(model),
+        context_(context),
+        most_(std::min(limits::max_external_bytes,
+                       unchecked_bytes + most_packed * packed_bytes(model))) {}
 
   void unpack_view(std::size_t number) {
     const tinygltf::Value* const packing =
@@ -101,14 +113,19 @@ class Unpacking {
                            bytes_of(model_, integer_member(*packing, "buffer", -1),
                                     size("byteOffset"), size("byteLength"), use, context_)};
     check_view(view, use);
-    std::vector<unsigned char> bytes(take(view.count * view.stride, use));
-    if (!codec<decltype(photile_unpack_meshopt)>("photile_unpack_meshopt")(view, bytes.data())) {
-      throw context_.error(use + ": what meshopt packed is damaged; export it again");
+    const auto [known, is_new] = views_.try_emplace(
+        {view.packed.data(), view.packed.size(), view.mode, view.filter, view.count, view.stride});
+    if (is_new) {
+      std::vector<unsigned char> bytes(take(view.count * view.stride, use));
+      if (!codec<decltype(photile_unpack_meshopt)>("photile_unpack_meshopt")(view, bytes.data())) {
+        throw context_.error(use + ": what meshopt packed is damaged; export it again");
+      }
+      known->second = add_buffer(model_, std::move(bytes));
     }
     tinygltf::BufferView& unpacked = model_.bufferViews[number];
-    unpacked.byteLength = bytes.size();
+    unpacked.byteLength = view.count * view.stride;
     unpacked.byteOffset = 0;
-    unpacked.buffer = add_buffer(model_, std::move(bytes));
+    unpacked.buffer = known->second;
   }
 
   void unpack_primitive(tinygltf::Primitive& primitive, const std::string& use) {
@@ -118,6 +135,7 @@ class Unpacking {
     const tinygltf::Accessor* const positions = accessor_of(primitive, "POSITION");
     if (positions != nullptr && positions->bufferView >= 0) return;
     context_.progress.throw_if_cancelled();
+    const int packed = integer_member(*packing, "bufferView", -1);
     std::vector<std::string> names;
     std::vector<DracoAttribute> attributes;
     const tinygltf::Value ids =
@@ -132,15 +150,22 @@ class Unpacking {
            std::clamp(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor->type)),
                       1, 16)});
     }
-    const tinygltf::BufferView* const view =
-        element(model_.bufferViews, integer_member(*packing, "bufferView", -1));
+    const tinygltf::BufferView* const view = element(model_.bufferViews, packed);
     if (view == nullptr) {
       throw context_.error(use + ": its Draco data has no buffer view; export it again");
+    }
+    std::vector<std::uint32_t> requested;
+    for (const DracoAttribute& one : attributes) requested.push_back(one.id);
+    const auto [known, is_new] =
+        primitives_.try_emplace({packed, primitive.attributes, std::move(requested)});
+    if (!is_new) {
+      std::tie(primitive.attributes, primitive.indices, primitive.mode) = known->second;
+      return;
     }
     DracoMesh mesh;
     const std::string problem = codec<decltype(photile_unpack_draco)>("photile_unpack_draco")(
         bytes_of(model_, view->buffer, view->byteOffset, view->byteLength, use, context_),
-        attributes, mesh);
+        most_ - taken_, attributes, mesh);
     if (!problem.empty()) {
       throw context_.error(fmt::format("{}: its Draco data is {}; export it again", use, problem));
     }
@@ -162,6 +187,7 @@ class Unpacking {
         mesh.corners.size() * sizeof(std::uint32_t));
     primitive.indices = add_accessor(std::move(corners), {bytes.begin(), bytes.end()}, use);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    known->second = {primitive.attributes, primitive.indices, primitive.mode};
   }
 
  private:
@@ -186,9 +212,11 @@ class Unpacking {
   /// Counts the bytes that files unpack to. Errors: InputError.
   std::uint64_t take(std::uint64_t bytes, const std::string& use) {
     taken_ += bytes;
-    if (taken_ <= limits::max_external_bytes) return bytes;
-    throw context_.error(fmt::format("{}: more than {} GiB of unpacked meshes; split the scene",
-                                     use, limits::max_external_bytes >> 30));
+    if (taken_ <= most_) return bytes;
+    throw context_.error(
+        fmt::format("{}: more than {} MiB of unpacked meshes; the limit for the "
+                    "packed bytes of this file; split the scene",
+                    use, most_ >> 20));
   }
 
   const tinygltf::Accessor* accessor_of(const tinygltf::Primitive& primitive,
@@ -210,8 +238,28 @@ class Unpacking {
 
   tinygltf::Model& model_;
   const reading::ImportContext& context_;
-  std::uint64_t taken_ = 0;
+  std::uint64_t taken_ = 0, most_;
+  std::map<std::tuple<const unsigned char*, std::size_t, MeshoptMode, MeshoptFilter, std::size_t,
+                      std::size_t>,
+           int>
+      views_;  ///< buffers
+  std::map<std::tuple<int, std::map<std::string, int>, std::vector<std::uint32_t>>,
+           std::tuple<std::map<std::string, int>, int, int>>
+      primitives_;  ///< attributes, indices and mode
 };
+
+/// Views of what has elements or pixels.
+std::set<int> used_views(const tinygltf::Model& model) {
+  std::set<int> views;
+  for (const tinygltf::Image& image : model.images) views.insert(image.bufferView);
+  for (const tinygltf::Accessor& accessor : model.accessors) {
+    views.insert(accessor.bufferView);
+    if (!accessor.sparse.isSparse) continue;
+    views.insert(accessor.sparse.indices.bufferView);
+    views.insert(accessor.sparse.values.bufferView);
+  }
+  return views;
+}
 
 /// A member of a member of an object; null where it is missing.
 const nlohmann::json* member(const nlohmann::json& object,
@@ -264,11 +312,23 @@ std::string without_packed_parts(std::string_view json) {
   return changed ? document.dump() : std::string();
 }
 
+std::uint64_t packed_bytes(const tinygltf::Model& model) {
+  std::uint64_t bytes = 0;
+  for (const tinygltf::Buffer& buffer : model.buffers) {
+    if (buffer.name != unpacked_buffer) bytes += buffer.data.size();
+  }
+  return bytes;
+}
+
 void unpack_meshes(tinygltf::Model& model, const reading::ImportContext& context) {
   Unpacking unpacking(model, context);
-  const std::size_t views = model.bufferViews.size();
-  for (std::size_t i = 0; i < views; ++i) unpacking.unpack_view(i);
+  for (const int view : used_views(model)) {
+    if (element(model.bufferViews, view)) unpacking.unpack_view(static_cast<std::size_t>(view));
+  }
+  std::set<std::size_t> placed;
+  for (const tinygltf::Node& node : model.nodes) placed.insert(static_cast<std::size_t>(node.mesh));
   for (std::size_t mesh = 0; mesh < model.meshes.size(); ++mesh) {
+    if (!placed.contains(mesh)) continue;
     for (tinygltf::Primitive& primitive : model.meshes[mesh].primitives) {
       unpacking.unpack_primitive(
           primitive, fmt::format("mesh '{}'", name_of_mesh(model, static_cast<int>(mesh))));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,9 @@ std::string without_packed_parts(std::string_view json);
 /// InputError that names a view or mesh which is damaged; UsageError where photile was built
 /// without the decoders.
 void unpack_meshes(tinygltf::Model& model, const reading::ImportContext& context);
+
+/// Bytes of the buffers of the file: not of those that unpack_meshes has added.
+std::uint64_t packed_bytes(const tinygltf::Model& model);
 
 /// A member of a JSON object: a number, or `fallback` when it is absent or no number.
 double number_member(const tinygltf::Value& object, const std::string& key, double fallback);

@@ -58,12 +58,6 @@ std::uint64_t cost_of_mesh(const tinygltf::Model& model, int mesh, std::uint64_t
   return cost;
 }
 
-std::uint64_t bytes_of_buffers(const tinygltf::Model& model) {
-  std::uint64_t bytes = 0;
-  for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
-  return bytes;
-}
-
 }  // namespace
 
 void check_scene_size(const tinygltf::Model& model, const AccessorReader& accessors,
@@ -73,7 +67,8 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
     const int mesh = visit.source->mesh;
     if (element(model.meshes, mesh)) ++places[static_cast<std::size_t>(mesh)];
   }
-  const std::uint64_t buffer_bytes = bytes_of_buffers(model);
+  std::uint64_t buffer_bytes = 0;
+  for (const tinygltf::Buffer& buffer : model.buffers) buffer_bytes += buffer.data.size();
   std::uint64_t triangles = 0, most = 0;
   int largest = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -93,7 +88,7 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
         triangles, most, places[static_cast<std::size_t>(largest)], name_of_mesh(model, largest),
         limits::max_triangles));
   }
-  const std::uint64_t held = buffer_bytes / least_bytes_per_triangle + model.nodes.size();
+  const std::uint64_t held = packed_bytes(model) / least_bytes_per_triangle + model.nodes.size();
   const std::uint64_t most_placed =
       std::max(limits::unchecked_triangles, held * limits::max_triangle_expansion);
   if (triangles > most_placed) {

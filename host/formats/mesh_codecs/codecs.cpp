@@ -1,9 +1,13 @@
 #include "mesh_codecs/codecs.hpp"
 
 #include <draco/compression/decode.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
+#include <draco/core/varint_decoding.h>
 #include <meshoptimizer.h>
 
 #include <exception>
+#include <type_traits>
 
 namespace photile::gltf {
 namespace {
@@ -44,14 +48,71 @@ bool append_values_of_type(const draco::PointAttribute& attribute, std::size_t p
   }
 }
 
-const char* unpack_draco(std::span<const unsigned char> packed,
+constexpr const char* too_large = "larger than the file's packed meshes may be together";
+
+/// A decoder of Draco's that knows the sizes of what it is to decode and refuses too much of it.
+template <class Decoder>
+class BoundedDecoder : public Decoder {
+ public:
+  explicit BoundedDecoder(std::uint64_t most) : most_(most) {}
+  bool refused() const { return refused_; }
+
+ protected:
+  bool DecodeConnectivity() override {
+    constexpr bool edges = std::is_same_v<Decoder, draco::MeshEdgebreakerDecoder>;
+    // What a face or a point takes while it is decoded, and more of a face for each attribute.
+    constexpr std::uint64_t bytes = 32, bytes_of_attribute = 16;
+    if (this->bitstream_version() < DRACO_BITSTREAM_VERSION(2, 2)) return false;
+    draco::DecoderBuffer ahead = *this->buffer();
+    std::uint32_t first = 0, second = 0;  // of faces and points, or points and faces
+    std::uint8_t attributes = 0;
+    if (!draco::DecodeVarint(&first, &ahead) || !draco::DecodeVarint(&second, &ahead)) return false;
+    if (edges && !ahead.Decode(&attributes)) return false;
+    return is_allowed(bytes * (std::uint64_t{first} + second) +
+                      bytes_of_attribute * attributes * second) &&
+           Decoder::DecodeConnectivity();
+  }
+
+  bool DecodeAllAttributes() override {
+    std::uint64_t bytes = 0;
+    const draco::PointCloud& cloud = *this->point_cloud();
+    for (int i = 0; i < cloud.num_attributes(); ++i) {
+      bytes += static_cast<std::uint64_t>(cloud.attribute(i)->byte_stride());
+    }
+    return is_allowed(bytes * cloud.num_points()) && Decoder::DecodeAllAttributes();
+  }
+
+ private:
+  bool is_allowed(std::uint64_t bytes) {
+    refused_ = bytes > most_;
+    return !refused_;
+  }
+
+  std::uint64_t most_;
+  bool refused_ = false;
+};
+
+/// "", or what is wrong.
+template <class Decoder>
+const char* decode(std::uint64_t most, draco::DecoderBuffer& buffer, draco::Mesh& mesh) {
+  BoundedDecoder<Decoder> decoder(most);
+  const draco::DecoderOptions options;
+  if (decoder.Decode(options, &buffer, &mesh).ok()) return "";
+  return decoder.refused() ? too_large : "damaged, or older than glTF has it";
+}
+
+const char* unpack_draco(std::span<const unsigned char> packed, std::uint64_t most,
                          std::vector<DracoAttribute>& attributes, DracoMesh& mesh) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(packed.data()), packed.size());
-  draco::Decoder decoder;
-  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) return "damaged";
-  const draco::Mesh& found = *decoded.value();
+  draco::DecoderBuffer ahead = buffer;
+  draco::DracoHeader header;
+  if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) return "damaged";
+  draco::Mesh found;
+  const char* const problem = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING
+                                  ? decode<draco::MeshEdgebreakerDecoder>(most, buffer, found)
+                                  : decode<draco::MeshSequentialDecoder>(most, buffer, found);
+  if (*problem != '\0') return problem;
   mesh.points = found.num_points();
   for (draco::FaceIndex face(0); face < found.num_faces(); ++face) {
     for (const draco::PointIndex& point : found.face(face)) mesh.corners.push_back(point.value());
@@ -86,10 +147,10 @@ using namespace photile::gltf;
 }
 
 [[gnu::visibility("default")]] const char* photile_unpack_draco(
-    std::span<const unsigned char> packed, std::vector<DracoAttribute>& attributes,
-    DracoMesh& mesh) {
+    std::span<const unsigned char> packed, std::uint64_t most,
+    std::vector<DracoAttribute>& attributes, DracoMesh& mesh) {
   try {
-    return unpack_draco(packed, attributes, mesh);
+    return unpack_draco(packed, most, attributes, mesh);
   } catch (const std::exception&) {  // no memory, or an array of no such size
     return "larger than the memory, or damaged";
   }

@@ -41,7 +41,8 @@ extern "C" {
 bool photile_unpack_meshopt(const photile::gltf::MeshoptView& view, unsigned char* unpacked);
 
 /// Decodes a triangle mesh and the attributes that are asked for. Returns "", or what is wrong.
-const char* photile_unpack_draco(std::span<const unsigned char> packed,
+///   most   bytes that it may take: those that it says it has are counted before they are unpacked
+const char* photile_unpack_draco(std::span<const unsigned char> packed, std::uint64_t most,
                                  std::vector<photile::gltf::DracoAttribute>& attributes,
                                  photile::gltf::DracoMesh& mesh);
 }

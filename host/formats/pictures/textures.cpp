@@ -62,6 +62,14 @@ class OpenPicture {
   std::unique_ptr<image::EncodedPicture> picture_;
 };
 
+/// Of the textures of a scene together, beyond the expansion of pictures: those of one colour,
+/// which are large and hardly take a byte, are common.
+constexpr std::uint64_t unchecked_texture_bytes = 1ull << 30;
+
+std::uint64_t bytes_of_texels(int width, int height) {
+  return 4 * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+}
+
 std::uint8_t byte_of(float value) {
   const float c = std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, 1.0f);
   return static_cast<std::uint8_t>(c * 255.0f + 0.5f);
@@ -113,9 +121,15 @@ std::vector<std::array<std::uint8_t, 4>> decode(OpenPicture& picture, TextureCon
 }  // namespace
 
 Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes,
-                       TextureContent content) {
+                       TextureContent content, std::uint64_t most_bytes) {
   try {
     OpenPicture picture(name, bytes);
+    if (bytes_of_texels(picture.shape().width, picture.shape().height) > most_bytes) {
+      throw files::ResourceError(
+          fmt::format("{} x {} texels are more than pictures of so few bytes may have together; "
+                      "use smaller ones",
+                      picture.shape().width, picture.shape().height));
+    }
     return Texture(name, picture.shape().width, picture.shape().height, decode(picture, content));
   } catch (const files::ResourceError& error) {
     throw files::ResourceError(fmt::format("texture '{}': {}", name, error.what()));
@@ -219,10 +233,28 @@ std::uint32_t TextureStore::from_memory(const std::string& name,
 }
 
 std::uint32_t TextureStore::add(const Key& key, std::span<const unsigned char> bytes) {
-  scene_.textures.push_back(decode_texture(key.first, bytes, key.second));
-  const auto index = static_cast<std::uint32_t>(scene_.textures.size() - 1);
-  index_.emplace(key, index);
-  return index;
+  ContentHash hash;  // the ending of the name is that of formats without a signature
+  hash.add(std::filesystem::path(key.first).extension().string());
+  hash.add(key.second);
+  hash.add_bytes(bytes.data(), bytes.size());
+  const auto [known, is_new] =
+      of_content_.try_emplace(hash.digest(), static_cast<std::uint32_t>(scene_.textures.size()));
+  if (is_new) {
+    encoded_bytes_ += bytes.size();
+    const std::uint64_t most =
+        unchecked_texture_bytes + limits::max_image_expansion * encoded_bytes_;
+    try {
+      scene_.textures.push_back(
+          decode_texture(key.first, bytes, key.second, most - std::min(most, decoded_bytes_)));
+    } catch (...) {
+      of_content_.erase(known);
+      throw;
+    }
+    const Texture& texture = scene_.textures.back();
+    decoded_bytes_ += bytes_of_texels(texture.width(), texture.height());
+  }
+  index_.emplace(key, known->second);
+  return known->second;
 }
 
 void use_missing_texture_colour(Material& material) {

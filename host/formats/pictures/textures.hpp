@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/content_hash.hpp"
 #include "files/scene_files.hpp"
+#include "photile/limits.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::pictures {
@@ -43,8 +45,10 @@ enum class TextureContent {
 /// decoded. Linear pictures (EXR, HDR) are clamped to [0,1]; colours are encoded as 8-bit sRGB of
 /// Rec.709, all else as it is. `name` names the texture and, by its extension, formats that have no
 /// signature. Errors: ResourceError naming the picture and the reason.
+///   most_bytes   that its texels may take
 Texture decode_texture(const std::string& name, std::span<const unsigned char> bytes,
-                       TextureContent content = TextureContent::color);
+                       TextureContent content = TextureContent::color,
+                       std::uint64_t most_bytes = limits::max_image_bytes);
 
 /// Decodes a picture in floating point without clamping; grey ones have equal channels.
 /// Errors: ResourceError with the reason, also for a picture of integers.
@@ -55,7 +59,7 @@ RadiancePicture decode_radiance(const std::string& name, std::span<const unsigne
 /// ResourceError naming the picture and the reason.
 RadiancePicture decode_rgbd(const std::string& name, std::span<const unsigned char> bytes);
 
-/// The textures of a scene, each decoded once.
+/// The textures of a scene, each decoded once under whatever names.
 class TextureStore {
  public:
   TextureStore(Scene& scene, files::SceneFolder& folder) : scene_(scene), folder_(folder) {}
@@ -75,6 +79,8 @@ class TextureStore {
   Scene& scene_;
   files::SceneFolder& folder_;
   std::map<Key, std::uint32_t> index_;
+  std::map<ContentHash::Digest, std::uint32_t> of_content_;
+  std::uint64_t encoded_bytes_ = 0, decoded_bytes_ = 0;
 };
 
 /// Makes the lack of a texture visible but harmless: a mid-grey Lambertian part.

@@ -141,6 +141,8 @@ OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(fi
     throw OutputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
                                   file.string(), std::strerror(errno)));
   }
+  // Those who cannot read the old one are not to read the new one meanwhile.
+  if (found) ::fchmod(descriptor_, S_IRUSR | S_IWUSR);
 }
 
 OutputFile::~OutputFile() {
@@ -158,6 +160,8 @@ void OutputFile::fail(const std::string& reason) const {
 
 void OutputFile::commit() {
   if (write_error_ != 0) fail("");
+  struct stat replaced {};
+  if (::stat(target_.c_str(), &replaced) == 0) ::fchmod(descriptor_, replaced.st_mode & 0777);
   if (::fsync(descriptor_) != 0) fail(std::strerror(errno));
   // Network file systems report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(std::strerror(errno));

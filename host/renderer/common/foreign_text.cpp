@@ -24,6 +24,23 @@ void for_each_character(std::string_view text, const Visit& visit) {
 /// C0, DEL and C1.
 bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
 
+/// Blanks of any width, with ink or without, that spreadsheets pass over.
+bool is_blank(char32_t code) {
+  return code <= ' ' || is_control(code) || code == 0xA0 || code == 0xAD || code == 0x1680 ||
+         (code >= 0x2000 && code <= 0x200F) || (code >= 0x2028 && code <= 0x202F) ||
+         (code >= 0x205F && code <= 0x206F) || code == 0x3000 || code == 0xFEFF;
+}
+
+/// Whether the first character that is no blank is one of =+-@, also in full width.
+bool begins_formula(std::string_view text) {
+  constexpr char32_t full_width = 0xFEE0;  // more than ASCII
+  char32_t first = 0;
+  for_each_character(text, [&](std::string_view, char32_t code) {
+    if (first == 0 && !is_blank(code)) first = code > full_width ? code - full_width : code;
+  });
+  return first == '=' || first == '+' || first == '-' || first == '@';
+}
+
 }  // namespace
 
 std::size_t utf8_sequence_length(std::string_view text) {
@@ -102,11 +119,11 @@ std::string escaped_xml(std::string_view text) {
 }
 
 std::string csv_field(std::string_view text) {
-  constexpr std::string_view begins_formula = "=+-@\t\r";
-  const bool formula = !text.empty() && begins_formula.find(text.front()) != std::string_view::npos;
   std::string field = utf8_of(text);
-  if (formula) field.insert(field.begin(), '\'');
-  if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
+  if (text.starts_with('\t') || text.starts_with('\r') || begins_formula(text)) {
+    field.insert(field.begin(), '\'');
+  }
+  if (field.find_first_of(",;\"\t\r\n") == std::string::npos) return field;
   std::string quoted = "\"";
   for (const char c : field) {
     if (c == '"') quoted += '"';

@@ -33,8 +33,8 @@ std::string shortened(std::string_view text, std::size_t most);
 /// cannot hold become '?'.
 std::string escaped_xml(std::string_view text);
 
-/// A field as RFC 4180 has it: quoted where it must be. What a spreadsheet would take for a formula
-/// begins with an apostrophe.
+/// A field as RFC 4180 has it: quoted where it must be, also for other separators. What a
+/// spreadsheet would take for a formula, after blanks of any kind, begins with an apostrophe.
 std::string csv_field(std::string_view text);
 
 /// JSON and a line end; strings that are no UTF-8 hold U+FFFD.

@@ -39,6 +39,14 @@ void require_threads(int count) {
                   threads.size(), count, problem));
 }
 
+void require_stack() {
+  constexpr rlim_t least = 1 << 20;  // the compilers of devices use half of it
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least) return;
+  throw Error(fmt::format("a stack has {} kB, and {} are needed; raise the limit (ulimit -s 8192)",
+                          limit.rlim_cur >> 10, least >> 10));
+}
+
 std::uint64_t address_bytes_left() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {

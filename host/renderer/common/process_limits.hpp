@@ -19,6 +19,9 @@ int core_count();
 /// Errors: Error where the system does not let the process have as many threads more.
 void require_threads(int count);
 
+/// Errors: Error where stacks are too small for the code that runs on them.
+void require_stack();
+
 /// A generous bound for the memory of a device's compiler, and of the host beside its buffers.
 inline constexpr std::uint64_t reserved_address_bytes = std::uint64_t{1} << 30;
 

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -186,10 +187,23 @@ void require_address_space() {
                   left >> 20, reserved_address_bytes >> 20));
 }
 
+/// Compilers of devices take a file that they cannot write for a kernel that does not build, or
+/// abort.
+void require_file_size() {
+  constexpr rlim_t least = 16 << 20;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur >= least) return;
+  throw DeviceError(
+      fmt::format("a file may have {} kB, and the compiler of a device writes up to {}; raise the "
+                  "limit (ulimit -f)",
+                  limit.rlim_cur >> 10, least >> 10));
+}
+
 }  // namespace
 
 DeviceList enumerate_devices() {
   require_address_space();
+  require_file_size();
   bound_pocl_threads();
   pocl_work_folder();
   keep_intel_from_vectorizing();

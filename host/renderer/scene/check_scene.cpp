@@ -174,6 +174,10 @@ class SceneCheck {
          !(material.index_of_refraction > 0 && std::isfinite(material.index_of_refraction)))) {
       refuse(scene_, owner + " has a factor that is no number, or glass without a refraction");
     }
+    if (material.roughness < 0 || material.roughness > 1) {
+      refuse(scene_,
+             fmt::format("{} has the roughness {}; it lies in [0, 1]", owner, material.roughness));
+    }
     if (!material.textured() || !scene_.corner_uv.empty()) return;
     const auto user = std::find(scene_.triangle_material.begin(), scene_.triangle_material.end(),
                                 static_cast<std::uint32_t>(index));

@@ -1,9 +1,12 @@
 // Queries of a scene that several folders use.
 #include "scene/scene_queries.hpp"
 
+#include <fmt/format.h>
+
 #include "geometry/box_tree.hpp"
 #include "geometry/radius_range.hpp"
 #include "geometry/triangle_distance.hpp"
+#include "photile/errors.hpp"
 #include "photile/scene.hpp"
 #include "photile/sensors.hpp"
 
@@ -28,7 +31,11 @@ glm::dvec3 direction_in_world(const Scene& scene, const glm::dvec3& direction) {
 }
 
 glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world) {
-  return direction_in_scene(scene, world) - scene.origin;
+  const glm::dvec3 position = direction_in_scene(scene, world) - scene.origin;
+  if (scene::within_limit(position)) return position;
+  throw InputError(
+      fmt::format("({:g}, {:g}, {:g}) is no place within {:g} m of the scene; give another",
+                  world.x, world.y, world.z, limits::max_coordinate));
 }
 
 glm::dvec3 position_in_world(const Scene& scene, const glm::dvec3& position) {

@@ -330,13 +330,28 @@ class Page {
     }));
   }
 
+  /// What `state` has written; throws where it has not.
+  stateOf(text) {
+    const state = JSON.parse(decodeURIComponent(text));
+    const are = (list, count) => list.length === count &&
+        list.every((value) => Number.isFinite(value) && Math.abs(value) <= 1e30);
+    const lights = Object.entries(state.lights ?? {}).map(([name, [power, on, colour]]) => {
+      const sound = are([power], 1) && power >= 0 &&
+          (Array.isArray(colour) ? are(colour, 3) : are([colour ?? 0], 1));
+      if (!sound) throw new Error('light');
+      return {name, power, on: Boolean(on), colour};
+    });
+    const sound = are(state.eye, 3) && are(state.look, 3) && are([state.ev], 1) &&
+        (!state.hour || are(state.hour, 2));
+    if (!sound) throw new Error('numbers');
+    return {...state, lights};
+  }
+
   restore() {
     if (location.hash.length < 2) return;
     let state;
     try {
-      state = JSON.parse(decodeURIComponent(location.hash.slice(1)));
-      const numbers = [...state.eye, ...state.look, state.ev];
-      if (numbers.length !== 7 || !numbers.every(Number.isFinite)) throw new Error('numbers');
+      state = this.stateOf(location.hash.slice(1));
     } catch {
       tell('The link is damaged: this is the room as it was published.');
       return;
@@ -345,15 +360,15 @@ class Page {
     [this.walker.yaw, this.walker.pitch, this.walker.angle] = state.look;
     this.walker.flies = Boolean(state.fly);
     find('#fly').setAttribute('aria-pressed', this.walker.flies);
-    for (const [name, [power, on, colour]] of Object.entries(state.lights ?? {})) {
+    for (const {name, power, on, colour} of state.lights) {
       const i = room.lights.findIndex((light) => light.name === name);
-      if (i < 0 || !(power >= 0)) continue;
-      Object.assign(this.lights.states[i], {power, on: Boolean(on)});
-      if (Array.isArray(colour)) this.lights.states[i].tint = colour.slice(0, 3).map(Number);
+      if (i < 0) continue;
+      Object.assign(this.lights.states[i], {power, on});
+      if (Array.isArray(colour)) this.lights.states[i].tint = colour;
       else if (colour) this.lights.setKelvin(i, clamp(colour, kelvins.low, kelvins.high));
     }
     this.lights.sky.on = Boolean(state.sky ?? 1);
-    if (room.hours && Array.isArray(state.hour)) {
+    if (room.hours && state.hour) {
       this.lights.hour = {date: clamp(Math.round(state.hour[0]), 0, room.hours.dates.length - 1),
                           time: clamp(state.hour[1], 0, room.hours.times.length - 1)};
     }
