@@ -10,8 +10,6 @@
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/light_maps.hpp"
-#include "photile/light_options.hpp"
 #include "photile/light_table.hpp"
 #include "photile/limits.hpp"
 #include "photile/load_scene.hpp"

@@ -16,7 +16,7 @@
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/layered_picture.hpp"
-#include "photile/light_options.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "render/setting.hpp"
 #include "test_scenes.hpp"

@@ -9,7 +9,7 @@
 #include "photile/estimator.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
-#include "photile/light_options.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::publish {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "files/scene_files.hpp"
-#include "photile/light_options.hpp"
+#include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::loading {

@@ -1,5 +1,3 @@
-#include "photile/light_options.hpp"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -12,6 +10,7 @@
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/load_scene.hpp"
 #include "photometry/photometric_file.hpp"
 #include "weather/sky_patches.hpp"
 

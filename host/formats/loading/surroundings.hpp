@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "photile/layered_picture.hpp"
-#include "photile/light_options.hpp"
 #include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "weather/perez_sky.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "photile/light_options.hpp"
+#include "photile/load_scene.hpp"
 
 namespace photile::weather {
 

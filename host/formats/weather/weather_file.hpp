@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "photile/light_options.hpp"
+#include "photile/load_scene.hpp"
 #include "weather/perez_sky.hpp"
 
 namespace photile::weather {

@@ -16,10 +16,10 @@
 #include "cache/tiles.hpp"
 #include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
-#include "photile/light_maps.hpp"
 #include "photile/photons.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
+#include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::trace {
