@@ -27,7 +27,7 @@ PATHS = (("reference", "~[slow]"),)
 MUTANTS = (
     # Light maps
     Mutant("light maps split nothing", "host/renderer/cache/light_maps.cpp",
-           "return high - low > high * (parameters.contrast + noise);", "return false;",
+           "return high - low > high * (parameters_.contrast + noise);", "return false;",
            (("cache", "Cells are split where light varies*"),)),
     Mutant("weights of neighbouring nodes swapped", "host/renderer/cache/tiles.hpp",
            "within.x * (1 - within.y),", "(1 - within.x) * within.y,",
@@ -81,8 +81,8 @@ MUTANTS = (
     Mutant("aimed rays that count as much as others", "host/renderer/trace/hemisphere_rays.cpp",
            "direction, weight * throughput,", "direction, throughput,",
            (("cache", "gathering: rays are aimed*"),)),
-    Mutant("the filter keeps denormal numbers where its thread does", "host/renderer/cache/irradiance_filter.hpp",
-           "const trace::FlushDenormals flush_denormals;", "",
+    Mutant("the filter keeps denormal numbers where its thread does", "host/renderer/cache/irradiance_filter.cpp",
+           "const trace::FlushDenormals flush_denormals;\n    MeanOfPoints mean", "MeanOfPoints mean",
            (("cache", "filter: the same bits whether*"),)),
     Mutant("rays where nodes are few by length, not area", "host/renderer/cache/gathered_nodes.cpp",
            "defaults::few_nodes * spacing * spacing / area", "defaults::few_nodes * spacing / area",
@@ -93,7 +93,7 @@ MUTANTS = (
     Mutant("a filter that tolerates all differences", "host/renderer/cache/irradiance_filter.cpp",
            "(tolerated.errors * tolerated.errors * variance)", "(1e6 * variance)",
            (("cache", "filter: steps*"),)),
-    Mutant("a filter that believes small errors", "host/renderer/cache/irradiance_filter.hpp",
+    Mutant("a filter that believes small errors", "host/renderer/cache/irradiance_filter.cpp",
            "similarity_.compare(own_, other_, tolerated);",
            "similarity_.compare(own_, other_, tolerated); weight *= other_.all().error > 0 ? "
            "std::min(1.0, own_.all().error / other_.all().error) : 1.0;",
