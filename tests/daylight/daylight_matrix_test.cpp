@@ -5,8 +5,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "daylight/annual_daylight.hpp"
+#include "daylight/light_transport.hpp"
+#include "photile/errors.hpp"
 #include "room_with_window.hpp"
 #include "trace/distant_light.hpp"
 #include "validation/analytic_cases.hpp"
@@ -102,9 +105,12 @@ TEST_CASE("all patches together are an even sky through a window") {
 }
 
 TEST_CASE("reflected light adds to what comes straight, as paths find it") {
-  const bool coloured = GENERATE(false, true);
-  const glm::vec3 albedo = coloured ? glm::vec3(0.9f, 0.5f, 0.2f) : glm::vec3(0.6f);
-  Scene scene = Room::builder(diffuse(albedo)).build();
+  // Rays that follow a coat scatter more.
+  const auto [walls, material, tolerance] = GENERATE(table<std::string, Material, double>(
+      {{"grey", diffuse(glm::vec3(0.6f)), 0.025},
+       {"coloured", diffuse(glm::vec3(0.9f, 0.5f, 0.2f)), 0.025},
+       {"coated", glossy(glm::vec3(0.8f), glm::vec3(0.04f), 0.4f), 0.05}}));
+  Scene scene = Room::builder(material).build();
   const auto patches = weather::sky_patches(145);
   Scene even = scene;
   add_environment(even, even_surroundings());
@@ -123,8 +129,8 @@ TEST_CASE("reflected light adds to what comes straight, as paths find it") {
     double all = 0;
     for (std::size_t patch = 0; patch < matrix.patches; ++patch)
       all += matrix.coefficient(i, patch);
-    CAPTURE(i, coloured);
-    CHECK(all == Approx(paths[i]).epsilon(0.025));
+    CAPTURE(i, walls);
+    CHECK(all == Approx(paths[i]).epsilon(tolerance));
     CHECK(double{matrix.relative_error[i]} > 1e-4);
     CHECK(double{matrix.relative_error[i]} < 0.03);
   }
@@ -154,6 +160,54 @@ TEST_CASE("stated errors are the scatter of seeds") {
   const double scatter = std::sqrt((squares / seeds - mean * mean) * seeds / (seeds - 1)) / mean;
   CHECK(std::sqrt(stated) > 0.5 * scatter);
   CHECK(std::sqrt(stated) < 2.5 * scatter);
+}
+
+TEST_CASE("rows of few rays reflect no more light than surfaces do") {
+  const bool coat = GENERATE(true, false);  // or a pane
+  const glm::vec3 walls(0.9f);
+  auto builder = Room::builder(coat ? glossy(walls, glm::vec3(0.04f), 0.5f) : diffuse(walls));
+  const auto& [corner, u, v] = Room::window();
+  if (!coat)
+    builder.quad(corner, corner + u, corner + u + v, corner + v, builder.add(glass(1.5f, true)));
+  Scene scene = builder.build();
+  scene.portals = {Room::window()};
+  const auto patches = weather::sky_patches(145);
+  const Sensor sensor{{2.0, 0.8, 2.5}, {0, 1, 0}};
+  TransportParameters parameters{.rays = 32, .sky = {.max_specular_depth = 8}};
+  parameters.mean_luminance.assign(patches.size() + 1, 1000.0);
+  const RayScene rays(scene);
+  const LightTransport transport = light_transport(
+      rays, std::span(&sensor, 1), weather::PatchFinder(patches, 0), parameters, Progress::none());
+  float most = 0;
+  for (const TransportRow& row : transport.cells) {
+    float sum = 0;
+    for (const auto& entry : row.cells) sum += entry.weight.x;
+    most = std::max(most, sum);
+  }
+  CHECK(most > 0.8f);
+  CHECK(most < (coat ? 0.96f : 0.9001f));  // a coat adds at grazing angles
+}
+
+TEST_CASE("light that does not fade between surfaces is an error") {
+  const auto between_two_cells = [](float reflected) {
+    LightTransport transport{.patches = 1, .batches = 1};
+    const glm::vec3 sky(0.5f);
+    const auto row = [&](std::uint32_t from) {
+      return TransportRow{{{0, sky, sky}}, {{from, 0, glm::vec3(reflected)}}, {sky}};
+    };
+    transport.cells = {row(1), row(0)};
+    transport.sensors = {TransportRow{{}, {{0, 0, glm::vec3(1.0f)}}, {glm::vec3(0.0f)}}};
+    return transport;
+  };
+  for (const float reflected : {0.5f, 0.98f}) {
+    const double truth = 0.5 / (1 - double{reflected});
+    CHECK(lux_of_patches(between_two_cells(reflected)).at(0) == Approx(truth).epsilon(1e-3));
+    CHECK(lux_of_batches(between_two_cells(reflected)).at(0).at(0) == Approx(truth).epsilon(1e-3));
+  }
+  for (const float reflected : {1.0f, 1.01f, 1.5f}) {
+    CHECK_THROWS_WITH(lux_of_patches(between_two_cells(reflected)), Catch::Contains("not fade"));
+    CHECK_THROWS_AS(lux_of_batches(between_two_cells(reflected)), InputError);
+  }
 }
 
 TEST_CASE("a wall without thickness parts light, and a shelf above a floor") {

@@ -203,9 +203,10 @@ def test_the_program_writes_whole_files_and_says_what_is_wrong_in_a_line(record,
         assert done.stderr.startswith("photile.report: error: ") and said in done.stderr
     assert page.read_text() == "before"
     # Without Debian's packages: modules of the standard library alone.
-    done = subprocess.run([sys.executable, "-I", "-S", "-B", FOLDER, results, "-o", page], text=True,
-                          capture_output=True, check=False)
-    assert done.returncode == 1 and "apt-get install python3-jinja2" in done.stderr
+    for more, package in ((("-o", page), "jinja2"), (("--honeybee", tmp_path), "numpy"), (("--ugr-table",), "numpy")):
+        done = subprocess.run([sys.executable, "-I", "-S", "-B", FOLDER, results, *more], text=True,
+                              capture_output=True, check=False)
+        assert done.returncode == 1 and f"apt-get install python3-{package}" in done.stderr
 
 
 def test_a_pdf_is_printed_without_fetching(record):

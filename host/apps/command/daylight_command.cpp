@@ -130,11 +130,9 @@ void write(const DaylightOptions& options, const Scene& scene,
                  .plans = 2 * planes,  // DA and UDI
                  .report = options.report});
   if (options.honeybee.empty()) return;
-  const std::filesystem::path folder = options.honeybee;
-  for (const auto& [name, content] : report::annual_files(results, hours)) {
-    make_folder((folder / name).parent_path());
-    write_file(folder / name, content);
-  }
+  write_honeybee(options.honeybee, [&](const std::filesystem::path& scratch) {
+    return report::annual_record(results, hours, scratch / "values");
+  });
 }
 
 /// The lights of the scene are lamps, those from beyond it are the sky's.
@@ -275,7 +273,10 @@ void run_daylight(DaylightOptions& options) {
   note_places(options.places);
   if (options.blinds_are_scene()) note_input(options.blinds.front());
   if (!options.schedule.empty()) note_input(options.schedule);
-  if (!options.honeybee.empty()) make_folder(options.honeybee);
+  if (!options.honeybee.empty()) {
+    check_honeybee();
+    make_folder(options.honeybee);
+  }
   check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
   check_report(options.report, options.outputs);
 

@@ -7,19 +7,18 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "command/command_line.hpp"
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
-#include "command/report_contents.hpp"
+#include "command/report_program.hpp"
 #include "common/files.hpp"
-#include "common/foreign_text.hpp"
 #include "files/scene_files.hpp"
-#include "glare/ugr_table.hpp"
 #include "loading/light_changes.hpp"
+#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "report/luminaires.hpp"
-#include "report/tables.hpp"
 
 namespace photile::app {
 namespace {
@@ -87,14 +86,47 @@ void print_lamp(const IntensityDistribution& lamp) {
   }
 }
 
-/// The ratings of a lamp of 1000 lm with the same distribution.
-void scale_to_thousand_lumens(double flux, glare::UgrTable& table) {
-  const double change = 8 * std::log10(flux / 1000);
-  for (auto* rows : {&table.crosswise, &table.endwise}) {
-    for (auto& row : *rows) {
-      for (double& value : row) value -= change;
+/// What photile.report makes a UGR table of: intensities by angles in radians, and the opening.
+nlohmann::ordered_json table_record(const IesOptions& options, const IntensityDistribution& lamp) {
+  const PhotometricAxes& axes = lamp.axes();
+  const LuminousOpening& opening = lamp.opening();
+  const auto part = [](const glm::dvec3& direction, const glm::dvec3& axis) {
+    return glm::dot(direction, axis);
+  };
+  std::vector<double> polar, azimuth, candela;
+  for (std::size_t column = 0; column <= lamp.columns(); ++column) {
+    for (std::size_t row = 0; row <= lamp.rows(); ++row) {
+      // A corner of a cell, and the middle of a side of one, which has an azimuth at the pole, too.
+      const std::size_t i = std::min(column, lamp.columns() - 1),
+                        j = std::min(row, lamp.rows() - 1);
+      const double u = column > i ? 1 : 0, v = row > j ? 1 : 0;
+      const auto corner = lamp.in_cell(i, j, u, v);
+      candela.push_back(corner.intensity);
+      if (column == 0) {
+        polar.push_back(std::acos(std::clamp(part(corner.direction, axes.pole), -1.0, 1.0)));
+      }
+      if (row > 0) continue;
+      const glm::dvec3 aside = lamp.in_cell(i, j, u, 0.5).direction;
+      azimuth.push_back(std::atan2(part(aside, axes.quarter), part(aside, axes.zero)));
+      while (column > 0 && azimuth[column] <= azimuth[column - 1])
+        azimuth[column] += 2 * std::numbers::pi;
     }
   }
+  constexpr std::array shapes{"box", "upright cylinder", "cylinder along x", "cylinder along y",
+                              "ellipsoid"};
+  const auto axis = [](const glm::dvec3& v) { return std::array{v.x, v.y, v.z}; };
+  return {{"spacing", options.spacing},
+          {"per_thousand_lumens", options.per_thousand_lumens},
+          {"flux", lamp.flux()},
+          {"axes", {axis(axes.zero), axis(axes.quarter), axis(axes.pole)}},
+          {"polar", polar},
+          {"azimuth", azimuth},
+          {"intensity", candela},
+          {"opening",
+           {{"x", opening.x},
+            {"y", opening.y},
+            {"heights", opening.heights},
+            {"shape", shapes.at(static_cast<std::size_t>(opening.shape))}}}};
 }
 
 void run_ies(const IesOptions& options) {
@@ -102,21 +134,18 @@ void run_ies(const IesOptions& options) {
   check_outputs(std::vector<std::filesystem::path>(options.outputs.begin(), options.outputs.end()));
   files::Warnings warnings;
   const IntensityDistribution lamp = loading::read_user_photometry(options.file, warnings);
+  const bool luminous = lamp.opening().projected_area(glm::normalize(glm::dvec3(1, 1, -1))) > 0;
+  const std::string table = options.ugr_table && luminous
+                                ? write_ugr_table(table_record(options, lamp), options.outputs)
+                                : std::string();
   print_lamp(lamp);
   for (const auto& line : warnings.lines()) std::cerr << "warning: " << line << '\n';
-  if (!options.ugr_table) return;
-  if (!(lamp.opening().projected_area(glm::normalize(glm::dvec3(1, 1, -1))) > 0)) {
+  if (options.ugr_table && !luminous) {
     throw InputError(fmt::format(
         "{}: states no luminous opening, so no luminance is known; get it again from the maker",
         options.file));
   }
-  glare::UgrTable table = glare::ugr_table(lamp, options.spacing);
-  if (options.per_thousand_lumens) scale_to_thousand_lumens(lamp.flux(), table);
-  write_results(options.outputs,
-                {.csv = [&] { return report::ugr_table_csv(table); },
-                 .json = [&] { return json_text(report::ugr_table_json(table)); }});
-  for (const auto& line : report::ugr_table_lines(table, !options.per_thousand_lumens))
-    std::cout << line << '\n';
+  std::cout << table;
 }
 
 }  // namespace

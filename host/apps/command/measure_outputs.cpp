@@ -155,6 +155,7 @@ MeasureOutputs::MeasureOutputs(MeasureOutputOptions& options)
   std::vector<std::filesystem::path> files(options.outputs.begin(), options.outputs.end());
   if (!options.honeybee.empty()) {
     const std::filesystem::path folder = options.honeybee;
+    check_honeybee();
     make_folder(folder);
     for (const char* name : report::honeybee_tables) files.push_back(folder / name);
   }
@@ -204,10 +205,8 @@ Json MeasureOutputs::record_of(const measuring::Measurement& measurement,
 
 void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
   if (!options_.honeybee.empty()) {
-    const std::filesystem::path folder = options_.honeybee;
-    for (const auto& [name, text] : report::honeybee_files(measurement)) {
-      write_file(folder / name, text);
-    }
+    write_honeybee(options_.honeybee,
+                   [&](const auto&) { return report::honeybee_record(measurement); });
   }
   std::vector<measuring::SensorGrid> grids;
   for (const auto& values : measurement) grids.push_back(values.grid);

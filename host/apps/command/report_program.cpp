@@ -34,8 +34,8 @@ fs::path program_folder() {
     if (fs::exists(folder / "__main__.py")) return folder;
   }
   throw OutputError((here / PHOTILE_INSTALLED_REPORT).lexically_normal().string() +
-                    ": what draws reports is missing; install photile again, or write .csv or "
-                    ".json");
+                    ": the program that writes reports, plans, UGR tables and Honeybee's files is "
+                    "missing; install photile again");
 }
 
 /// Debian's Python, which has the packages, or the first of the path. Isolated: neither the working
@@ -72,8 +72,8 @@ std::optional<int> run_python(std::vector<std::string> arguments, const fs::path
   posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
     throw OutputError(
-        "there is no Python, which draws reports: apt-get install python3-jinja2 "
-        "python3-contourpy; or write .csv or .json");
+        "there is no Python, which writes reports, plans, UGR tables and Honeybee's files: apt-get "
+        "install python3-jinja2 python3-contourpy");
   }
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
@@ -82,13 +82,12 @@ std::optional<int> run_python(std::vector<std::string> arguments, const fs::path
 }
 
 /// Runs photile.report on a record. Errors: what it says, as an error of its kind; Interrupted.
-void run_report(const nlohmann::ordered_json& record, const ReportOptions& options,
-                const fs::path& folder, std::vector<std::string> arguments) {
+///   folder   for files on the way
+void run_program(const nlohmann::ordered_json& record, const fs::path& folder,
+                 std::vector<std::string> arguments) {
   const fs::path results = folder / "results.json", errors = folder / "errors";
   write_file(results, json_text(record, -1));
   arguments.push_back(results.string());
-  if (!options.templates.empty())
-    arguments.insert(arguments.end(), {"--template", options.templates});
   const std::optional<int> code = run_python(std::move(arguments), errors);
   if (code == 0) return;
   throw_if_stop_requested();
@@ -98,10 +97,15 @@ void run_report(const nlohmann::ordered_json& record, const ReportOptions& optio
   std::string said = lines.empty() ? "" : one_line(lines.back());
   const std::string head = "photile.report: error: ";
   if (said.starts_with(head)) said.erase(0, head.size());
-  if (said.empty()) said = "photile.report was ended; try again, or write .csv or .json";
+  if (said.empty()) said = "photile.report was ended; try again";
   if (code == static_cast<int>(ExitCode::usage)) throw UsageError(said);
   if (code == static_cast<int>(ExitCode::input)) throw InputError(said);
   throw OutputError(said);
+}
+
+void add_template(const ReportOptions& options, std::vector<std::string>& arguments) {
+  if (options.templates.empty()) return;
+  arguments.insert(arguments.end(), {"--template", options.templates});
 }
 
 }  // namespace
@@ -146,8 +150,9 @@ void check_report(ReportOptions& options, const std::vector<std::string>& files)
     arguments.insert(arguments.end(), {"-o", "report" + fs::path(file).extension().string()});
   }
   const report::ScratchFolder folder;
-  run_report({{"report", {{"language", options.language}, {"included", options.included}}}},
-             options, folder.path(), std::move(arguments));
+  add_template(options, arguments);
+  run_program({{"report", {{"language", options.language}, {"included", options.included}}}},
+              folder.path(), std::move(arguments));
 }
 
 void draw_report(const nlohmann::ordered_json& record, const ReportOptions& options,
@@ -162,12 +167,40 @@ void draw_report(const nlohmann::ordered_json& record, const ReportOptions& opti
   for (const std::string& file : drawn) {
     arguments.insert(arguments.end(), {"-o", scratch(file).string()});
   }
-  run_report(record, options, folder.path(), std::move(arguments));
+  add_template(options, arguments);
+  run_program(record, folder.path(), std::move(arguments));
   for (const std::string& file : drawn) {
     const std::size_t count = ends_in(file, ".svg") ? plans : 1;
     const auto from = plan_names(scratch(file), count), to = plan_names(file, count);
     for (std::size_t i = 0; i < count; ++i) write_file(to[i], read_own_text(from[i]));
   }
+}
+
+std::string write_ugr_table(const nlohmann::ordered_json& luminaire,
+                            const std::vector<std::string>& files) {
+  const report::ScratchFolder folder;
+  const auto scratch = [&](const std::string& ending) {
+    return (folder.path() / ("table" + ending)).string();
+  };
+  run_program(
+      luminaire, folder.path(),
+      {"--ugr-table", "-o", scratch(".txt"), "-o", scratch(".csv"), "-o", scratch(".json")});
+  for (const std::string& file : files) {
+    write_file(file, read_own_text(scratch(lower(fs::path(file).extension().string()))));
+  }
+  return read_own_text(scratch(".txt"));
+}
+
+void check_honeybee() {
+  if (!leads()) return;
+  const report::ScratchFolder folder;
+  run_program({}, folder.path(), {"--check", "--honeybee", folder.path().string()});
+}
+
+void write_honeybee(const fs::path& folder,
+                    const std::function<nlohmann::ordered_json(const fs::path&)>& record_of) {
+  const report::ScratchFolder scratch;
+  run_program(record_of(scratch.path()), scratch.path(), {"--honeybee", folder.string()});
 }
 
 std::optional<measuring::Judgement> highest_glare(const nlohmann::ordered_json& included,

@@ -1,8 +1,10 @@
-// Reports and plans are drawn by photile.report, a Python program beside the command
-// (python/photile/report), from the JSON of results.
+// Reports, plans, UGR tables and Honeybee's files are made of the JSON of results by
+// photile.report, a Python program beside the command (python/photile/report).
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -42,6 +44,21 @@ void draw_report(const nlohmann::ordered_json& record, const ReportOptions& opti
 
 /// The file of each of several plans: numbered where they are more than one.
 std::vector<std::filesystem::path> plan_names(const std::filesystem::path& file, std::size_t plans);
+
+/// Has photile.report make the UGR table of a luminaire, and writes it to `files`, .csv or .json.
+/// Returns it in lines for people. Errors: as above, and those of write_file; Interrupted.
+std::string write_ugr_table(const nlohmann::ordered_json& luminaire,
+                            const std::vector<std::string>& files);
+
+/// Makes sure that Honeybee's files can be written. Errors: OutputError that names what is missing.
+void check_honeybee();
+
+/// Has photile.report write Honeybee's files into a folder, which is there. Errors: as above;
+/// Interrupted.
+///   record_of   makes what they are made of, and may write more into the folder that it is given
+void write_honeybee(
+    const std::filesystem::path& folder,
+    const std::function<nlohmann::ordered_json(const std::filesystem::path& scratch)>& record_of);
 
 /// The highest UGR of all observers that the included results have, where one is required.
 /// The results have been checked.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/files.hpp"
 #include "daylight/light_transport.hpp"
 #include "trace/ray_query.hpp"
 
@@ -94,8 +95,10 @@ DaylightMatrix daylight_matrix(const Scene& scene, std::span<const Sensor> senso
   DaylightMatrix matrix;
   matrix.sensors = sensors.size();
   matrix.patches = transport.patches;
-  matrix.from_sky = lux_of_patches(transport);
-  matrix.relative_error = relative_errors(lux_of_batches(transport));
+  about_file(scene.source, [&] {
+    matrix.from_sky = lux_of_patches(transport);
+    matrix.relative_error = relative_errors(lux_of_batches(transport));
+  });
   matrix.straight.assign(matrix.from_sky.size(), 0.0f);
   const auto maintenance = static_cast<float>(measuring.maintenance);
   for (std::size_t sensor = 0; sensor < matrix.sensors; ++sensor) {

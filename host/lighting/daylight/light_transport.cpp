@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <memory>
+#include <optional>
 
 #include "daylight/surface_cells.hpp"
 #include "trace/opaque_bsdf.hpp"
@@ -14,6 +15,31 @@
 #include "trace/scatter.hpp"
 
 namespace photile::daylight {
+namespace {
+
+/// Directions of a lobe of which a ray takes one.
+constexpr int lobe_candidates = 8;
+
+/// A direction in proportion to what the lobe reflects from it: resampled among candidates (Talbot
+/// 2005).
+std::optional<glm::vec3> lobe_direction(const trace::OpaqueBsdf& lobe,
+                                        const trace::RandomStream& random, int depth) {
+  std::optional<glm::vec3> chosen;
+  float sum = 0;
+  for (int i = 0; i < lobe_candidates; ++i) {
+    const trace::RandomBlock numbers = random.block(
+        trace::Purpose::eye_scattering, static_cast<std::uint32_t>(depth * lobe_candidates + i));
+    const auto candidate = lobe.sample(numbers);
+    const float density = candidate ? lobe.density(*candidate) : 0.0f;
+    if (!(density > 0.0f)) continue;
+    const float reflects = trace::largest(lobe.reflected(*candidate)) / density;
+    sum += reflects;
+    if (numbers.uniform(trace::choice_word) * sum < reflects) chosen = candidate;
+  }
+  return chosen;
+}
+
+}  // namespace
 
 SkyRays::SkyRays(const RayScene& rays, const weather::PatchFinder& patches,
                  const SkyRayParameters& parameters)
@@ -40,7 +66,8 @@ void SkyRays::follow(trace::RayOrigin origin, glm::vec3 direction, glm::vec3 wei
     distance += glm::distance(from, point.position);
     const Material& material = trace::material_of(scene, point);
     if (material.interaction != Interaction::opaque) {
-      const trace::RandomBlock numbers = random.block(trace::Purpose::eye_scattering, depth);
+      const trace::RandomBlock numbers =
+          random.block(trace::Purpose::eye_scattering, depth * lobe_candidates);
       const trace::Scattered scattered =
           trace::scatter_specular(scene, point, direction, numbers.uniform(trace::choice_word));
       straight = straight && scattered.direction == direction && material.thin;
@@ -50,22 +77,21 @@ void SkyRays::follow(trace::RayOrigin origin, glm::vec3 direction, glm::vec3 wei
     } else {
       const trace::OpaqueBsdf bsdf(scene, point, direction);
       const float share = bsdf.lobe_fraction();
-      const trace::RandomBlock numbers = share > 0.0f
-                                             ? random.block(trace::Purpose::eye_scattering, depth)
-                                             : trace::RandomBlock({});
-      if (!(share > 0.0f) || !(numbers.uniform(trace::choice_word) < share)) {
-        weight *= factor * bsdf.base_reflectance() / (1.0f - share);
+      if (!(share > 0.0f) || !(random.block(trace::Purpose::eye_scattering, depth * lobe_candidates)
+                                   .uniform(trace::choice_word) < share)) {
+        const glm::vec3 reflects = factor * bsdf.base_reflectance() / (1.0f - share);
+        weight *= reflects;
         if (weight != glm::vec3(0.0f)) {
-          seen.surfaces.push_back({point, batch, distance, weight * glm::one_over_pi<float>()});
+          seen.surfaces.push_back({point, batch, distance, trace::largest(reflects),
+                                   weight * glm::one_over_pi<float>()});
         }
         return;
       }
       trace::OpaqueBsdf lobe = bsdf;
       lobe.keep_lobe();
-      const auto next = lobe.sample(numbers);
-      const float density = next ? lobe.density(*next) : 0.0f;
-      if (!(density > 0.0f)) return;
-      weight *= lobe.reflected(*next) / (density * share);
+      const auto next = lobe_direction(lobe, random, depth);
+      if (!next) return;
+      weight *= bsdf.lobe_reflectance() / share;
       straight = false;
       direction = *next;
     }
@@ -168,6 +194,17 @@ void join_cells(TransportRow& row) {
   row.cells.shrink_to_fit();
 }
 
+/// What a cell gets from cells is no more than surface reflects: few rays may by chance all go
+/// where the weight of each is high.
+void keep_energy(const VisibleByRays& seen, TransportRow& row) {
+  float most = 0;
+  for (const VisibleSurface& end : seen.surfaces) most = std::max(most, end.reflectance);
+  glm::vec3 sum(0.0f);
+  for (const TransportRow::OfCell& entry : row.cells) sum += entry.weight;
+  const glm::vec3 kept = glm::min(glm::vec3(1.0f), most / glm::max(sum, glm::vec3(1e-30f)));
+  for (TransportRow::OfCell& entry : row.cells) entry.weight *= kept;
+}
+
 bool is_coloured(const glm::vec3& weight) {
   const float most = std::max({weight.x, weight.y, weight.z});
   return most - std::min({weight.x, weight.y, weight.z}) > 1e-4f * most;
@@ -259,7 +296,10 @@ class Tracer {
         for (const auto& patch : rows[begin + i].patches)
           transport_.coloured = transport_.coloured || is_coloured(patch.all);
       }
-      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { join_cells(rows[begin + i]); });
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        join_cells(rows[begin + i]);
+        if (&rows == &transport_.cells) keep_energy(seen[i], rows[begin + i]);
+      });
       if (first_number == 0) progress_.advance(count);
     }
   }

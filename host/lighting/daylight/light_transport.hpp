@@ -30,7 +30,8 @@ struct VisiblePatch {
 struct VisibleSurface {
   trace::SurfacePoint point;
   std::uint32_t batch;
-  float distance;  ///< metres along the ray
+  float distance;     ///< metres along the ray
+  float reflectance;  ///< all that the surface reflects towards the ray, of the brightest channel
   glm::vec3 weight;
 };
 
@@ -47,7 +48,9 @@ struct SkyRayParameters {
 
 /// Half of a point's rays follow its cosine (the response of a sensor), half go through portals;
 /// each counts by the density of both together (the balance heuristic of Veach and Guibas, 1995).
-/// They go on by mirrors, glass and glossy lobes, and end on a surface's base or in the sky.
+/// They go on by mirrors, glass and glossy lobes, and end on a surface's base or in the sky. At a
+/// surface each ray keeps what the surface reflects, whichever way it goes: with weights that
+/// differ by direction, rows of few rays would reflect more light than they get.
 class SkyRays {
  public:
   /// References are kept.
@@ -83,8 +86,10 @@ struct TransportRow {
     std::uint32_t cell, batch;
     glm::vec3 weight;  ///< lux for each lux on the cell
   };
-  std::vector<OfPatch> patches;     ///< ascending
-  std::vector<OfCell> cells;        ///< by cell, then batch
+  std::vector<OfPatch> patches;  ///< ascending
+  /// By cell, then batch. Those of a cell's row sum to no more than the reflectance of the
+  /// brightest surface that its rays end on.
+  std::vector<OfCell> cells;
   std::vector<glm::vec3> mean_sky;  ///< lux under the mean sky, by batch
 };
 
@@ -109,9 +114,11 @@ LightTransport light_transport(const RayScene& rays, std::span<const Sensor> sen
                                const TransportParameters& parameters, Progress& progress);
 
 /// Lux for each cd/m2, by sensor, then patch: solved for all patches at once.
+/// Errors: InputError where light between cells does not fade.
 std::vector<float> lux_of_patches(const LightTransport& transport);
 
-/// Lux under the mean sky, by batch, then sensor: each from the rays of one batch alone.
+/// Lux under the mean sky, by batch, then sensor: what the rays of one batch alone find, to first
+/// order in their difference from all rays. Errors: as above.
 std::vector<std::vector<double>> lux_of_batches(const LightTransport& transport);
 
 }  // namespace photile::daylight

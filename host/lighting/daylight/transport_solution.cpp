@@ -1,4 +1,5 @@
 // The system of light_transport.hpp, solved by Gauss and Seidel's sweeps.
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <cmath>
 
 #include "daylight/light_transport.hpp"
+#include "photile/errors.hpp"
 #include "photile/scene.hpp"
 #include "trace/ray_query.hpp"
 
@@ -14,8 +16,30 @@ namespace {
 
 /// Columns that are solved together: the light of some thousand cells under them fits a cache.
 constexpr std::size_t columns_at_once = 64;
-constexpr int most_sweeps = 256;
-constexpr double change_at_end = 5e-4;  ///< of the sum of all cells
+constexpr int most_sweeps = 2048;
+constexpr double left_at_end = 5e-4;  ///< of the sum of all cells
+
+/// Of the cells in one sweep, summed.
+struct Change {
+  double of = 0, all = 0;
+};
+
+/// Sweeps until all that further ones would change is little, if each changes as much less as the
+/// last one did. Errors: InputError where that is not reached.
+template <class Sweep>
+void sweep_until_settled(const Sweep& sweep) {
+  double before = 0;
+  for (int i = 0; i < most_sweeps; ++i) {
+    const Change change = sweep();
+    const double fades = change.of / before;
+    if (change.of == 0 || change.of * fades <= left_at_end * (1 - fades) * change.all) return;
+    before = change.of;
+  }
+  throw InputError(fmt::format(
+      "light between the surfaces does not fade within {} reflections: a daylight study needs "
+      "reflectances below 1; make white materials darker",
+      most_sweeps));
+}
 
 /// Rows of one channel, without their batches.
 struct SparseRows {
@@ -38,6 +62,13 @@ SparseRows cells_of(const std::vector<TransportRow>& rows, int channel) {
     sparse.first.push_back(sparse.column.size());
   }
   return sparse;
+}
+
+double from_cells(const SparseRows& rows, std::size_t row, const std::vector<double>& cells) {
+  double sum = 0;
+  for (std::size_t i = rows.first[row]; i < rows.first[row + 1]; ++i)
+    sum += double{rows.weight[i]} * cells[rows.column[i]];
+  return sum;
 }
 
 /// For each patch its column among those that give any light, or `none`.
@@ -82,8 +113,8 @@ class BlockSolver {
     for (std::size_t cell = 0; cell < count; ++cell)
       add_patches(transport_.cells[cell], &cells_[cell * columns_at_once]);
     const std::vector<float> straight = cells_;
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      double change = 0, all = 0;
+    sweep_until_settled([&] {
+      Change change;
       for (std::size_t cell = 0; cell < count; ++cell) {
         float sum[columns_at_once];
         std::copy_n(&straight[cell * columns_at_once], columns_at_once, sum);
@@ -95,11 +126,11 @@ class BlockSolver {
           total += sum[c];
           now[c] = sum[c];
         }
-        change += double{changed};
-        all += double{total};
+        change.of += double{changed};
+        change.all += double{total};
       }
-      if (change <= change_at_end * all) return;
-    }
+      return change;
+    });
   }
 
   /// Adds `share` of what a sensor has to its row of all patches.
@@ -128,30 +159,30 @@ class BlockSolver {
   std::vector<float> cells_;
 };
 
-/// Lux of the sensors under the mean sky by the rays of one batch, in one channel.
-std::vector<double> of_batch(const LightTransport& transport, std::uint32_t batch, int channel) {
-  const double batches = transport.batches;
-  std::vector<double> cells(transport.cells.size(), 0.0);
-  const auto lux = [&](const TransportRow& row) {
-    double sum = double{row.mean_sky[batch][channel]};
-    for (const auto& entry : row.cells) {
-      if (entry.batch == batch) sum += double{entry.weight[channel]} * cells[entry.cell];
-    }
-    return batches * sum;
-  };
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    double change = 0, all = 0;
+/// What cells have that get `straight` light and light each other.
+std::vector<double> lit_cells(const SparseRows& among_cells, const std::vector<double>& straight) {
+  std::vector<double> cells = straight;
+  sweep_until_settled([&] {
+    Change change;
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-      const double now = lux(transport.cells[cell]);
-      change += std::abs(now - cells[cell]);
-      all += now;
+      const double now = straight[cell] + from_cells(among_cells, cell, cells);
+      change.of += std::abs(now - cells[cell]);
+      change.all += std::abs(now);
       cells[cell] = now;
     }
-    if (change <= change_at_end * all) break;
+    return change;
+  });
+  return cells;
+}
+
+/// Lux of a row under the mean sky by the rays of one batch, where cells are known.
+double lux_of_batch(const LightTransport& transport, const TransportRow& row, std::uint32_t batch,
+                    int channel, const std::vector<double>& cells) {
+  double sum = double{row.mean_sky[batch][channel]};
+  for (const auto& entry : row.cells) {
+    if (entry.batch == batch) sum += double{entry.weight[channel]} * cells[entry.cell];
   }
-  std::vector<double> sensors;
-  for (const TransportRow& row : transport.sensors) sensors.push_back(lux(row));
-  return sensors;
+  return transport.batches * sum;
 }
 
 /// The weight of a channel in the luminance; 1 where channels are alike.
@@ -193,13 +224,32 @@ std::vector<float> lux_of_patches(const LightTransport& transport) {
 std::vector<std::vector<double>> lux_of_batches(const LightTransport& transport) {
   std::vector<std::vector<double>> lux(static_cast<std::size_t>(transport.batches),
                                        std::vector<double>(transport.sensors.size(), 0.0));
-  tbb::parallel_for(std::size_t{0}, lux.size(), [&](std::size_t batch) {
-    for (int channel = 0; channel < (transport.coloured ? 3 : 1); ++channel) {
-      const double share = channel_fraction(transport, channel);
-      const auto found = of_batch(transport, static_cast<std::uint32_t>(batch), channel);
-      for (std::size_t i = 0; i < found.size(); ++i) lux[batch][i] += share * found[i];
+  for (int channel = 0; channel < (transport.coloured ? 3 : 1); ++channel) {
+    const double share = channel_fraction(transport, channel);
+    const SparseRows among_cells = cells_of(transport.cells, channel);
+    const SparseRows to_sensors = cells_of(transport.sensors, channel);
+    std::vector<double> straight;
+    for (const TransportRow& row : transport.cells) {
+      double sum = 0;
+      for (const glm::vec3& sky : row.mean_sky) sum += double{sky[channel]};
+      straight.push_back(sum);
     }
-  });
+    const std::vector<double> cells = lit_cells(among_cells, straight);
+    tbb::parallel_for(std::size_t{0}, lux.size(), [&](std::size_t i) {
+      const auto batch = static_cast<std::uint32_t>(i);
+      std::vector<double> beyond;
+      for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        const TransportRow& row = transport.cells[cell];
+        beyond.push_back(lux_of_batch(transport, row, batch, channel, cells) - cells[cell]);
+      }
+      beyond = lit_cells(among_cells, beyond);
+      for (std::size_t sensor = 0; sensor < transport.sensors.size(); ++sensor) {
+        const TransportRow& row = transport.sensors[sensor];
+        lux[i][sensor] += share * (lux_of_batch(transport, row, batch, channel, cells) +
+                                   from_cells(to_sensors, sensor, beyond));
+      }
+    });
+  }
   return lux;
 }
 

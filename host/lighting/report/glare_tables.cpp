@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "common/foreign_text.hpp"
 #include "measuring/requirements.hpp"
@@ -93,17 +91,6 @@ Json picture_json(const glare::PictureGlare& picture) {
   return json;
 }
 
-std::string room_name(const glare::TableRoom& room) {
-  return fmt::format("{:g}H x {:g}H", room.across, room.along);
-}
-
-template <class Use>
-void for_each_value(const glare::UgrTable& table, std::size_t room, const Use& use) {
-  for (const auto* rows : {&table.crosswise, &table.endwise}) {
-    for (const double value : (*rows)[room]) use(value);
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> glare_lines(std::span<const glare::ObserverGlare> all) {
@@ -184,71 +171,6 @@ Json glare_json(std::span<const glare::ObserverGlare> all) {
     list.push_back(std::move(entry));
   }
   return list;
-}
-
-std::vector<std::string> ugr_table_lines(const glare::UgrTable& table, bool corrected) {
-  std::string ceiling = "ceiling    ", walls = "walls      ", floor = "floor      ";
-  for (int direction = 0; direction < 2; ++direction) {
-    for (const glare::RoomReflectances& each : glare::table_reflectances) {
-      ceiling += fmt::format("{:>6.2f}", each.ceiling);
-      walls += fmt::format("{:>6.2f}", each.walls);
-      floor += fmt::format("{:>6.2f}", each.floor);
-    }
-    for (std::string* line : {&ceiling, &walls, &floor}) *line += direction == 0 ? "  " : "";
-  }
-  std::vector<std::string> lines{ceiling, walls, floor,
-                                 fmt::format("{:<11}{:<32}{}", "room", "  crosswise", "  endwise")};
-  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
-    std::string line = fmt::format("{:<11}", room_name(glare::table_rooms[room]));
-    std::size_t column = 0;
-    for_each_value(table, room, [&](double value) {
-      line += std::isnan(value) ? fmt::format("{:>6}", "-")
-              : corrected       ? fmt::format("{:>6}", measuring::glare_text(value))
-                                : fmt::format("{:>6.1f}", value);
-      if (++column == glare::table_reflectances.size()) line += "  ";
-    });
-    lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
-std::string ugr_table_csv(const glare::UgrTable& table) {
-  std::string text = "across,along";
-  for (const char* view : {"crosswise", "endwise"}) {
-    for (const glare::RoomReflectances& each : glare::table_reflectances) {
-      text += fmt::format(",{} {:.0f}/{:.0f}/{:.0f}", view, 100 * each.ceiling, 100 * each.walls,
-                          100 * each.floor);
-    }
-  }
-  text += "\n";
-  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
-    text +=
-        fmt::format("{:g},{:g}", glare::table_rooms[room].across, glare::table_rooms[room].along);
-    for_each_value(table, room, [&](double value) {
-      text += std::isnan(value) ? "," : fmt::format(",{:.4g}", value);
-    });
-    text += "\n";
-  }
-  return text;
-}
-
-Json ugr_table_json(const glare::UgrTable& table) {
-  Json json{{"reflectances", Json::array()}, {"rooms", Json::array()}};
-  for (const glare::RoomReflectances& each : glare::table_reflectances) {
-    json["reflectances"].push_back({each.ceiling, each.walls, each.floor});
-  }
-  for (std::size_t room = 0; room < glare::table_rooms.size(); ++room) {
-    Json entry{{"across", glare::table_rooms[room].across},
-               {"along", glare::table_rooms[room].along}};
-    for (const auto& [name, rows] :
-         {std::pair{"crosswise", &table.crosswise}, std::pair{"endwise", &table.endwise}}) {
-      for (const double value : (*rows)[room]) {
-        entry[name].push_back(std::isnan(value) ? Json(nullptr) : Json(value));
-      }
-    }
-    json["rooms"].push_back(std::move(entry));
-  }
-  return json;
 }
 
 }  // namespace photile::report

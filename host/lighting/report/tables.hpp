@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "glare/measure_glare.hpp"
-#include "glare/ugr_table.hpp"
 #include "measuring/measurement.hpp"
 
 namespace photile::report {
@@ -31,12 +30,6 @@ std::string glare_csv(std::span<const glare::ObserverGlare> all,
 
 /// The ratings with the luminaires and the sources of pictures.
 nlohmann::ordered_json glare_json(std::span<const glare::ObserverGlare> all);
-
-/// A UGR table as data sheets have it: rooms in rows, five reflectances crosswise and endwise.
-///   corrected   of a luminaire's own flux; others are no ratings yet, and have no least one
-std::vector<std::string> ugr_table_lines(const glare::UgrTable& table, bool corrected = true);
-std::string ugr_table_csv(const glare::UgrTable& table);
-nlohmann::ordered_json ugr_table_json(const glare::UgrTable& table);
 
 /// A value with so many digits that count; large ones are whole numbers in place of powers of ten:
 /// "12500", not "1.25e+04".

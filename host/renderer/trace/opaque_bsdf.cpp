@@ -96,6 +96,13 @@ glm::vec3 OpaqueBsdf::base_reflectance() const {
   return lobe_ ? diffuse_reflectance(lobe_->diffuse, surface_.alpha) : surface_.albedo;
 }
 
+glm::vec3 OpaqueBsdf::lobe_reflectance() const {
+  if (!lobe_) return glm::vec3(0.0f);
+  float f0_weight = 0, f90_weight = 0;
+  photile_lobe_albedo(&lobe_->fit, lobe_->n_dot_view, &f0_weight, &f90_weight);
+  return surface_.f0 * f0_weight + surface_.f90 * f90_weight;
+}
+
 std::optional<glm::vec3> OpaqueBsdf::sample(const RandomBlock& random) const {
   const float u1 = random.uniform(direction_word), u2 = random.uniform(direction_word + 1);
   glm::vec3 direction;

@@ -93,6 +93,9 @@ class OpaqueBsdf {
   /// Fraction of light from all sides that is reflected, without one facet's reflection.
   glm::vec3 base_reflectance() const;
 
+  /// Fraction of light from all sides that one facet reflects towards the eye.
+  glm::vec3 lobe_reflectance() const;
+
   /// The reflection without one facet's in a direction, f x cosine per steradian, less its mean
   /// over all directions: a coat lets less through at grazing angles.
   glm::vec3 base_deviation(const glm::vec3& direction) const;

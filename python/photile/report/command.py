@@ -1,4 +1,4 @@
-"""The command line: reads a record, draws what the names of the outputs end in, writes files whole."""
+"""The command line: reads a record, makes what the names of the outputs end in, writes files whole."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Failure(Exception):
         self.code = code
 
 
-def _require(*modules: str) -> None:
+def _require(what: str, remedy: str, *modules: str) -> None:
     missing = []
     for module in modules:
         try:
@@ -36,8 +36,8 @@ def _require(*modules: str) -> None:
         except ImportError:
             missing.append(_packages[module])
     if missing:
-        raise Failure(OUTPUT, f"reports need {' and '.join(missing)}, which this Python does not have: "
-                              f"apt-get install {' '.join(missing)}; or write .csv or .json")
+        raise Failure(OUTPUT, f"{what} {' and '.join(missing)}, which this Python does not have: "
+                              f"apt-get install {' '.join(missing)}{remedy}")
 
 
 def _clean(value: Any) -> Any:
@@ -59,9 +59,11 @@ def _read(file: str) -> Any:
         raise Failure(INPUT, f"{file}: {getattr(error, 'strerror', None) or error}") from None
 
 
-def write(file: pathlib.Path, content: bytes) -> None:
+def write(file: pathlib.Path, content: bytes, make_folder: bool = False) -> None:
     """Under its name when it is complete."""
     try:
+        if make_folder:
+            file.parent.mkdir(parents=True, exist_ok=True)
         descriptor, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
         try:
             with os.fdopen(descriptor, "wb") as stream:
@@ -96,6 +98,27 @@ def _draw(record: dict[str, Any], outputs: Sequence[str], template: str | None) 
                 write(file.with_name(name), plan.encode())
 
 
+def _make_honeybee(options: argparse.Namespace) -> None:
+    _require("Honeybee's files need", "", "numpy")
+    from . import honeybee
+    if options.check:
+        return
+    record = pathlib.Path(options.record)
+    for name, content in honeybee.files(_read(options.record), record.parent):
+        write(pathlib.Path(options.honeybee, name), content, make_folder=True)
+
+
+def _make_ugr_table(options: argparse.Namespace) -> None:
+    _require("a UGR table needs", "", "numpy")
+    from . import ugr
+    texts = ugr.written(_read(options.record))
+    for output in options.output:
+        file = pathlib.Path(output)
+        if file.suffix.lower() not in texts:
+            raise Failure(USAGE, "-o names a .csv, a .json or a .txt")
+        write(file, texts[file.suffix.lower()].encode())
+
+
 def _run(arguments: Sequence[str] | None) -> None:
     parser = argparse.ArgumentParser(prog="photile.report", allow_abbrev=False, description=__doc__)
     parser.add_argument("record", metavar="RESULTS.json", help="of photile measure")
@@ -105,11 +128,19 @@ def _run(arguments: Sequence[str] | None) -> None:
     parser.add_argument("--language", help="of the report: en, de, or that of FOLDER/words/NAME.json")
     parser.add_argument("--check", action="store_true",
                         help="only whether everything that the outputs need is there")
+    parser.add_argument("--ugr-table", action="store_true",
+                        help="the record is a luminaire's; -o is its UGR table (.csv, .json, .txt)")
+    parser.add_argument("--honeybee", metavar="FOLDER", help="write the files that Honeybee reads")
     options = parser.parse_args(arguments)
+    if options.honeybee:
+        return _make_honeybee(options)
+    if options.ugr_table:
+        return _make_ugr_table(options)
     endings = {pathlib.Path(output).suffix.lower() for output in options.output}
     if not endings or not endings <= {".html", ".pdf", ".svg"}:
         raise Failure(USAGE, "-o names a .html, a .pdf or a .svg")
-    _require("jinja2", "numpy", "contourpy", *(["weasyprint"] if ".pdf" in endings else []))
+    _require("reports need", "; or write .csv or .json", "jinja2", "numpy", "contourpy",
+             *(["weasyprint"] if ".pdf" in endings else []))
     from . import pages
     record = _read(options.record)
     if not isinstance(record, dict):
