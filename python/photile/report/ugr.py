@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,7 @@ class Luminaire:
         across_z = wide * deep * z
         # An ellipse covers pi / 4 of its rectangle; a cylinder's side is as wide as its ellipse is from there.
         disc = math.pi / 4
-        shapes = {
+        shapes: dict[str, Callable[[], Any]] = {
             "box": lambda: across_x + across_y + across_z,
             "upright cylinder": lambda: disc * across_z + np.hypot(across_x, across_y),
             "cylinder along x": lambda: disc * across_x + np.hypot(across_y, across_z),
@@ -203,9 +204,10 @@ def _csv(rated: dict[str, list[list[float | None]]]) -> str:
 
 
 def _json(rated: dict[str, list[list[float | None]]]) -> str:
-    content = {"reflectances": reflectances,
-               "rooms": [{"across": float(room[0]), "along": float(room[1]),
-                          **{view: rated[view][i] for view in views}} for i, room in enumerate(rooms)]}
+    of_rooms: list[dict[str, Any]] = [
+        {"across": float(room[0]), "along": float(room[1]), **{view: rated[view][i] for view in views}}
+        for i, room in enumerate(rooms)]
+    content = {"reflectances": reflectances, "rooms": of_rooms}
     return json.dumps(content, indent=1) + "\n"
 
 
