@@ -22,9 +22,8 @@ import subprocess
 import sys
 
 OLDEST = 200  # commits
-# Tables of the first two are compared with what the command prints by tests/command; bench/rivals/radiance.py makes the
-# third a block when it is run next, for which lamps of triangles have to be sampled by rtrace without loss.
-LEFT_OUT = ("command-line.md", "settings.md", "beside-radiance.md")
+# Their tables are compared with what the command prints by tests/command.
+LEFT_OUT = ("command-line.md", "settings.md")
 SECTIONS = ("Three figures", "When not to use it")
 MARKER = re.compile(r"<!-- figure: ([\w.]+) -->")
 NUMBER = re.compile(r"(?<![\w.,])(\d[\d,]*(?:\.\d+)?)(?![\w]|[.,]\d)")

@@ -189,10 +189,7 @@ void LightMaps::append(LightTable light, const PrimaryHits& at,
     together_.push_back(static_cast<float>(sum));
     points_.push_back({at.position[node], at.oriented_face[node]});
   }
-  {
-    const std::unique_lock lock(values_mutex_);
-    values_.append(std::move(light));
-  }
+  values_.append(std::move(light));
   coordinates_.insert(coordinates_.end(), nodes.begin(), nodes.end());
   seen_by_middle_.resize(points_.size(), unknown);
 }

@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <mutex>
-#include <shared_mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -150,12 +148,8 @@ class LightMaps {
   };
   const NodePoint& point(std::uint32_t node) const { return points_[node]; }
 
-  /// The light of the nodes: a row for each. As long as one thread holds the values, another may
-  /// `fill`, and its new rows wait; threads that read between fills need not hold them.
+  /// The light of the nodes: a row for each.
   const LightTable& values() const { return values_; }
-  std::shared_lock<std::shared_mutex> hold_values() const {
-    return std::shared_lock(values_mutex_);
-  }
 
   /// The contents now; `settings` are left empty.
   LightMapContents contents() const;
@@ -214,8 +208,7 @@ class LightMaps {
   Tiles tiles_;
   NodeIndex node_at_;
   std::vector<NodeCoordinates> coordinates_;  ///< of nodes
-  mutable std::shared_mutex values_mutex_;
-  LightTable values_;  ///< of nodes
+  LightTable values_;                         ///< of nodes
   /// Per node: luminance of all lights at their powers.
   std::vector<float> together_;
   std::vector<float> error_, distance_;  ///< per node, where the source tells: see NodeValues

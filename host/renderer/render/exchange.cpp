@@ -12,6 +12,7 @@
 
 #include "common/byte_stream.hpp"
 #include "estimate/map_order.hpp"
+#include "light/table_bytes.hpp"
 #include "photile/communicator.hpp"
 #include "render/pass_count.hpp"
 
@@ -40,21 +41,13 @@ void append_hits(std::span<const std::byte> bytes, PrimaryHits& hits) {
 
 std::vector<std::byte> bytes_of(const LightTable& rows) {
   ByteWriter bytes;
-  bytes.put(rows.irradiance);
-  bytes.put(rows.radiance);
-  bytes.put(rows.first);
-  bytes.put(rows.light);
+  light::put(rows, bytes);
   return bytes.take();
 }
 
 void append_rows(std::span<const std::byte> bytes, LightTable& all) {
   ByteReader reader(bytes);
-  LightTable part(all.lights, false);
-  part.irradiance = reader.take<glm::vec3>();
-  part.radiance = reader.take<glm::vec3>();
-  part.first = reader.take<std::uint64_t>();
-  part.light = reader.take<std::uint16_t>();
-  all.append(std::move(part));
+  light::append(reader, all);
 }
 
 /// Rows [first, first + count) of planes and sparse rows.
