@@ -95,7 +95,7 @@ TEST_CASE("reflections by paths are what the lobe reflects of a lamp, whatever l
   const LightLayers black = trace_paths(plate(0.0f), camera, film(16, 12, 4)).layers;
   const LightLayers white = trace_paths(plate(0.9f), camera, film(16, 12, 4)).layers;
   const LightLayers lobe =
-      trace_paths_of_hits(plate(0.9f), ReflectedHits(camera), film(16, 12, 4), Progress::none())
+      trace_paths_of_hits(plate(0.9f), reflected_hits(camera), film(16, 12, 4), Progress::none())
           .layers;
   for (std::size_t pixel = 0; pixel < lobe.layers[0].radiance.size(); ++pixel) {
     CHECK(luminance(lobe.layers[0].radiance[pixel]) ==

@@ -8,7 +8,7 @@
 
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "render/quality.hpp"
+#include "render/refinement.hpp"
 #include "render/render_session.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -26,14 +26,19 @@ RenderParameters little_work() {
 
 /// What rounds lead to.
 RenderResult grown(const Scene& scene, const RenderParameters& part, int parts) {
-  RenderSession session(std::make_shared<const PreparedScene>(scene), {&device(), 1}, part, nullptr,
-                        {}, Progress::none());
-  const CameraHits hits(room_camera());
-  RenderResult result = session.render(hits, session.film(), Progress::none());
-  for_later_rounds(parts, [&](int more) {
-    session.grow(more, Progress::none());
-    result = session.render(hits, session.film(), Progress::none());
-  });
+  RenderSession session(std::make_shared<const PreparedScene>(scene), {&device(), 1}, part,
+                        Progress::none());
+  const Camera camera = room_camera();
+  const HitSource hits = camera_hits(camera);
+  RenderResult result;
+  refine({.parts = parts},
+         {.add =
+              [&](int more, Progress& progress) {
+                session.add_parts(more, progress);
+                result = session.render(hits, session.film(), progress);
+                return result.standard_error;
+              }},
+         Progress::none());
   return result;
 }
 

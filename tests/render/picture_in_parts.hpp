@@ -21,8 +21,8 @@ inline LightLayers picture_in_parts(const Scene& scene, const Camera& camera,
     itself.scale.push_back(1.0f);
   }
   RenderSession session(std::make_shared<const PreparedScene>(scene), std::span(&device(), 1),
-                        parameters, nullptr, {}, Progress::none());
-  return session.render(CameraHits(camera), parameters.film, Progress::none(), &itself).layers;
+                        parameters, Progress::none());
+  return session.render(camera_hits(camera), parameters.film, Progress::none(), &itself).layers;
 }
 
 }  // namespace photile::test

@@ -38,7 +38,7 @@ struct Studio {
   }
 
   RefinementSteps steps() {
-    return {.make =
+    return {.add =
                 [this](int more, Progress& progress) {
                   constexpr int slices = 1000;
                   const double before = seconds(parts * part.light_map_rays);
@@ -48,29 +48,28 @@ struct Studio {
                     progress.throw_if_cancelled();
                   }
                   parts += more;
-                  RenderResult result;
-                  result.used = of_parts(part, parts);
-                  made.push_back(result.used);
-                  result.standard_error = error(result.used);
-                  return result;
+                  made.push_back(of_parts(part, parts));
+                  return error(made.back());
                 },
             .finished =
-                [this](int all, const RenderResult& result) {
+                [this](int all, double of_all) {
                   CHECK(all == parts);
-                  CHECK(result.used.light_map_rays == parts * part.light_map_rays);
+                  CHECK(of_all == error(made.back()));
                   finished_at.push_back(clock);
                 },
             .elapsed = [this] { return clock; }};
   }
 
-  RenderResult refine_to(const RefinementGoal& goal, const RenderParameters& asked,
-                         Progress& progress = Progress::none()) {
+  /// The last error.
+  double refine_to(const RefinementGoal& goal, const RenderParameters& asked,
+                   Progress& progress = Progress::none()) {
     return refine_by(steps(), goal, asked, progress);
   }
-  RenderResult refine_by(const RefinementSteps& steps, const RefinementGoal& goal,
-                         const RenderParameters& asked, Progress& progress = Progress::none()) {
+  double refine_by(RefinementSteps steps, const RefinementGoal& goal, const RenderParameters& asked,
+                   Progress& progress = Progress::none()) {
     part = first_part(goal, asked);
-    return refine(goal, part, steps, progress);
+    steps.most_parts = most_work(part);
+    return refine(goal, steps, progress);
   }
 };
 
@@ -101,17 +100,17 @@ class Stopped : public Progress {
 
 TEST_CASE("refinement: a picture that is good enough is the only one") {
   Studio studio;
-  const RenderResult result = studio.refine_to({.error = 0.025}, good());
+  const double error = studio.refine_to({.error = 0.025}, good());
   CHECK(studio.made.size() == 1);
-  CHECK(result.used.light_map_rays == 64);
-  CHECK(result.standard_error == Approx(0.02));
+  CHECK(studio.made.back().light_map_rays == 64);
+  CHECK(error == Approx(0.02));
 }
 
 TEST_CASE("refinement: rounds add parts until the error is reached, and no more") {
   Studio studio;
   const double requested = GENERATE(0.015, 0.01, 0.008);
-  const RenderResult result = studio.refine_to({.error = requested}, good());
-  CHECK(result.standard_error <= requested);
+  const double error = studio.refine_to({.error = requested}, good());
+  CHECK(error <= requested);
   CHECK(studio.made.size() == studio.finished_at.size());
   REQUIRE(studio.made.size() > 1);
   CHECK(studio.error(studio.made[studio.made.size() - 2]) > requested);
@@ -143,7 +142,7 @@ TEST_CASE("refinement: for a time there is a part of the rays and samples, and o
 TEST_CASE("refinement: the settings of parts together say what each of them is") {
   const int parts = GENERATE(1, 2, 3, 7, 16, 64);
   const RenderParameters all = of_parts(good(), parts);
-  CHECK(grows(all) == (parts > 1));
+  CHECK(in_parts(all) == (parts > 1));
   RenderParameters known = all;
   known.passes = parts;
   const RenderParameters part = part_of(known);
@@ -169,20 +168,29 @@ TEST_CASE("refinement: a time is kept, and the picture took a good part of it") 
   Studio studio;
   const double seconds = GENERATE(10.0, 30.0, 100.0, 1000.0);
   studio.power_of_time = GENERATE(0.9, 1.0, 1.1);
-  const RenderResult result = studio.refine_to({.seconds = seconds}, good());
+  studio.refine_to({.seconds = seconds}, good());
   CHECK(studio.clock <= 1.001 * seconds);
   CHECK(studio.made.size() == studio.finished_at.size());  // none was given up
-  CHECK(studio.seconds(result.used.light_map_rays) > 0.3 * seconds);
+  CHECK(studio.seconds(studio.made.back().light_map_rays) > 0.3 * seconds);
   CHECK(studio.made.front().light_map_rays == 16);
+}
+
+TEST_CASE("refinement: as many parts as the goal asks for are done, whatever the time") {
+  Studio studio;
+  const double seconds = GENERATE(0.0, 0.001);
+  studio.refine_to({.seconds = seconds, .parts = 5}, good());
+  REQUIRE(studio.made.size() == 5);  // by 1, 2, 3, 4 and 5 parts: 6 would be too many
+  CHECK(studio.parts == 5);
+  CHECK(studio.finished_at.size() == 5);
 }
 
 TEST_CASE("refinement: with an error and a time, neither is exceeded by much") {
   Studio studio;
   const double seconds = GENERATE(10.0, 1000.0);
-  const RenderResult result = studio.refine_to({.error = 0.008, .seconds = seconds}, good());
+  const double error = studio.refine_to({.error = 0.008, .seconds = seconds}, good());
   CHECK(studio.clock <= 1.001 * seconds);
-  CHECK(result.standard_error > 0.008 / std::sqrt(2.0));
-  if (seconds == 1000) CHECK(result.standard_error <= 0.008);
+  CHECK(error > 0.008 / std::sqrt(2.0));
+  if (seconds == 1000) CHECK(error <= 0.008);
 }
 
 TEST_CASE("refinement: a round that is not likely to fit in what is left is not begun") {
@@ -195,14 +203,14 @@ TEST_CASE("refinement: a round that is not likely to fit in what is left is not 
 TEST_CASE("refinement: a round that takes too long is given up, the picture before is kept") {
   Studio studio;
   RefinementSteps steps = studio.steps();
-  const auto make = steps.make;
-  steps.make = [&](int more, Progress& progress) {
+  const auto add = steps.add;
+  steps.add = [&](int more, Progress& progress) {
     if (!studio.made.empty()) studio.seconds_of_good = 1e6;  // another program takes the machine
-    return make(more, progress);
+    return add(more, progress);
   };
-  const RenderResult result = studio.refine_by(steps, {.seconds = 10}, good());
+  studio.refine_by(steps, {.seconds = 10}, good());
   CHECK(studio.made.size() == 1);
-  CHECK(result.used.light_map_rays == 16);
+  CHECK(studio.made.back().light_map_rays == 16);
 }
 
 TEST_CASE("refinement: the first picture is finished, however little time there is") {
@@ -222,20 +230,20 @@ TEST_CASE("refinement: a user who stops is heard, and has the pictures so far") 
 TEST_CASE("refinement: an error below what all rays and photons leave is told at once") {
   Studio studio;
   Notes notes;
-  const RenderResult result = studio.refine_to({.error = 1e-9}, good(), notes);
+  studio.refine_to({.error = 1e-9}, good(), notes);
   CHECK(studio.made.size() == 1);
-  CHECK(result.used.light_map_rays == 64);
+  CHECK(studio.made.back().light_map_rays == 64);
   CHECK_THAT(notes.text, Catch::Contains("1e-07% is out of reach"));
 }
 
 TEST_CASE("refinement: an error that does not fall any longer is told") {
   Studio studio;
   RefinementSteps steps = studio.steps();
-  const auto make = steps.make;
-  steps.make = [&](int more, Progress& progress) {
+  const auto add = steps.add;
+  steps.add = [&](int more, Progress& progress) {
     const double rays = (studio.parts + more) * studio.part.light_map_rays;
     studio.error_of_one = rays > 128 ? 0.014 * std::sqrt(rays) : 0.16;
-    return make(more, progress);
+    return add(more, progress);
   };
   Notes notes;
   studio.refine_by(steps, {.error = 0.005}, good(), notes);
@@ -246,8 +254,8 @@ TEST_CASE("refinement: an error that does not fall any longer is told") {
 TEST_CASE("refinement: ends where rays and photons cannot grow") {
   Studio studio;
   studio.seconds_of_good = 1e-9;
-  const RenderResult result = studio.refine_to({.seconds = 1}, good());
-  CHECK(result.used.light_map_rays == limits::max_gathering_rays);
+  studio.refine_to({.seconds = 1}, good());
+  CHECK(studio.made.back().light_map_rays == limits::max_gathering_rays);
 }
 
 // The noise of a pixel's samples, told from the scatter of runs of them.

@@ -33,8 +33,8 @@ TEST_CASE("each process has all photons of its maps, in the order of one process
         find_map_groups(scene, photons, MapMode::patch, {radius, 60}).members == groups.members &&
         automatic_radius(photons, 20) == automatic_radius(all, 20);
     const MapOwners owners(scene, groups.patches, photons.of_all->landed, processes);
-    PhotonsMoved moved;
-    photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), moved);
+    SentData sent;
+    photons = to_owners(communicator, scene, groups, owners, radius, std::move(photons), sent);
     held[communicator.rank()] = photons.size();
     // It holds every photon of the triangles that it answers for, and those of others within the
     // radius.

@@ -29,11 +29,11 @@ class GatheringPhotons {
 
   cache::IrradianceGather gather(cache::IrradianceGatherParameters parameters) const {
     parameters.caustic_neighbours = plan_.used().neighbours;
-    return cache::IrradianceGather(rays_, light(), light(), photons_.ends,
-                                   photons_.caustics.of_points.get(), parameters);
+    return cache::IrradianceGather(rays_, light(), photons_.ends, photons_.caustics.get(),
+                                   parameters);
   }
   /// By photons of all light.
-  light::LightAtPoints& light() const { return *photons_.all.of_points; }
+  light::LightAtPoints& light() const { return *photons_.all; }
   std::span<const double> layer_powers() const { return layer_powers_; }
 
  private:

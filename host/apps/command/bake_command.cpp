@@ -45,8 +45,9 @@ void run_bake(BakeOptions& options) {
   std::optional<TracedPhotons> prepared = load_maps(scene, render, progress);
   const auto prepared_scene = std::make_shared<const PreparedScene>(scene);
   options.baking.open = bake::open_sides(prepared_scene->rays);
-  RenderSession session(prepared_scene, devices, render.parameters, prepared ? &*prepared : nullptr,
-                        keep_maps(scene, render, progress), progress);
+  RenderSession session(prepared_scene, devices, render.parameters, progress);
+  session.keep_passes(prepared ? &*prepared : nullptr, keep_maps(scene, render, progress),
+                      progress);
   cache::SurfaceCache& cache = *session.light().cache();
   for (const MixedLight& light : mix.lights)
     options.baking.powers.push_back(mix.power_in_picture(light));

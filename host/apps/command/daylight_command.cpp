@@ -29,6 +29,7 @@
 #include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
+#include "render/refinement.hpp"
 #include "report/honeybee_files.hpp"
 #include "report/plan_surroundings.hpp"
 #include "weather/weather_file.hpp"
@@ -234,26 +235,31 @@ PreparedYear prepare_year(DaylightOptions& options, Progress& progress) {
   return prepared;
 }
 
-/// Rounds.
+/// Rounds of rays, each of which is a part of the work.
 ///   told   after the first, second, fourth, eighth and so on
 SkyRounds rounds_of(const DaylightOptions& options, PreparedYear& prepared,
                     const std::function<double()>& elapsed,
                     const std::function<void(const SkyRounds&)>& told, Progress& progress) {
-  constexpr std::size_t fewest = 4;  // in the shortest time, for an error
+  constexpr int fewest = 4;  // in the shortest time, for an error
   auto& [year, scene, grids] = prepared;
   SkyRounds rounds;
-  rounds.add(states_of(options, year, scene, grids, progress));
-  warn_of_darkness(rounds, progress);
-  told(rounds);
-  QuietProgress quiet(progress);
-  double begin = elapsed(), longest = 0;
-  while (options.seconds > 0 &&
-         (rounds.count() < fewest || elapsed() + longest < options.seconds)) {
-    rounds.add(states_of(options, rounds.year_of_next(year), scene, grids, quiet));
+  const auto add = [&](int, Progress& deadline) {
+    QuietProgress quiet(deadline);
+    Progress& telling = rounds.count() == 0 ? deadline : quiet;
+    rounds.add(states_of(options, rounds.year_of_next(year), scene, grids, telling));
+    return 0.0;
+  };
+  const auto finished = [&](int round, double) {
+    if (round == 1) warn_of_darkness(rounds, progress);
     if (std::has_single_bit(rounds.count())) told(rounds);
-    longest = std::max(longest, elapsed() - begin);
-    begin = elapsed();
-  }
+  };
+  refine({.seconds = options.seconds, .parts = options.seconds > 0 ? fewest : 1},
+         {.add = add,
+          .finished = finished,
+          .elapsed = elapsed,
+          .next = [](int parts) { return parts + 1; },
+          .work = [](int parts) { return static_cast<double>(parts); }},
+         progress);
   return rounds;
 }
 

@@ -96,14 +96,12 @@ class LitRoom {
           Progress& progress)
       : scene_(scene->rays.scene()),
         baking_(baking),
-        session_(scene, devices, parameters, nullptr, {}, progress) {
-    bake(progress);
-  }
+        session_(scene, devices, parameters, progress) {}
 
-  /// See RenderSession::grow.
-  void grow(int parts, Progress& progress) {
+  /// See RenderSession::add_parts.
+  void add_parts(int parts, Progress& progress) {
     baked_.reset();
-    session_.grow(parts, progress);
+    session_.add_parts(parts, progress);
     bake(progress);
   }
 
@@ -116,7 +114,7 @@ class LitRoom {
     set_film_size(film, "", camera);
     film.samples_per_pixel = samples;
     QuietProgress quiet(progress);
-    const RenderResult first = session_.render(CameraHits(camera), film, quiet);
+    const RenderResult first = session_.render(camera_hits(camera), film, quiet);
     const auto picture = mixed_picture(first.layers, mix);
     image::keep_white(picture->header(),
                       white_of_scene(options, first.layers, scene_, mix.lumen_per_watt));
@@ -211,37 +209,26 @@ void run_publish(PublishOptions& options) {
                                 100 * lit.baked().texel()));
     }
   };
-  if (!render.goal.is_given()) {
-    const RenderParameters& asked = render.parameters;
-    const bool growing = grows(asked);
-    LitRoom lit(prepared_scene, devices, growing ? part_of(asked) : asked, options.baking,
-                progress);
-    if (growing) {
-      for_later_rounds(asked.passes, [&](int parts) { lit.grow(parts, progress); });
-    }
-    write(lit);
-    warn_of_dark_lights(scene, mix, reaches, "surface that a camera sees", progress);
-    return;
+  RefinementGoal goal = render.goal;
+  RenderParameters part = first_part(goal, render.parameters);
+  if (!goal.is_given() && in_parts(part)) {
+    goal.parts = part.passes;
+    part = part_of(part);
   }
-  const RenderParameters part = first_part(render.goal, render.parameters);
-  std::optional<LitRoom> lit;
-  const auto make = [&](int parts, Progress& deadline) {
-    if (lit) {
-      lit->grow(parts, deadline);
-    } else {
-      lit.emplace(prepared_scene, devices, part, options.baking, deadline);
-    }
-    RenderResult result;
-    result.standard_error = lit->baked().standard_error(options.baking.powers, *lit->errors());
-    return result;
+  LitRoom lit(prepared_scene, devices, part, options.baking, progress);
+  const auto add = [&](int parts, Progress& deadline) {
+    lit.add_parts(parts, deadline);
+    return goal.is_given() ? lit.baked().standard_error(options.baking.powers, *lit.errors()) : 0.0;
   };
-  const auto finished = [&](int parts, const RenderResult& result) {
-    write(*lit);
-    progress.note(fmt::format("standard error {:.2g}%, {}; {}", 100 * result.standard_error,
+  const auto finished = [&](int parts, double error) {
+    if (parts < goal.parts) return;
+    write(lit);
+    if (!goal.is_given()) return;
+    progress.note(fmt::format("standard error {:.2g}%, {}; {}", 100 * error,
                               format_seconds(elapsed()),
                               options_text(of_parts(part, parts), without)));
   };
-  refine(render.goal, part, {make, finished, elapsed}, progress);
+  refine(goal, {add, finished, elapsed, most_work(part)}, progress);
   warn_of_dark_lights(scene, mix, reaches, "surface that a camera sees", progress);
 }
 

@@ -15,11 +15,6 @@
 #include "render/render_plan.hpp"
 
 namespace photile::app {
-namespace {
-
-std::string percent(double share) { return fmt::format("{:.2g}%", 100 * share); }
-
-}  // namespace
 
 std::span<const GoalOption> goal_options() {
   static constexpr std::array<GoalOption, 2> options{{
@@ -62,23 +57,6 @@ void check_goal(const RefinementGoal& goal, const RenderParameters& parameters) 
         "--{}: errors are stated where nodes of light maps gather, as with --quality good",
         option.option));
   }
-}
-
-RenderResult render_refined(const RefinementGoal& goal, const RenderParameters& part,
-                            RefinementSteps steps, Progress& progress) {
-  int pictures = 0;
-  const auto finished = [&](int parts, const RenderResult& picture) {
-    steps.finished(parts, picture);
-    progress.note(fmt::format("picture {}: standard error {}, {}; {}", ++pictures,
-                              percent(picture.standard_error), format_seconds(steps.elapsed()),
-                              options_text(of_parts(part, parts))));
-  };
-  RenderResult best = refine(goal, part, {steps.make, finished, steps.elapsed}, progress);
-  if (best.standard_error > goal.error && goal.error > 0) {
-    progress.warn(fmt::format("a standard error of {} was not reached, but {}", percent(goal.error),
-                              percent(best.standard_error)));
-  }
-  return best;
 }
 
 }  // namespace photile::app

@@ -49,8 +49,4 @@ void add_goal_options(CLI::App& command, RefinementGoal& goal);
 /// noise of such nodes.
 void check_goal(const RefinementGoal& goal, const RenderParameters& parameters);
 
-/// `refine` by these steps, with a note about each picture and what was reached.
-RenderResult render_refined(const RefinementGoal& goal, const RenderParameters& part,
-                            RefinementSteps steps, Progress& progress);
-
 }  // namespace photile::app

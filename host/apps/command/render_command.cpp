@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "command/run_record.hpp"
 #include "command/saved_maps_option.hpp"
 #include "command/scene_report.hpp"
+#include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
@@ -32,6 +34,8 @@
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "render/hit_source.hpp"
+#include "render/quality.hpp"
+#include "render/refinement.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
 #include "render/render_session.hpp"
@@ -39,6 +43,8 @@
 
 namespace photile::app {
 namespace {
+
+std::string percent(double fraction) { return fmt::format("{:.2g}%", 100 * fraction); }
 
 PictureOutputs check_outputs_of(const RenderOptions& options) {
   PictureOutputs outputs(options.pictures);
@@ -104,7 +110,7 @@ bool keeps_maps(const RenderOptions& options) {
   return !options.save_maps.empty() || !options.load_maps.empty() || !options.glare.empty();
 }
 
-/// Pictures of light maps that grow until one is good enough; `write` writes the last of `record`.
+/// Pictures in more and more parts until one is good enough; `write` writes the last of `record`.
 ///   elapsed   since the process began, seconds
 void render_until_good(const Scene& scene, std::span<Device> devices, const RenderOptions& options,
                        const HitSource& hits, RunRecord& record,
@@ -112,22 +118,26 @@ void render_until_good(const Scene& scene, std::span<Device> devices, const Rend
                        const std::function<double()>& elapsed, Progress& progress) {
   const RunStatistics before = record.stages;
   const RenderParameters part = first_part(options.goal, options.parameters);
-  const auto prepared = std::make_shared<const PreparedScene>(scene);
-  std::optional<RenderSession> session;
-  const auto make = [&](int parts, Progress& deadline) {
-    if (session) {
-      session->grow(parts, deadline);
-    } else {
-      session.emplace(prepared, devices, part, nullptr, KeepPhotons(), deadline);
-    }
-    return session->render(hits, session->film(), deadline);
+  RenderSession session(std::make_shared<const PreparedScene>(scene), devices, part, progress);
+  RenderResult latest;
+  const auto add = [&](int parts, Progress& deadline) {
+    session.add_parts(parts, deadline);
+    latest = session.render(hits, session.film(), deadline);
+    return latest.standard_error;
   };
-  const auto finished = [&](int, const RenderResult& result) {
+  int pictures = 0;
+  const auto finished = [&](int parts, double error) {
     record.stages = before;
-    note_result(result, devices, record);
-    write(result.layers);
+    note_result(latest, devices, record);
+    write(latest.layers);
+    progress.note(fmt::format("picture {}: standard error {}, {}; {}", ++pictures, percent(error),
+                              format_seconds(elapsed()), options_text(of_parts(part, parts))));
   };
-  render_refined(options.goal, part, {make, finished, elapsed}, progress);
+  const double error = refine(options.goal, {add, finished, elapsed, most_work(part)}, progress);
+  if (options.goal.error > 0 && error > options.goal.error) {
+    progress.warn(fmt::format("a standard error of {} was not reached, but {}",
+                              percent(options.goal.error), percent(error)));
+  }
 }
 
 /// The layers by photon maps. Fills in what `record` states of them.
@@ -155,7 +165,7 @@ LightLayers render_by_paths(const Scene& scene, const Camera& camera, const View
       trace_paths_of_hits(scene, views.picture, eye_rays(record.used), progress);
   if (views.reflections) {
     PathTracerResult reflected =
-        trace_paths_of_hits(scene, ReflectedHits(camera), eye_rays(record.used), progress);
+        trace_paths_of_hits(scene, reflected_hits(camera), eye_rays(record.used), progress);
     *views.reflections = std::move(reflected.layers);
   }
   record.stages.insert(record.stages.end(), result.statistics.begin(), result.statistics.end());
@@ -261,7 +271,7 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   }
   const bool wants_errors = !options.errors.empty() || (denoising && knows_errors);
   LightLayers errors;
-  const CameraHits hits(camera, wants_errors ? &errors : nullptr);
+  const HitSource hits = camera_hits(camera, wants_errors ? &errors : nullptr);
   LightLayers reflections;
   const Views views{hits, options.glare.empty() ? nullptr : &reflections};
   std::vector<bool> reaches;

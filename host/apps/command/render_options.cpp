@@ -54,8 +54,7 @@ void add_run_group(CLI::App& command, RenderOptions& options) {
 }
 
 void add_setting_options(CLI::App& command, RenderOptions& options,
-                         std::initializer_list<std::string_view> without,
-                         const NamedSettings& more) {
+                         std::initializer_list<std::string_view> without, const Settings& more) {
   add_scene_file(command, options.scene);
   const OptionGroup picture(command, "Picture");
   add_light_change_option(picture, options.lights);
@@ -73,7 +72,7 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
   add_run_group(command, options);
 }
 
-void add_picture_settings(CLI::App& command, RenderOptions& options, const NamedSettings& more) {
+void add_picture_settings(CLI::App& command, RenderOptions& options, const Settings& more) {
   add_quality_preset(command, options.quality_options());  // before the settings that override it
   add_setting_options(command, options, {}, more);
   add_view_group(OptionGroup(command, "Picture"), options);
@@ -103,8 +102,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_scale_option(output, options.pictures.false_colour);
   set_quality(options.quality_options(), Quality::good);
   add_goal_options(command, options.goal);
-  NamedSettings more = display_settings(options.pictures);
-  for (NamedSetting& setting : glare_settings(options.glare_limit)) more.push_back(setting);
+  Settings more = display_settings(options.pictures);
+  for (Setting& setting : glare_settings(options.glare_limit)) more.push_back(setting);
   add_picture_settings(command, options, more);
   add_projection_options(picture, options);
   add_integrator_option(command, options);

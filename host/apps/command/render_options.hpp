@@ -68,11 +68,10 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 ///   more      that --set reaches, too
 void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without = {},
-                         const NamedSettings& more = {});
+                         const Settings& more = {});
 
 /// Adds these and those of the camera, but not those of outputs.
-void add_picture_settings(CLI::App& command, RenderOptions& options,
-                          const NamedSettings& more = {});
+void add_picture_settings(CLI::App& command, RenderOptions& options, const Settings& more = {});
 
 /// Adds --threads and --quiet.
 void add_run_group(CLI::App& command, RenderOptions& options);

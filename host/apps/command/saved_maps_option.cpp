@@ -80,13 +80,13 @@ RenderResult render_with_kept_maps(const Scene& scene, const Camera& camera, con
     };
   }
   auto maps = std::make_unique<RenderSession>(std::make_shared<const PreparedScene>(scene), devices,
-                                              options.parameters, prepared ? &*prepared : nullptr,
-                                              keep, progress);
+                                              options.parameters, progress);
+  maps->keep_passes(prepared ? &*prepared : nullptr, keep, progress);
   RenderResult result = maps->render(hits, options.parameters.film, progress);
   timed(keeping, [&] { keep_light_maps(maps->light_map_contents(), options, progress); });
   if (reflections) {
     timed(reflecting, [&] {
-      *reflections = maps->render(ReflectedHits(camera), options.parameters.film, progress).layers;
+      *reflections = maps->render(reflected_hits(camera), options.parameters.film, progress).layers;
     });
   }
   TimeTaken releasing;

@@ -53,34 +53,34 @@ void add(CLI::App& command, RenderParameters& parameters, const Setting& setting
   if (setting.is_given(parameters)) option->default_str(text_of(setting.value(parameters)));
 }
 
-NamedSetting bound_number(std::string_view name, std::string_view group, ValueRange range,
-                          auto& field, std::string_view help, std::string_view unit = {}) {
+Setting bound_number(std::string_view name, std::string_view group, ValueRange range, auto& field,
+                     std::string_view help, std::string_view unit = {}) {
   using Number = std::remove_reference_t<decltype(field)>;
   return {.name = name,
-          .group = group,
-          .range = std::move(range),
-          .help = help,
-          .initial = fmt::format("{}", field),
           .unit = unit,
-          .set = [&field](const SettingValue& value) {
+          .group = group,
+          .help = help,
+          .otherwise = fmt::format("{}", field),
+          .range = std::move(range),
+          .assign = [&field](const SettingValue& value) {
             field = static_cast<Number>(std::get<double>(value));
           }};
 }
 
 /// A setting whose value is a word or a text.
-NamedSetting bound_word(std::string_view name, std::string_view group, ValueRange range,
-                        std::string_view help, std::string initial,
-                        const std::function<void(std::string_view)>& take) {
+Setting bound_word(std::string_view name, std::string_view group, ValueRange range,
+                   std::string_view help, std::string otherwise,
+                   const std::function<void(std::string_view)>& take) {
   return {.name = name,
           .group = group,
-          .range = std::move(range),
           .help = help,
-          .initial = std::move(initial),
-          .set = [take](const SettingValue& value) { take(std::get<std::string_view>(value)); }};
+          .otherwise = std::move(otherwise),
+          .range = std::move(range),
+          .assign = [take](const SettingValue& value) { take(std::get<std::string_view>(value)); }};
 }
 
-NamedSetting bound_switch(std::string_view name, std::string_view group, bool& field,
-                          std::string_view help) {
+Setting bound_switch(std::string_view name, std::string_view group, bool& field,
+                     std::string_view help) {
   return bound_word(name, group, Words{{"off", "on"}}, help, field ? "on" : "off",
                     [&field](std::string_view word) { field = word == "on"; });
 }
@@ -88,7 +88,7 @@ NamedSetting bound_switch(std::string_view name, std::string_view group, bool& f
 /// Defaults of all that --set can set in any command, and where their values go.
 class AllSettings {
  public:
-  const NamedSettings& list() const { return list_; }
+  const Settings& list() const { return list_; }
 
  private:
   RenderParameters parameters_;
@@ -96,9 +96,9 @@ class AllSettings {
   DeviceOptions device_;
   PictureOptions pictures_;
   double glare_limit_ = defaults::glare_limit;
-  NamedSettings list_ = [this] {
-    NamedSettings all;
-    for (const NamedSettings& some :
+  Settings list_ = [this] {
+    Settings all;
+    for (const Settings& some :
          {rendering_settings(parameters_), scene_settings(load_), device_settings(device_),
           display_settings(pictures_), glare_settings(glare_limit_)}) {
       all.insert(all.end(), some.begin(), some.end());
@@ -107,14 +107,14 @@ class AllSettings {
   }();
 };
 
-const NamedSetting* named_in(const NamedSettings& settings, std::string_view name) {
+const Setting* named_in(const Settings& settings, std::string_view name) {
   const auto found = std::find_if(settings.begin(), settings.end(),
-                                  [&](const NamedSetting& one) { return one.name == name; });
+                                  [&](const Setting& one) { return one.name == name; });
   return found == settings.end() ? nullptr : &*found;
 }
 
 /// The error message for a name that a command does not know.
-std::string problem_with_name(std::string_view name, const NamedSettings& settings) {
+std::string problem_with_name(std::string_view name, const Settings& settings) {
   for (const Setting& setting : photile::settings()) {
     if (setting.name == name && has_option(setting)) {
       return fmt::format("give it by {}", option_names(setting).front());
@@ -122,9 +122,18 @@ std::string problem_with_name(std::string_view name, const NamedSettings& settin
   }
   if (named_in(AllSettings().list(), name)) return "this command has no use for it";
   std::vector<std::string_view> names;
-  for (const NamedSetting& one : settings) names.push_back(one.name);
+  for (const Setting& one : settings) names.push_back(one.name);
   return fmt::format("there is no such setting; the nearest is {}, and photile settings lists all",
                      nearest_word(name, names));
+}
+
+/// Its default, or what holds where it is not given.
+std::string initial_of(const Setting& setting) {
+  if (setting.is_of_quality()) {
+    return setting.otherwise.empty() ? "by quality" : "by quality, else " + setting.otherwise;
+  }
+  const bool has_value = setting.otherwise.empty() && setting.value;
+  return has_value ? text_of(setting.value(RenderParameters())) : setting.otherwise;
 }
 
 std::string name_in(const std::string& assignment) {
@@ -155,33 +164,21 @@ std::string quality_table() {
 
 }  // namespace
 
-NamedSettings rendering_settings(RenderParameters& parameters,
-                                 std::initializer_list<std::string_view> without) {
-  NamedSettings list;
+Settings rendering_settings(RenderParameters& parameters,
+                            std::initializer_list<std::string_view> without) {
+  Settings list;
   for (const Setting& setting : settings()) {
     if (has_option(setting)) continue;
     if (std::find(without.begin(), without.end(), setting.name) != without.end()) continue;
-    std::string initial(setting.otherwise);
-    if (setting.is_of_quality()) {
-      initial = initial.empty() ? "by quality" : "by quality, else " + initial;
-    } else if (initial.empty()) {
-      initial = text_of(setting.value(parameters));
-    }
-    list.push_back({.name = setting.name,
-                    .group = setting.group,
-                    .range = setting.range,
-                    .help = setting.help,
-                    .initial = std::move(initial),
-                    .unit = setting.unit,
-                    .reader = setting.reader,
-                    .set = [&parameters, &setting](const SettingValue& value) {
-                      setting.set(parameters, value);
-                    }});
+    list.push_back(setting);
+    list.back().assign = [&parameters, &setting](const SettingValue& value) {
+      setting.set(parameters, value);
+    };
   }
   return list;
 }
 
-NamedSettings scene_settings(SceneLoadOptions& options) {
+Settings scene_settings(SceneLoadOptions& options) {
   const char* group = "Scene";
   return {
       bound_word("up", group, Words{{"x", "y", "z", "-x", "-y", "-z"}},
@@ -230,16 +227,16 @@ NamedSettings scene_settings(SceneLoadOptions& options) {
   };
 }
 
-NamedSettings device_settings(DeviceOptions& options) {
+Settings device_settings(DeviceOptions& options) {
   const char* group = "Device";
   return {
       {.name = "device_memory",
-       .group = group,
-       .range = PositiveNumbers{},
-       .help = "bound on the device's buffers together",
-       .initial = "all that the device has",
        .unit = "GiB",
-       .set =
+       .group = group,
+       .help = "bound on the device's buffers together",
+       .otherwise = "all that the device has",
+       .range = PositiveNumbers{},
+       .assign =
            [&options](const SettingValue& value) {
              constexpr double most = 0x1p33;  // GiB, whose bytes 64 bits count
              options.memory_bytes =
@@ -251,7 +248,7 @@ NamedSettings device_settings(DeviceOptions& options) {
   };
 }
 
-NamedSetting display_view_setting(ToneMapping& parameters) {
+Setting display_view_setting(ToneMapping& parameters) {
   std::vector<std::string_view> names;
   for (const DisplayView view : all_display_views) names.push_back(name_of(view));
   return bound_word("view", "Display", Words{std::move(names)},
@@ -264,13 +261,13 @@ NamedSetting display_view_setting(ToneMapping& parameters) {
                     });
 }
 
-NamedSetting white_balance_setting(PictureOptions& options) {
+Setting white_balance_setting(PictureOptions& options) {
   return bound_switch("white_balance", "Display", options.white_balance,
                       "the white of a picture, that of --white or of the lamps, is shown as white, "
                       "on displays and in PNGs; off: colours as they are");
 }
 
-NamedSettings display_settings(PictureOptions& options) {
+Settings display_settings(PictureOptions& options) {
   return {bound_switch("auto_exposure", "Display", options.tone_mapping.automatic_exposure,
                        "on: the log-average luminance becomes 0.36 of white; off: 1 cd/m2 or "
                        "1 W/(m2 sr) becomes white; before --exposure"),
@@ -284,16 +281,16 @@ NamedSettings display_settings(PictureOptions& options) {
                      })};
 }
 
-NamedSettings glare_settings(double& limit) {
+Settings glare_settings(double& limit) {
   return {bound_number(
       "glare_limit", "Display", PositiveNumbers{}, limit,
       "of --glare; above 100: luminance in cd/m2; else times the mean luminance of the "
       "picture")};
 }
 
-void assign_named(const NamedSettings& settings, const std::string& assignment) {
+void assign_named(const Settings& settings, const std::string& assignment) {
   const std::string name = name_in(assignment);
-  const NamedSetting* setting = named_in(settings, name);
+  const Setting* setting = named_in(settings, name);
   if (!setting)
     throw UsageError(fmt::format("--set {}: {}", name, problem_with_name(name, settings)));
   if (name.size() == assignment.size()) {
@@ -305,12 +302,12 @@ void assign_named(const NamedSettings& settings, const std::string& assignment) 
   if (!value) {
     throw UsageError(fmt::format("--set {}: {}", assignment, out_of_range(text, setting->range)));
   }
-  setting->set(*value);
+  setting->assign(*value);
 }
 
-void add_set_option(CLI::App& command, std::initializer_list<NamedSettings> settings) {
-  NamedSettings all;
-  for (const NamedSettings& some : settings) all.insert(all.end(), some.begin(), some.end());
+void add_set_option(CLI::App& command, std::initializer_list<Settings> settings) {
+  Settings all;
+  for (const Settings& some : settings) all.insert(all.end(), some.begin(), some.end());
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -334,7 +331,7 @@ std::vector<std::string> names_set(const CLI::App& command) {
 
 bool is_of_photon_maps(std::string_view name) {
   const AllSettings all;
-  const NamedSetting* setting = named_in(all.list(), name);
+  const Setting* setting = named_in(all.list(), name);
   return setting && (setting->group == "Photons" || setting->group == "Estimate" ||
                      setting->group == "Device");
 }
@@ -346,7 +343,7 @@ std::string remedy_for_option(const std::string& argument, const std::string& ne
   std::replace(name.begin(), name.end(), '-', '_');
   const AllSettings all;
   const auto& list = all.list();
-  const auto setting = std::find_if(list.begin(), list.end(), [&](const NamedSetting& one) {
+  const auto setting = std::find_if(list.begin(), list.end(), [&](const Setting& one) {
     return one.name == name || one.name == name + "_degrees";
   });
   if (setting == list.end()) return {};
@@ -413,11 +410,12 @@ std::string options_text(const RenderParameters& parameters,
 std::string settings_text() {
   std::string text, group;
   const AllSettings all;
-  for (const NamedSetting& one : all.list()) {
+  for (const Setting& one : all.list()) {
     if (group != one.group) text += fmt::format("{}{}\n", text.empty() ? "" : "\n", one.group);
     group = one.group;
-    text += fmt::format("  {:<21} {}\n  {:<21}   {}{}{}; default: {}\n", one.name, one.help, "",
-                        text_of(one.range), one.unit.empty() ? "" : ", ", one.unit, one.initial);
+    text +=
+        fmt::format("  {:<21} {}\n  {:<21}   {}{}{}; default: {}\n", one.name, one.help, "",
+                    text_of(one.range), one.unit.empty() ? "" : ", ", one.unit, initial_of(one));
   }
   return text;
 }
@@ -428,12 +426,12 @@ std::string settings_markdown() {
       "|---|---|---|---|---|\n";
   std::string_view group;
   const AllSettings all;
-  for (const NamedSetting& one : all.list()) {
+  for (const Setting& one : all.list()) {
     if (group != one.group) text += fmt::format("| **{}** | | | | |\n", one.group);
     group = one.group;
     text +=
         fmt::format("| `{}` | {} | {}{}{} | {} | {} |\n", one.name, one.help, text_of(one.range),
-                    one.unit.empty() ? "" : ", ", one.unit, one.initial, one.reader);
+                    one.unit.empty() ? "" : ", ", one.unit, initial_of(one), one.reader);
   }
   return text + "\n" + quality_table();
 }

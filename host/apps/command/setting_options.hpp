@@ -3,7 +3,6 @@
 // are used.
 #pragma once
 
-#include <functional>
 #include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -24,34 +23,25 @@ namespace photile::app {
 
 struct PictureOptions;
 
-/// A value that --set can set, bound to where a command keeps it.
-struct NamedSetting {
-  std::string_view name, group;
-  ValueRange range;
-  std::string_view help;
-  std::string initial;  ///< its default, or what holds where it is not given
-  std::string_view unit = {};
-  std::string_view reader = {};                  ///< the stage that reads it
-  std::function<void(const SettingValue&)> set;  ///< to a value within the range
-};
-using NamedSettings = std::vector<NamedSetting>;
+/// What --set can set.
+using Settings = std::vector<Setting>;
 
 /// The settings of the table, except those with their own option and those named in `without`.
-NamedSettings rendering_settings(RenderParameters& parameters,
-                                 std::initializer_list<std::string_view> without = {});
-NamedSettings scene_settings(SceneLoadOptions& options);
-NamedSettings device_settings(DeviceOptions& options);
-NamedSettings display_settings(PictureOptions& options);
-NamedSetting display_view_setting(ToneMapping& parameters);
-NamedSetting white_balance_setting(PictureOptions& options);
-NamedSettings glare_settings(double& limit);
+Settings rendering_settings(RenderParameters& parameters,
+                            std::initializer_list<std::string_view> without = {});
+Settings scene_settings(SceneLoadOptions& options);
+Settings device_settings(DeviceOptions& options);
+Settings display_settings(PictureOptions& options);
+Setting display_view_setting(ToneMapping& parameters);
+Setting white_balance_setting(PictureOptions& options);
+Settings glare_settings(double& limit);
 
 /// Sets what "NAME=VALUE" names. Errors: UsageError of one line, with a remedy, for an unknown name
 /// and for a value out of its range.
-void assign_named(const NamedSettings& settings, const std::string& assignment);
+void assign_named(const Settings& settings, const std::string& assignment);
 
 /// Adds --set NAME=VALUE, whose errors are those of assign_named.
-void add_set_option(CLI::App& command, std::initializer_list<NamedSettings> settings);
+void add_set_option(CLI::App& command, std::initializer_list<Settings> settings);
 
 /// Names that were given to --set.
 std::vector<std::string> names_set(const CLI::App& command);

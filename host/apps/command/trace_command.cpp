@@ -50,7 +50,7 @@ void run_trace(TraceOptions& options) {
   PhotonTracerResult traced = trace_photons(rays, plan.tracing(0, {}), progress);
   TracedPhotons photons;
   photons.photons = std::move(traced.photons);
-  if (plan.keeps_caustics()) photons.caustics = std::move(traced.caustics);
+  if (plan.gathers_at_nodes()) photons.caustics = std::move(traced.caustics);
   progress.begin("save photons", 0, "");
   saved_maps::save(options.output, scene, saved_settings(render.parameters), photons);
   progress.end();
@@ -72,8 +72,8 @@ void add_trace_command(CLI::App& photile) {
   for (const char* name : {"photons_emitted", "seed"}) {
     add_setting(*command, render.parameters, name);
   }
-  NamedSettings of_photons = rendering_settings(render.parameters);
-  std::erase_if(of_photons, [](const NamedSetting& setting) {
+  Settings of_photons = rendering_settings(render.parameters);
+  std::erase_if(of_photons, [](const Setting& setting) {
     constexpr std::array kept{"quota", "maps", "direct_rays", "light_maps", "light_map_rays"};
     return std::find(kept.begin(), kept.end(), setting.name) == kept.end();
   });

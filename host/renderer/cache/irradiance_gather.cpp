@@ -89,8 +89,7 @@ void check_range(const char* what, int value, int low, int high) {
 }  // namespace
 
 IrradianceGather::IrradianceGather(const RayScene& rays, light::LightAtPoints& photons,
-                                   light::LightAtPoints& of_nodes, const LightMapParameters& ends,
-                                   light::LightAtPoints* caustics,
+                                   const LightMapParameters& ends, light::LightAtPoints* caustics,
                                    const IrradianceGatherParameters& parameters)
     : rays_(rays),
       photons_(photons),
@@ -101,7 +100,7 @@ IrradianceGather::IrradianceGather(const RayScene& rays, light::LightAtPoints& p
       layer_powers_(light::layer_powers(rays.scene())),
       bright_(parameters.rays > 0 ? trace::bright_surface(rays, layer_powers_, parameters.seed)
                                   : trace::Targets({})),
-      of_ends_(of_nodes),
+      of_ends_(photons),
       ends_(rays, ends, of_ends_, LightMaps::Visibility::of_cells) {
   check_range("gathering rays of a point", parameters.rays, 0, limits::max_gathering_rays);
   check_range("light samples from a point", parameters.light_samples, 0, limits::max_direct_rays);

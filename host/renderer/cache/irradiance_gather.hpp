@@ -70,15 +70,14 @@ struct GatheredParts {
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light but that of hot spots (trace_photons_beside_hot_spots), at ends that
-  ///              read no light maps, and `of_nodes` that at nodes: the same, unless several
-  ///              processes have the photons; k of about 100 suffices
+  ///   photons    of all light but that of hot spots (trace_photons_beside_hot_spots); k of about
+  ///              100 suffices
   ///   ends       light maps of one level for these photons, read where rays meet surface
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
   IrradianceGather(const RayScene& rays, light::LightAtPoints& photons,
-                   light::LightAtPoints& of_nodes, const LightMapParameters& ends,
-                   light::LightAtPoints* caustics, const IrradianceGatherParameters& parameters);
+                   const LightMapParameters& ends, light::LightAtPoints* caustics,
+                   const IrradianceGatherParameters& parameters);
 
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe

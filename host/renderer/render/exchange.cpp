@@ -50,67 +50,71 @@ void append_rows(std::span<const std::byte> bytes, LightTable& all) {
   light::append(reader, all);
 }
 
-/// Rows [first, first + count) of planes and sparse rows.
-struct Rows {
-  std::size_t first, count;
-};
-
-Rows rows_of(const LightLayers& layers, const Shard& shard) {
+/// Calls visit(values, first, count) for all that a process's rows consist of: `count` values of
+/// planes, from `first` on, or all of sparse rows.
+template <class Layers, class Visit>
+void for_each_part(Layers& layers, const Shard& shard, const Visit& visit) {
   const auto height = static_cast<std::uint64_t>(layers.height);
-  return {shard.begin(height), shard.end(height) - shard.begin(height)};
+  const auto width = static_cast<std::uint64_t>(layers.width);
+  const std::uint64_t begin = shard.begin(height), end = shard.end(height);
+  if (!layers.sparse()) {
+    for (auto& layer : layers.layers) {
+      visit(layer.radiance, begin * width, (end - begin) * width);
+      visit(layer.illuminance, begin * width, (end - begin) * width);
+    }
+    return;
+  }
+  const auto visit_all = [&](auto& values) { visit(values, 0, values.size()); };
+  for (std::uint64_t y = begin; y < end; ++y) {
+    visit_all(layers.rows[y].first);
+    visit_all(layers.rows[y].light);
+    visit_all(layers.rows[y].radiance);
+    visit_all(layers.rows[y].illuminance);
+  }
 }
 
-template <class T>
-void put(const std::vector<T>& plane, const Rows& rows, std::size_t width, ByteWriter& bytes) {
-  if (plane.empty()) return;
-  bytes.put(std::span<const T>(plane).subspan(rows.first * width, rows.count * width));
-}
-
-template <class T>
-void take(std::vector<T>& plane, const Rows& rows, std::size_t width, ByteReader& reader) {
-  if (plane.empty()) return;
-  const std::vector<T> values = reader.take<T>();
-  std::copy(values.begin(), values.end(),
-            plane.begin() + static_cast<std::ptrdiff_t>(rows.first * width));
-}
-
-Communicator::Bytes bytes_of(const LightLayers& layers, const Rows& rows) {
+Communicator::Bytes bytes_of(const LightLayers& layers, const Shard& shard) {
   ByteWriter bytes;
-  const auto width = static_cast<std::size_t>(layers.width);
-  for (const LightLayers::Layer& layer : layers.layers) {
-    put(layer.radiance, rows, width, bytes);
-    put(layer.illuminance, rows, width, bytes);
-  }
-  if (!layers.sparse()) return bytes.take();
-  for (std::size_t y = rows.first; y < rows.first + rows.count; ++y) {
-    const LightLayers::Row& row = layers.rows[y];
-    bytes.put(row.first);
-    bytes.put(row.light);
-    bytes.put(row.radiance);
-    bytes.put(row.illuminance);
-  }
+  for_each_part(layers, shard, [&](const auto& values, std::size_t first, std::size_t count) {
+    bytes.put(std::span(values).subspan(first, count));
+  });
   return bytes.take();
 }
 
-void set_rows(std::span<const std::byte> bytes, const Rows& rows, LightLayers& layers) {
+void set_rows(std::span<const std::byte> bytes, const Shard& shard, LightLayers& layers) {
   ByteReader reader(bytes);
-  const auto width = static_cast<std::size_t>(layers.width);
-  for (LightLayers::Layer& layer : layers.layers) {
-    take(layer.radiance, rows, width, reader);
-    take(layer.illuminance, rows, width, reader);
-  }
-  if (!layers.sparse()) return;
-  for (std::size_t y = rows.first; y < rows.first + rows.count; ++y) {
-    LightLayers::Row row;
-    row.first = reader.take<std::uint32_t>();
-    row.light = reader.take<std::uint16_t>();
-    row.radiance = reader.take<glm::vec3>();
-    row.illuminance = reader.take<float>();
-    layers.rows[y] = std::move(row);
-  }
+  for_each_part(
+      layers, shard, [&]<class T>(std::vector<T>& values, std::size_t first, std::size_t count) {
+        std::vector<T> part = reader.take<T>();
+        if (count == values.size()) {
+          values = std::move(part);
+        } else {
+          std::copy(part.begin(), part.end(), values.begin() + static_cast<std::ptrdiff_t>(first));
+        }
+      });
+}
+
+std::vector<ContentHash::Digest> digests_of_all(Communicator& processes, const ContentHash& hash) {
+  const ContentHash::Digest own = hash.digest();
+  return processes.gather_values<ContentHash::Digest>(std::span(&own, 1));
 }
 
 }  // namespace
+
+LightTable Exchange::at(const PrimaryHits& points, const Progress& progress) {
+  return is_common(points) ? at_common(points, progress) : at_own(points, progress);
+}
+
+bool Exchange::is_common(const PrimaryHits& points) const {
+  ContentHash hash;
+  hash.add(points.position);
+  hash.add(points.oriented_face);
+  hash.add(points.diffuse_albedo);
+  hash.add(points.outgoing);
+  hash.add(points.lobe);
+  const auto all = digests_of_all(processes_, hash);
+  return std::count(all.begin(), all.end(), all.front()) == std::ssize(all);
+}
 
 std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& points) const {
   std::vector<std::vector<std::uint32_t>> of_owners(processes_.size());
@@ -141,8 +145,8 @@ LightTable Exchange::at_own(const PrimaryHits& points, const Progress& progress)
     if (of_owners[rank].empty()) continue;
     asked[rank] = bytes_of(estimate::reordered(points, 0, of_owners[rank]));
     if (rank == own) continue;
-    traffic_.points += of_owners[rank].size();
-    traffic_.bytes += asked[rank].size();
+    sent_.points += of_owners[rank].size();
+    sent_.point_bytes += asked[rank].size();
   }
   asked = processes_.exchange(std::move(asked));
   PrimaryHits all;
@@ -158,7 +162,7 @@ LightTable Exchange::at_own(const PrimaryHits& points, const Progress& progress)
     const std::size_t count = first[rank + 1] - first[rank];
     if (count == 0) continue;
     answers[rank] = bytes_of(found.slice(first[rank], count));
-    if (rank != own) traffic_.bytes += answers[rank].size();
+    if (rank != own) sent_.point_bytes += answers[rank].size();
   }
   answers = processes_.exchange(std::move(answers));
   return in_order(of_owners, answers, points.size());
@@ -174,8 +178,7 @@ LightTable Exchange::at_common(const PrimaryHits& points, const Progress& progre
 }
 
 void require_same(Communicator& processes, const ContentHash& work, std::string_view what) {
-  const ContentHash::Digest own = work.digest();
-  const auto all = processes.gather_values<ContentHash::Digest>(std::span(&own, 1));
+  const auto all = digests_of_all(processes, work);
   for (std::size_t rank = 1; rank < all.size(); ++rank) {
     if (all[rank] == all.front()) continue;
     throw UsageError(fmt::format(
@@ -189,12 +192,12 @@ void bring_rows(Communicator& processes, LightLayers& layers) {
   const std::uint32_t ranks = processes.size();
   std::vector<Communicator::Bytes> to_each(ranks);
   if (processes.rank() > 0) {
-    to_each[0] = bytes_of(layers, rows_of(layers, {processes.rank(), ranks}));
+    to_each[0] = bytes_of(layers, {processes.rank(), ranks});
   }
   const std::vector<Communicator::Bytes> got = processes.exchange(std::move(to_each));
   if (processes.rank() > 0) return;
   for (std::uint32_t rank = 1; rank < ranks; ++rank) {
-    set_rows(got[rank], rows_of(layers, {rank, ranks}), layers);
+    set_rows(got[rank], {rank, ranks}, layers);
   }
 }
 
@@ -217,11 +220,11 @@ void add_processes(Communicator& all, RenderCosts& costs) {
                        costs.largest_map,
                        costs.rays,
                        costs.hit_count,
-                       costs.photons_sent,
-                       costs.photon_bytes_sent,
-                       costs.photons_held,
-                       costs.points_sent.points,
-                       costs.points_sent.bytes,
+                       costs.sent.photons,
+                       costs.sent.photon_bytes,
+                       costs.sent.photons_held,
+                       costs.sent.points,
+                       costs.sent.point_bytes,
                        traffic.bytes,
                        memory,
                        std::bit_cast<std::uint64_t>(costs.light_map_errors.squares),

@@ -18,33 +18,27 @@
 namespace photile {
 
 /// Sends points to the owners of their maps, and returns their estimates. What a point gets
-/// must not depend on the points beside it. Collective: all processes ask at the same time.
+/// must not depend on the points beside it. Collective: all processes ask at the same time, each
+/// for its own points or for none. Where all of them ask for the same points, such as nodes of
+/// light maps, each estimates those of its maps, and all have all.
 class Exchange : public light::LightAtPoints {
  public:
-  enum class Points {
-    own,    ///< each process asks for its own points, or for none
-    common  ///< all ask for the same points: each estimates those of its maps, and all have all
-  };
-
   /// References are kept.
-  ///   here          answers for maps of this process
-  ///   none          light of the scene at no points
-  ///   traffic       is added to
+  ///   here   answers for maps of this process
+  ///   none   light of the scene at no points
+  ///   sent   is added to
   Exchange(Communicator& processes, std::shared_ptr<const MapOwners> owners,
-           std::shared_ptr<light::LightAtPoints> here, Points points, LightTable none,
-           PointTraffic& traffic)
+           std::shared_ptr<light::LightAtPoints> here, LightTable none, SentData& sent)
       : processes_(processes),
         owners_(std::move(owners)),
         here_(std::move(here)),
-        points_(points),
         none_(std::move(none)),
-        traffic_(traffic) {}
+        sent_(sent) {}
 
-  LightTable at(const PrimaryHits& points, const Progress& progress) override {
-    return points_ == Points::own ? at_own(points, progress) : at_common(points, progress);
-  }
+  LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
  private:
+  bool is_common(const PrimaryHits& points) const;
   LightTable at_own(const PrimaryHits& points, const Progress& progress);
   LightTable at_common(const PrimaryHits& points, const Progress& progress);
   /// Positions of points, by their owners.
@@ -55,9 +49,8 @@ class Exchange : public light::LightAtPoints {
   Communicator& processes_;
   std::shared_ptr<const MapOwners> owners_;
   std::shared_ptr<light::LightAtPoints> here_;
-  Points points_;
   LightTable none_;
-  PointTraffic& traffic_;
+  SentData& sent_;
 };
 
 /// Refuses work that is not the same on all processes: their parts would make a mixed picture.

@@ -1,12 +1,18 @@
 #include "render/hit_source.hpp"
 
 #include <algorithm>
+#include <glm/gtc/constants.hpp>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "photile/errors.hpp"
+#include "photile/limits.hpp"
 #include "trace/eye_path.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/hot_spots.hpp"
+#include "trace/light_sampler.hpp"
 #include "trace/ray_scene.hpp"
 #include "trace/sensors.hpp"
 #include "trace/shading_point.hpp"
@@ -37,31 +43,9 @@ void add_sensors(std::span<const Sensor> sensors, ContentHash& hash) {
   }
 }
 
-}  // namespace
-
-void CameraHits::add_to(ContentHash& hash) const { add_camera(camera_, hash); }
-void ReflectedHits::add_to(ContentHash& hash) const { add_camera(camera_, hash); }
-void SensorHits::add_to(ContentHash& hash) const { add_sensors(sensors_, hash); }
-void GatherHits::add_to(ContentHash& hash) const {
-  hash.add(response_);
-  add_sensors(sensors_, hash);
-}
-
-PrimaryHitBatch CameraHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
-                                  int first_row, int last_row,
-                                  std::span<const std::uint32_t> map_of) const {
-  return trace_primary_hits(rays, camera_, film, first_row, last_row, map_of);
-}
-
-PrimaryHitBatch ReflectedHits::trace(const RayScene& rays, const PrimaryHitParameters& film,
-                                     int first_row, int last_row,
-                                     std::span<const std::uint32_t> map_of) const {
-  return trace::trace_reflected_hits(rays, camera_, film, first_row, last_row, map_of);
-}
-
-PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParameters& film, int, int,
-                                  std::span<const std::uint32_t>) const {
-  const PrimaryHits once = trace::sensor_hits(rays, sensors_);
+PrimaryHitBatch trace_sensor_hits(const RayScene& rays, std::span<const Sensor> sensors,
+                                  FindsHotSpots finds_hot_spots, const PrimaryHitParameters& film) {
+  const PrimaryHits once = trace::sensor_hits(rays, sensors);
   PrimaryHitBatch batch;
   PrimaryHits& hits = batch.hits;
   for (std::uint32_t hit = 0; hit < once.size(); ++hit) {
@@ -77,7 +61,7 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
     }
   }
   batch.rays = once.size();
-  if (finds_hot_spots_ == FindsHotSpots::yes && film.pass == 0 &&
+  if (finds_hot_spots == FindsHotSpots::yes && film.pass == 0 &&
       !trace::hot_spots_of(rays).empty()) {
     const trace::LightSampler light_sampler(rays.scene());
     for (std::uint32_t hit = 0; hit < once.size(); ++hit) {
@@ -97,16 +81,105 @@ PrimaryHitBatch SensorHits::trace(const RayScene& rays, const PrimaryHitParamete
   return batch;
 }
 
+Film film_of(std::span<const Sensor> sensors, const GatherParameters& gathering) {
+  if (gathering.rays < 1 || gathering.rays > limits::max_samples_per_pixel) {
+    throw UsageError("rays: " + std::to_string(gathering.rays) + " is not between 1 and " +
+                     std::to_string(limits::max_samples_per_pixel));
+  }
+  if (sensors.empty() || sensors.size() > limits::max_sensors) {
+    throw UsageError("sensors: " + std::to_string(sensors.size()) + " is not between 1 and " +
+                     std::to_string(limits::max_sensors));
+  }
+  return {1, static_cast<int>(sensors.size()), gathering.rays};
+}
+
+/// Replaces the illuminance of the film, which is that of the surfaces seen, by that of the
+/// sensors.
+LightLayers with_own_illuminance(LightLayers layers) {
+  const auto own = [](const glm::vec3& radiance) {
+    return static_cast<float>(glm::pi<double>() * luminance(glm::dvec3(radiance)));
+  };
+  for (LightLayers::Layer& layer : layers.layers) {
+    std::transform(layer.radiance.begin(), layer.radiance.end(), layer.illuminance.begin(), own);
+  }
+  for (LightLayers::Row& row : layers.rows) {
+    std::transform(row.radiance.begin(), row.radiance.end(), row.illuminance.begin(), own);
+  }
+  return layers;
+}
+
+}  // namespace
+
+HitSource camera_hits(const Camera& camera, LightLayers* errors) {
+  return {.trace =
+              [&camera](const RayScene& rays, const auto& film, int first, int last, auto map_of) {
+                return trace_primary_hits(rays, camera, film, first, last, map_of);
+              },
+          .add_to = [&camera](ContentHash& hash) { add_camera(camera, hash); },
+          .dense = true,
+          .errors = errors};
+}
+
+HitSource reflected_hits(const Camera& camera) {
+  HitSource hits = camera_hits(camera);
+  hits.trace = [&camera](const RayScene& rays, const auto& film, int first, int last, auto map_of) {
+    return trace::trace_reflected_hits(rays, camera, film, first, last, map_of);
+  };
+  return hits;
+}
+
+HitSource sensor_hits(std::span<const Sensor> sensors, FindsHotSpots finds_hot_spots) {
+  return {.trace = [=](const RayScene& rays, const auto& film, int, int,
+                       auto) { return trace_sensor_hits(rays, sensors, finds_hot_spots, film); },
+          .add_to = [=](ContentHash& hash) { add_sensors(sensors, hash); }};
+}
+
+HitSource gathered_hits(const Scene& scene, std::span<const Sensor> sensors,
+                        SensorResponse response, FindsHotSpots finds_hot_spots) {
+  const auto lights = std::make_shared<const trace::LightSampler>(scene);
+  return {.trace =
+              [=](const RayScene& rays, const auto& film, int first, int last, auto map_of) {
+                return trace::gather_rays(rays, sensors, response, *lights,
+                                          finds_hot_spots == FindsHotSpots::yes, film, first, last,
+                                          map_of);
+              },
+          .add_to =
+              [=](ContentHash& hash) {
+                hash.add(response);
+                add_sensors(sensors, hash);
+              }};
+}
+
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress) {
-  return render_hits(scene, SensorHits(sensors, FindsHotSpots::yes), one_row(sensors, 1), devices,
+  return render_hits(scene, sensor_hits(sensors, FindsHotSpots::yes), one_row(sensors, 1), devices,
                      parameters, progress);
 }
 
 PathTracerResult measure_by_paths(const Scene& scene, std::span<const Sensor> sensors, int paths,
                                   std::uint64_t seed, Progress& progress) {
-  return trace_paths_of_hits(scene, SensorHits(sensors, FindsHotSpots::no),
+  return trace_paths_of_hits(scene, sensor_hits(sensors, FindsHotSpots::no),
                              eye_rays({.seed = seed, .film = one_row(sensors, paths)}), progress);
+}
+
+RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
+                    const GatherParameters& gathering, std::span<Device> devices,
+                    const RenderParameters& parameters, Progress& progress) {
+  RenderResult result =
+      render_hits(scene, gathered_hits(scene, sensors, gathering.response, FindsHotSpots::yes),
+                  film_of(sensors, gathering), devices, parameters, progress);
+  result.layers = with_own_illuminance(std::move(result.layers));
+  return result;
+}
+
+PathTracerResult gather_by_paths(const Scene& scene, std::span<const Sensor> sensors,
+                                 const GatherParameters& gathering, std::uint64_t seed,
+                                 Progress& progress) {
+  PathTracerResult result = trace_paths_of_hits(
+      scene, gathered_hits(scene, sensors, gathering.response, FindsHotSpots::no),
+      eye_rays({.seed = seed, .film = film_of(sensors, gathering)}), progress);
+  result.layers = with_own_illuminance(std::move(result.layers));
+  return result;
 }
 
 }  // namespace photile

@@ -125,7 +125,7 @@ PathTracerResult trace_paths_of_hits(const Scene& scene, const HitSource& source
 
 PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
                              const PrimaryHitParameters& film, Progress& progress) {
-  return trace_paths_of_hits(scene, CameraHits(camera), film, progress);
+  return trace_paths_of_hits(scene, camera_hits(camera), film, progress);
 }
 
 bool has_hidden_caustics(const Scene& scene) {

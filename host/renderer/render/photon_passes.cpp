@@ -20,21 +20,18 @@
 namespace photile {
 namespace {
 
-/// Light that is made when it is first asked for.
-class LazyLight : public light::LightAtPoints {
+/// Light of photons whose maps are built when it is first asked for.
+class LaterLight : public light::LightAtPoints {
  public:
-  using Make = std::function<std::shared_ptr<light::LightAtPoints>()>;
-  explicit LazyLight(Make make) : make_(std::move(make)) {}
+  using Find = std::function<light::LightAtPoints&()>;
+  explicit LaterLight(Find find) : find_(std::move(find)) {}
 
   LightTable at(const PrimaryHits& points, const Progress& progress) override {
-    if (points.size() == 0) return {};
-    if (!light_) light_ = make_();
-    return light_->at(points, progress);
+    return points.size() == 0 ? LightTable() : find_().at(points, progress);
   }
 
  private:
-  Make make_;
-  std::shared_ptr<light::LightAtPoints> light_;
+  Find find_;
 };
 
 /// The same light maps, with nodes as close together as this spacing asks for, by levels that are
@@ -49,48 +46,44 @@ cache::LightMapParameters finer_than(cache::LightMapParameters maps, double spac
 
 }  // namespace
 
-PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons,
-                     Growth growth)
+PassLight::PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons, int parts,
+                     cache::GatheredPoints points)
     : rays_(rays),
       plan_(plan),
       photons_(std::move(photons)),
-      layer_powers_(light::layer_powers(rays.scene())),
-      is_shared_(plan.used().processes != nullptr) {
-  if (!plan.reads_light_maps()) return;
-  if (plan.gathers_at_nodes()) {
-    gather_.emplace(rays, *photons_.at_ends.of_points, *photons_.at_ends.of_nodes, photons_.ends,
-                    photons_.caustics.of_points.get(),
-                    plan.node_gathering(photons_.radius, photons_.maps));
-  } else {
-    by_photons_.emplace(*photons_.all.of_nodes);
-  }
-  read_light_maps(std::move(growth));
+      layer_powers_(light::layer_powers(rays.scene())) {
+  make_light(parts, std::move(points));
   if (photons_.contents) cache_->maps().restore(*photons_.contents);
 }
 
-void PassLight::grow(int parts) { read_light_maps({parts, gathered_->take_points()}); }
-
-void PassLight::read_light_maps(Growth growth) {
+void PassLight::make_light(int parts, cache::GatheredPoints points) {
+  if (plan_.light_by() == LightBy::photons) return;
   cache_.reset();
-  if (gather_) {
-    gathered_.emplace(
+  cache::NodeSource* nodes = nullptr;
+  if (plan_.light_by() == LightBy::cached_photons) {
+    nodes = &by_photons_.emplace(*photons_.all);
+  } else {
+    const RenderParameters& used = plan_.used();
+    if (!gather_) {
+      gather_.emplace(rays_, *photons_.at_ends, photons_.ends, photons_.caustics.get(),
+                      plan_.node_gathering(photons_.radius, photons_.maps));
+    }
+    nodes = &gathered_.emplace(
         *gather_, layer_powers_,
-        cache::rays_of_nodes(rays_.scene(), growth.parts * plan_.used().light_map_rays,
-                             plan_.used().light_map_spacing > 0 ? 0.0 : photons_.maps.spacing),
-        std::move(growth.points));
+        cache::rays_of_nodes(rays_.scene(), parts * used.light_map_rays,
+                             used.light_map_spacing > 0 ? 0.0 : photons_.maps.spacing),
+        std::move(points));
   }
-  cache_.emplace(rays_, photons_.maps, *photons_.all.of_points, nodes(),
-                 gather_ ? &gather_->ends() : nullptr);
+  cache_.emplace(rays_, photons_.maps, *photons_.all, *nodes, gather_ ? &gather_->ends() : nullptr);
 }
 
 std::span<const std::uint32_t> PassLight::map_of() const {
-  const auto& estimate = photons_.all.estimate;
-  return cache_ || !estimate || is_shared_ ? std::span<const std::uint32_t>() : estimate->map_of();
+  return cache_ || plan_.used().processes ? std::span<const std::uint32_t>()
+                                          : photons_.estimate->map_of();
 }
 
 std::vector<double> PassLight::fractions() const {
-  const auto& estimate = (gather_ ? photons_.at_ends : photons_.all).estimate;
-  return estimate ? estimate->fractions() : std::vector<double>();
+  return photons_.estimate ? photons_.estimate->fractions() : std::vector<double>();
 }
 
 PhotonPasses::PhotonPasses(const RayScene& rays, std::span<Device> devices, const RenderPlan& plan,
@@ -119,57 +112,76 @@ PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
   parts_ = parts;
   all_parts_ += parts;
   if (prepared && prepared->light_maps && plan_.reads_light_maps()) {
-    if (prepared->light_maps->settings == light_map_settings()) return waiting(*prepared, keep);
+    if (prepared->light_maps->settings == light_map_settings()) return build_later(*prepared, keep);
     progress.note("light maps of the saved photons are of other settings: they are made anew");
   }
-  Maps maps = trace_and_build(prepared, keep, progress);
-  const Stopwatch stopwatch;
-  PassPhotons photons = std::move(maps.facts);
-  photons.all = shared(estimate_of(maps.photons));
-  if (plan_.gathers_at_nodes()) photons.at_ends = shared(estimate_at_ends(maps.photons));
-  if (maps.caustics.maps) photons.caustics = shared(estimate_of(maps.caustics));
-  costs_.estimators.add(stopwatch.taken());
+  PassPhotons photons = build(prepared, keep, progress);
   if (!plan_.reads_light_maps()) ++pass_;
   return photons;
 }
 
+/// Photons of the pass, their maps and estimates. The photons are gone when this returns: the maps
+/// hold copies.
+PassPhotons PhotonPasses::build(TracedPhotons* prepared, const KeepPhotons* keep,
+                                Progress& progress) {
+  PhotonTracerResult traced = trace(prepared, keep, progress);
+  PassPhotons photons = facts(traced.photons);
+  Parts all = build_maps(std::move(traced.photons), plan_.used().kernel, plan_.leaves_out_hidden(),
+                         progress);
+  costs_.note_last(all.maps->front().statistics());
+  // Among the photons of all light, caustics have the same groups, lit surface and radius.
+  std::optional<Parts> caustics;
+  if (traced.caustics.total() > 0) {
+    caustics = build_maps(std::move(traced.caustics), caustic_kernel, true, progress);
+  }
+  const Stopwatch release_watch;
+  traced = {};
+  costs_.release.add(release_watch.taken());
+
+  const Stopwatch stopwatch;
+  const auto estimate_by = [&](const Parts& parts) {
+    return std::make_shared<estimate::PhotonEstimate>(devices_, scene_, parts);
+  };
+  auto estimate = estimate_by(all);
+  photons.all = shared(estimate);
+  if (plan_.gathers_at_nodes()) {
+    all.parameters.neighbours = plan_.neighbours_at_ends();
+    photons.at_ends = shared(estimate = estimate_by(all));
+  }
+  if (caustics) photons.caustics = shared(estimate_by(*caustics));
+  photons.estimate = std::move(estimate);
+  costs_.estimators.add(stopwatch.taken());
+  return photons;
+}
+
 /// The photons of `prepared` have no maps until an estimate is needed: light maps tell most light.
-PassPhotons PhotonPasses::waiting(TracedPhotons& prepared, const KeepPhotons* keep) {
+PassPhotons PhotonPasses::build_later(TracedPhotons& prepared, const KeepPhotons* keep) {
   radius_ = prepared.radius;
   PassPhotons photons = facts(prepared.photons);
-  photons.contents = std::move(prepared.light_maps);
-  prepared.light_maps.reset();
-  const bool has_caustics = plan_.keeps_caustics() && prepared.caustics->size() > 0;
+  photons.contents = std::exchange(prepared.light_maps, std::nullopt);
+  const bool has_caustics = plan_.gathers_at_nodes() && prepared.caustics->size() > 0;
   if (keep) (*keep)(prepared);
-  struct Waiting {
-    TracedPhotons photons;
-    std::optional<Maps> maps;
+  struct Later {
+    TracedPhotons prepared;
+    std::optional<PassPhotons> built;
   };
-  const auto waiting = std::make_shared<Waiting>(Waiting{std::move(prepared), std::nullopt});
-  const auto built = [this, waiting]() -> Maps& {
-    // This must not be cancelled: photons that are released on the way would be lost.
-    if (!waiting->maps) {
-      waiting->maps = trace_and_build(&waiting->photons, nullptr, Progress::none());
-    }
-    return *waiting->maps;
+  const auto later = std::make_shared<Later>(Later{std::move(prepared), std::nullopt});
+  const auto light = [&](PassPhotons::Light PassPhotons::*which) {
+    return std::make_shared<LaterLight>([this, later, which]() -> light::LightAtPoints& {
+      // This must not be cancelled: photons that are released on the way would be lost.
+      if (!later->built) later->built = build(&later->prepared, nullptr, Progress::none());
+      return *(*later->built.*which);
+    });
   };
-  const auto lazy = [](LazyLight::Make make) {
-    const auto light = std::make_shared<LazyLight>(std::move(make));
-    return PhotonLight{light, light, nullptr};
-  };
-  photons.all = lazy([this, built] { return estimate_of(built().photons); });
-  if (plan_.gathers_at_nodes()) {
-    photons.at_ends = lazy([this, built] { return estimate_at_ends(built().photons); });
-  }
-  if (has_caustics) {
-    photons.caustics = lazy([this, built] { return estimate_of(built().caustics); });
-  }
+  photons.all = light(&PassPhotons::all);
+  if (plan_.gathers_at_nodes()) photons.at_ends = light(&PassPhotons::at_ends);
+  if (has_caustics) photons.caustics = light(&PassPhotons::caustics);
   return photons;
 }
 
 PassPhotons PhotonPasses::facts(const Photons& photons) {
-  PassPhotons facts{
-      .radius = radius_, .all = {}, .at_ends = {}, .caustics = {}, .maps = {}, .ends = {}};
+  PassPhotons facts;
+  facts.radius = radius_;
   if (plan_.reads_light_maps()) {
     const double radius = radius_ * std::sqrt(static_cast<double>(parts_) / all_parts_);
     facts.maps = plan_.light_maps(radius, scene_, photons, layer_powers_);
@@ -180,28 +192,11 @@ PassPhotons PhotonPasses::facts(const Photons& photons) {
   return facts;
 }
 
-std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(
-    const Built& built, const EstimateParameters& parameters) const {
-  return std::make_shared<estimate::PhotonEstimate>(
-      devices_, scene_, estimate::PhotonEstimate::Parts{built.maps, parameters, built.seen});
-}
-
-std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_of(const Built& built) const {
-  return estimate_of(built, plan_.estimate(pass_, built.kernel, surface_));
-}
-
-std::shared_ptr<estimate::PhotonEstimate> PhotonPasses::estimate_at_ends(const Built& built) const {
-  return estimate_of(built, plan_.estimate_at_ends(built.kernel, surface_));
-}
-
-PhotonLight PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estimate) {
+PassPhotons::Light PhotonPasses::shared(std::shared_ptr<estimate::PhotonEstimate> estimate) {
   auto* const processes = plan_.used().processes;
-  if (!processes) return {estimate, estimate, estimate};
-  const auto by = [&](Exchange::Points points) {
-    return std::make_shared<Exchange>(*processes, owners_, estimate, points,
-                                      LightTable(rays_.needs()), costs_.points_sent);
-  };
-  return {by(Exchange::Points::own), by(Exchange::Points::common), estimate};
+  if (!processes) return estimate;
+  return std::make_shared<Exchange>(*processes, owners_, std::move(estimate),
+                                    LightTable(rays_.needs()), costs_.sent);
 }
 
 /// A map is not cut, and holds the photons of a triangle at least. Where those of one may be too
@@ -234,7 +229,7 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
                                        Progress& progress) {
   if (pass_ == 0 && !prepared) check_map_memory();
   if (!kernels_) {  // while photons are traced
-    const bool caustics = plan_.keeps_caustics() && rays_.needs().specular_paths;
+    const bool caustics = plan_.gathers_at_nodes() && rays_.needs().specular_paths;
     kernels_.emplace(scene_, devices_, plan_.used(), plan_.leaves_out_hidden() || caustics,
                      caustics);
   }
@@ -242,7 +237,7 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
   PhotonTracerResult traced;
   if (prepared) {
     traced.photons = std::move(prepared->photons);
-    if (plan_.keeps_caustics()) traced.caustics = std::move(*prepared->caustics);
+    if (plan_.gathers_at_nodes()) traced.caustics = std::move(*prepared->caustics);
   } else {
     const PhotonTracerParameters tracing = plan_.tracing(pass_, paths_before_, parts_);
     traced = plan_.finds_hot_spots()
@@ -253,12 +248,15 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
   if (auto* const processes = plan_.used().processes) {
     const Stopwatch stopwatch;
     traced.photons.of_all = photons_of_all(*processes, traced.photons);
-    if (plan_.keeps_caustics()) {
+    if (plan_.gathers_at_nodes()) {
       traced.caustics.of_all = photons_of_all(*processes, traced.caustics);
     }
     costs_.exchange.add(stopwatch.taken());
   }
-  count(traced);
+  costs_.count(traced);
+  for (std::size_t light = 0; light < paths_before_.size(); ++light) {
+    paths_before_[light] += traced.photons.emitted_per_light[light];
+  }
   if (pass_ == 0) {
     const Stopwatch radius_watch;
     const bool grouped = prepared && prepared->has_groups();
@@ -271,7 +269,7 @@ PhotonTracerResult PhotonPasses::trace(TracedPhotons* prepared, const KeepPhoton
   if (pass_ == 0) find_surface(traced.photons);
   if (keep) {
     TracedPhotons own{std::move(traced.photons), std::move(groups_), radius_};
-    if (plan_.keeps_caustics()) own.caustics = std::move(traced.caustics);
+    if (plan_.gathers_at_nodes()) own.caustics = std::move(traced.caustics);
     (*keep)(own);
     traced.photons = std::move(own.photons);
     groups_ = std::move(own.groups);
@@ -288,11 +286,8 @@ void PhotonPasses::move_to_owners(PhotonTracerResult& traced, Progress& progress
                                               traced.photons.of_all->landed, processes.size());
   const double radius = plan_.maps(pass_, radius_).radius;
   const auto move = [&](Photons& photons) {
-    PhotonsMoved moved;
-    photons = to_owners(processes, scene_, groups_, *owners_, radius, std::move(photons), moved);
-    costs_.photons_sent += moved.sent;
-    costs_.photon_bytes_sent += moved.bytes;
-    costs_.photons_held += moved.held;
+    photons =
+        to_owners(processes, scene_, groups_, *owners_, radius, std::move(photons), costs_.sent);
   };
   move(traced.photons);
   if (traced.caustics.total() > 0) move(traced.caustics);
@@ -300,65 +295,22 @@ void PhotonPasses::move_to_owners(PhotonTracerResult& traced, Progress& progress
   costs_.exchange.add(stopwatch.taken(), traced.photons.bytes() + traced.caustics.bytes());
 }
 
-/// The photons are gone when this returns: the maps hold copies.
-PhotonPasses::Maps PhotonPasses::trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep,
-                                                 Progress& progress) {
-  PhotonTracerResult traced = trace(prepared, keep, progress);
-  const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
-  PassPhotons found = facts(traced.photons);
-  Maps maps{build(std::move(traced.photons), parameters, plan_.used().kernel,
-                  plan_.leaves_out_hidden(), progress),
-            {},
-            std::move(found)};
-  const PhotonMapStatistics& built = maps.photons.maps->front().statistics();
-  costs_.maps = built.maps;
-  costs_.normal_filtered_maps = built.normal_filtered_maps;
-  costs_.map_sizes = built.map_sizes;
-  // Among the photons of all light, caustics have the same groups, lit surface and radius.
-  if (traced.caustics.total() > 0) {
-    maps.caustics = build(std::move(traced.caustics), parameters, caustic_kernel, true, progress);
-  }
-  const Stopwatch release_watch;
-  traced = {};
-  costs_.release.add(release_watch.taken());
-  return maps;
-}
-
-PhotonPasses::Built PhotonPasses::build(Photons photons, const PhotonMapParameters& parameters,
-                                        DensityKernel kernel, bool leaves_out_hidden,
-                                        Progress& progress) {
+PhotonPasses::Parts PhotonPasses::build_maps(Photons photons, DensityKernel kernel,
+                                             bool leaves_out_hidden, Progress& progress) {
   const Stopwatch stopwatch;
+  const PhotonMapParameters parameters = plan_.maps(pass_, radius_);
   kernels_->wait();
-  std::shared_ptr<const estimate::VisiblePhotons> seen;
+  Parts parts{nullptr, plan_.estimate(pass_, kernel, surface_)};
   if (leaves_out_hidden) {
-    seen =
+    parts.seen =
         std::make_shared<const estimate::VisiblePhotons>(rays_, photons, kernel, parameters.radius);
   }
   std::vector<std::uint8_t> own;
   if (owners_) own = owners_->maps_of(plan_.used().processes->rank());
-  std::vector<PhotonMaps> maps = estimate::build_maps_on_each(devices_, scene_, std::move(photons),
-                                                              groups_, parameters, progress, own);
-  std::uint64_t device_bytes = 0, spilled_bytes = 0;
-  for (const PhotonMaps& one : maps) {
-    device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
-    spilled_bytes += one.statistics().spilled_bytes;
-  }
-  costs_.build.add(stopwatch.taken(), spilled_bytes, device_bytes);
-  const PhotonMapStatistics& built = maps.front().statistics();
-  costs_.references += built.references;
-  costs_.largest_map = std::max(costs_.largest_map, built.largest_map);
-  return {std::make_shared<const std::vector<PhotonMaps>>(std::move(maps)), kernel,
-          std::move(seen)};
-}
-
-void PhotonPasses::count(const PhotonTracerResult& traced) {
-  for (std::size_t light = 0; light < paths_before_.size(); ++light) {
-    const std::uint64_t paths = traced.photons.emitted_per_light[light];
-    paths_before_[light] += paths;
-    costs_.emitted_photons += paths;
-  }
-  costs_.stored_photons += traced.photons.total();
-  costs_.caustic_photons += traced.caustics.total();
+  parts.maps = std::make_shared<const std::vector<PhotonMaps>>(estimate::build_maps_on_each(
+      devices_, scene_, std::move(photons), groups_, parameters, progress, own));
+  costs_.add(*parts.maps, stopwatch.taken());
+  return parts;
 }
 
 void PhotonPasses::find_groups(const Photons& photons, TracedPhotons* prepared,
@@ -366,7 +318,8 @@ void PhotonPasses::find_groups(const Photons& photons, TracedPhotons* prepared,
   const Stopwatch stopwatch;
   groups_ = prepared ? std::move(prepared->groups)
                      : find_map_groups(
-                           scene_, photons, plan_.used().maps, plan_.groups(radius_), progress,
+                           scene_, photons, plan_.used().maps,
+                           {radius_, plan_.used().angle_degrees}, progress,
                            plan_.passes() > 1 ? MapUsers::any_photons : MapUsers::these_photons);
   costs_.group.add(stopwatch.taken(), groups_.bytes());
   costs_.group_members = groups_.members.size();

@@ -1,4 +1,4 @@
-// Photon passes of a rendering, and the light that each of them tells.
+// Photon passes of a rendering, and the light that each of them gives.
 #pragma once
 
 #include <memory>
@@ -20,58 +20,44 @@
 
 namespace photile {
 
-/// The photon estimate, as points ask for it.
-struct PhotonLight {
-  std::shared_ptr<light::LightAtPoints> of_points;
-  /// The light at points that all processes ask for together; `own` where there is one process.
-  std::shared_ptr<light::LightAtPoints> of_nodes;
-  std::shared_ptr<const estimate::PhotonEstimate>
-      estimate;  ///< null where maps are built when they are needed
-};
-
 /// The photons of one pass, and what follows from them.
 struct PassPhotons {
+  using Light = std::shared_ptr<light::LightAtPoints>;
+
   double radius = 0;  ///< of the first pass, metres
-  PhotonLight all;
-  PhotonLight at_ends;   ///< by fewer neighbours: of rays, where nodes gather; else null
-  PhotonLight caustics;  ///< that came by mirrors and glass alone; null without any
-  cache::LightMapParameters maps,
-      ends;  ///< where light maps are read: of them, and of those at ray ends
+  Light all;
+  Light at_ends;   ///< by fewer neighbours: of rays, where nodes gather; else null
+  Light caustics;  ///< that came by mirrors and glass alone; null without any
+  /// The estimate of most points; null where maps are built when they are needed.
+  std::shared_ptr<const estimate::PhotonEstimate> estimate;
+  /// Where light maps are read: of them, and of those at ray ends.
+  cache::LightMapParameters maps, ends;
   /// What such light maps held, if they were kept.
   std::optional<LightMapContents> contents = std::nullopt;
 };
 
-/// How far light maps have grown (docs/light-maps.md).
-struct Growth {
-  int parts = 1;  ///< in all rounds: nodes have this many times the rays of the settings
-  cache::GatheredPoints points = {};  ///< at which rays gathered in the rounds before
-};
-
-/// The light of a scene by the photons of one pass: the plan decides here which source is queried
-/// for which points. By photons alone it is the photon estimate; where light maps are read, a cache
-/// whose nodes the estimate values, or rays, which read a coarser cache where they end.
+/// The light of a scene by the photons of one pass: a chain of answers, as the plan has it.
 class PassLight {
  public:
   /// References are kept. Errors: those of SurfaceCache.
-  ///   growth   of light maps whose nodes gather
-  PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons, Growth growth = {});
+  PassLight(const RayScene& rays, const RenderPlan& plan, PassPhotons photons, int parts = 1,
+            cache::GatheredPoints points = {});
 
-  /// Light maps of the same photons, after a further round of growing.
-  ///   parts   as Growth has them
-  void grow(int parts);
+  /// Makes the chain.
+  ///   parts    where nodes gather: they have this many times the rays of the settings
+  ///   points   at which rays gathered before
+  void make_light(int parts, cache::GatheredPoints points);
 
-  /// All light at points: the end of the chain.
-  light::LightAtPoints& light() {
-    return cache_ ? static_cast<light::LightAtPoints&>(*cache_) : *photons_.all.of_points;
+  /// The light at hits, and its standard errors where these are asked for; else they are empty.
+  cache::LightAndErrors at(const PrimaryHits& hits, bool with_errors, const Progress& progress) {
+    if (!cache_) return {photons_.all->at(hits, progress), {}};
+    if (with_errors) return cache_->with_errors(hits, *gathered_, progress);
+    return {cache_->at(hits, progress), {}};
   }
 
   /// Null where light maps are not read.
   cache::SurfaceCache* cache() { return cache_ ? &*cache_ : nullptr; }
   const cache::SurfaceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
-  /// What values the nodes of the cache.
-  cache::NodeSource& nodes() {
-    return gathered_ ? static_cast<cache::NodeSource&>(*gathered_) : *by_photons_;
-  }
   /// Where rays value nodes; else null.
   const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
   /// Takes the points at which rays gathered, for the light of further photons.
@@ -85,13 +71,10 @@ class PassLight {
   std::vector<double> fractions() const;
 
  private:
-  void read_light_maps(Growth growth);
-
   const RayScene& rays_;
   const RenderPlan& plan_;
   const PassPhotons photons_;
   const std::vector<double> layer_powers_;
-  const bool is_shared_;                           ///< with other processes
   std::optional<cache::IrradianceGather> gather_;  ///< where rays value nodes
   std::optional<cache::GatheredNodes> gathered_;
   std::optional<cache::ValuedBy> by_photons_;  ///< where photons value nodes
@@ -100,7 +83,7 @@ class PassLight {
 
 /// Traces the photons of one pass after another, and builds their maps. The first pass determines
 /// the radius, the groups and the lit surface of all. Where light maps are read there is one pass,
-/// and they may grow: further photons determine their own radius, groups and lit surface, and all
+/// and further photons may follow: they determine their own radius, groups and lit surface, and all
 /// photons so far how close together nodes lie.
 class PhotonPasses {
  public:
@@ -125,36 +108,21 @@ class PhotonPasses {
   std::string light_map_settings() const;
 
  private:
-  struct Built {
-    std::shared_ptr<const std::vector<PhotonMaps>> maps;  ///< the same on each device
-    DensityKernel kernel;
-    std::shared_ptr<const estimate::VisiblePhotons> seen;  ///< null: all photons count
-  };
-  struct Maps {
-    Built photons;
-    Built caustics;     ///< for rays that gather, where there are any
-    PassPhotons facts;  ///< without their light
-  };
+  using Parts = estimate::PhotonEstimate::Parts;
 
-  PassPhotons waiting(TracedPhotons& prepared, const KeepPhotons* keep);
+  PassPhotons build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
+  PassPhotons build_later(TracedPhotons& prepared, const KeepPhotons* keep);
   void check_map_memory() const;
   /// Photons of the pass, with all that is found before there are maps.
   PhotonTracerResult trace(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
-  Maps trace_and_build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
-  Built build(Photons photons, const PhotonMapParameters& parameters, DensityKernel kernel,
-              bool leaves_out_hidden, Progress& progress);
-  std::shared_ptr<estimate::PhotonEstimate> estimate_of(const Built& built,
-                                                        const EstimateParameters& parameters) const;
-  /// By the k that was asked for.
-  std::shared_ptr<estimate::PhotonEstimate> estimate_of(const Built& built) const;
-  std::shared_ptr<estimate::PhotonEstimate> estimate_at_ends(const Built& built) const;
+  Parts build_maps(Photons photons, DensityKernel kernel, bool leaves_out_hidden,
+                   Progress& progress);
   /// The estimate as it is asked for where several processes have the maps.
-  PhotonLight shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
+  PassPhotons::Light shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
   /// What follows from the photons of the pass.
   PassPhotons facts(const Photons& photons);
   /// Where several processes share the rendering: sends photons to the owners of their maps.
   void move_to_owners(PhotonTracerResult& traced, Progress& progress);
-  void count(const PhotonTracerResult& traced);
   void find_groups(const Photons& photons, TracedPhotons* prepared, Progress& progress);
   void find_surface(const Photons& photons);
 

@@ -42,7 +42,7 @@ Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device>
       fractions_(devices.size(), 0.0) {}
 
 void Picture::add(const HitSource& source, PassLight& light, Progress& progress) {
-  LightLayers* const errors = source.errors();
+  LightLayers* const errors = source.errors;
   if (auto* const processes = plan_.used().processes; processes && film_.pass == 0) {
     ContentHash hash;
     source.add_to(hash);
@@ -61,14 +61,25 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
   // All processes make as many batches: each may have to estimate for the others.
   const int most = static_cast<int>((height - 1) / own.count + 1);
   const int rows = rows_per_batch();
+  const LightTotals before = totals(light);
   progress.begin("estimate radiance", static_cast<std::uint64_t>(end - begin), "rows");
   for (int done = 0; done < most; done += rows) {
     progress.throw_if_cancelled();
     const int first = std::min(begin + done, end), last = std::min(first + rows, end);
-    add_rows(source, light, trace_rows(source, light, first, last), progress);
+    PrimaryHitBatch batch = trace_rows(source, light, first, last), reflected;
+    if (batch.reflected.size() > 0 && light.cache()) {
+      batch.reflected.coarse = cache::suits_photons(batch.hits, batch.reflected, film_.runs,
+                                                    light.cache()->photon_noise());
+    }
+    reflected.hits = std::move(batch.reflected);
+    add_hits(source, light, batch, 1.0f / static_cast<float>(film_.samples_per_pixel), progress);
+    if (reflected.hits.size() > 0 || (plan_.used().processes && film_.lobe_rays)) {
+      add_hits(source, light, reflected, 0.0f, progress);  // the pixel's illuminance is not theirs
+    }
     progress.advance(static_cast<std::uint64_t>(last - first));
   }
   progress.end();
+  costs_.add(before, totals(light));
   ++film_.pass;
   if (errors && film_.pass == film_.passes) {
     add_sample_errors(*errors, runs_);
@@ -135,62 +146,47 @@ PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& li
   return batch;
 }
 
-void Picture::add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
-                       const Progress& progress) {
-  const auto add = [&](PrimaryHitBatch& seen, float illuminance_weight) {
-    const bool has_errors = source.errors() && light.gathered();
-    auto [estimates, errors] = light_at(light, seen.hits, has_errors, progress);
-    const Stopwatch film_watch;
-    if (mixdown_) {
-      estimates = pooled(*mixdown_, estimates);
-      pool_emission(*mixdown_, seen);
-    }
-    if (source.errors()) {
-      add_to_film(runs_, seen, estimates, illuminance_weight);
-      join_runs(seen, film_.runs);
-    }
-    add_to_film(layers_, seen, estimates, illuminance_weight);
-    costs_.film.add(film_watch.taken());
-    if (!has_errors) return;
-    seen.emission.clear();  // only its samples have errors
-    add_to_film(*source.errors(), seen, errors, illuminance_weight);
-  };
-  PrimaryHitBatch reflected;
-  if (batch.reflected.size() > 0 && light.cache()) {
-    batch.reflected.coarse = cache::suits_photons(batch.hits, batch.reflected, film_.runs,
-                                                  light.cache()->photon_noise());
+void Picture::add_hits(const HitSource& source, PassLight& light, PrimaryHitBatch& seen,
+                       float illuminance_weight, const Progress& progress) {
+  const Stopwatch light_watch;
+  const bool has_errors = source.errors && light.gathered();
+  auto [estimates, errors] = light.at(seen.hits, has_errors, progress);
+  asked_ += light_watch.taken();
+  hits_ += seen.hits.size();
+  const Stopwatch film_watch;
+  if (mixdown_) {
+    estimates = pooled(*mixdown_, estimates);
+    pool_emission(*mixdown_, seen);
   }
-  reflected.hits = std::move(batch.reflected);
-  add(batch, 1.0f / static_cast<float>(film_.samples_per_pixel));
-  if (reflected.hits.size() == 0 && !(plan_.used().processes && film_.lobe_rays)) return;
-  add(reflected, 0.0f);  // the pixel's illuminance is not theirs
+  if (source.errors) {
+    add_to_film(runs_, seen, estimates, illuminance_weight);
+    join_runs(seen, film_.runs);
+  }
+  add_to_film(layers_, seen, estimates, illuminance_weight);
+  costs_.film.add(film_watch.taken());
+  if (!has_errors) return;
+  seen.emission.clear();  // only its samples have errors
+  add_to_film(*source.errors, seen, errors, illuminance_weight);
 }
 
-cache::LightAndErrors Picture::light_at(PassLight& light, const PrimaryHits& hits, bool with_errors,
-                                        const Progress& progress) {
-  const Stopwatch stopwatch;
-  const double compiled = compile_seconds();
-  const TimeTaken built = costs_.build.time;  // maps may be built when they are first needed
-  cache::SurfaceCache* const cache = light.cache();
+LightTotals Picture::totals(const PassLight& light) const {
+  const TimeTaken& building = costs_.build.time;
+  const cache::SurfaceCache* const cache = light.cache();
   if (!cache) {
-    LightTable estimates = light.light().at(hits, progress);
-    costs_.estimate.add(stopwatch.taken() - (costs_.build.time - built));
-    costs_.estimate_compile_seconds += compile_seconds() - compiled;
-    costs_.hit_count += hits.size();
-    return {std::move(estimates), {}};
+    return {.asked = asked_,
+            .filling = building,
+            .building = building,
+            .compile_seconds = compile_seconds(),
+            .hits = hits_,
+            .errors = {}};
   }
-  const std::uint64_t alone_before = cache->hits_alone();
-  const std::uint64_t nodes_before = cache->maps().statistics().nodes;
-  const TimeTaken filled_before = cache->fill_time();
-  cache::LightAndErrors found = with_errors ? cache->with_errors(hits, *light.gathered(), progress)
-                                            : cache::LightAndErrors{cache->at(hits, progress), {}};
-  const TimeTaken filling = cache->fill_time() - filled_before;
-  costs_.light_maps.add(filling - (costs_.build.time - built), cache->maps().bytes());
-  costs_.light_map_nodes += cache->maps().statistics().nodes - nodes_before;
-  costs_.light_map_errors = cache->errors_read();
-  costs_.estimate.add(stopwatch.taken() - filling);
-  costs_.hit_count += cache->hits_alone() - alone_before;
-  return found;
+  return {.asked = asked_,
+          .filling = cache->fill_time(),
+          .building = building,
+          .hits = cache->hits_alone(),
+          .nodes = cache->maps().statistics().nodes,
+          .node_bytes = cache->maps().bytes(),
+          .errors = cache->errors_read()};
 }
 
 }  // namespace photile

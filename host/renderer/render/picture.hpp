@@ -36,12 +36,11 @@ class Picture {
   Shard own_rows() const;
   int rows_per_batch() const;
   PrimaryHitBatch trace_rows(const HitSource& source, const PassLight& light, int first, int last);
-  void add_rows(const HitSource& source, PassLight& light, PrimaryHitBatch batch,
-                const Progress& progress);
-  /// Errors are empty unless they are asked for.
-  cache::LightAndErrors light_at(PassLight& light, const PrimaryHits& hits, bool with_errors,
-                                 const Progress& progress);
+  ///   illuminance_weight   of a whole sample in that of its pixel
+  void add_hits(const HitSource& source, PassLight& light, PrimaryHitBatch& seen,
+                float illuminance_weight, const Progress& progress);
   double compile_seconds() const;
+  LightTotals totals(const PassLight& light) const;
 
   const RayScene& rays_;
   const Scene& scene_;
@@ -53,6 +52,8 @@ class Picture {
   LightLayers layers_;
   LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
   std::vector<double> fractions_;
+  TimeTaken asked_;         ///< for light
+  std::uint64_t hits_ = 0;  ///< at which light was asked for
 };
 
 }  // namespace photile

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "common/ascii_text.hpp"
 #include "photile/defaults.hpp"
@@ -69,37 +70,15 @@ RenderParameters with_work(RenderParameters parameters, double factor) {
   return parameters;
 }
 
-bool allows_work(const RenderParameters& parameters, int factor) {
-  return std::all_of(settings().begin(), settings().end(), [&](const Setting& setting) {
-    if (!is_work(setting)) return true;
+int most_work(const RenderParameters& parameters) {
+  std::uint64_t most = std::numeric_limits<int>::max();
+  for (const Setting& setting : settings()) {
     const SettingValue value = setting.value(parameters);
     const auto* const whole = std::get_if<std::uint64_t>(&value);
-    return !whole || *whole <= std::get<WholeNumbers>(setting.range).most /
-                                   static_cast<std::uint64_t>(factor);
-  });
-}
-
-bool grows(const RenderParameters& asked) {
-  return asked.light_maps == LightMapMode::on && asked.passes > 1 && nodes_gather(asked);
-}
-
-RenderParameters of_parts(const RenderParameters& part, int parts) {
-  RenderParameters all = with_work(part, parts);
-  all.photons.emitted_photons = part.photons.emitted_photons * photons_of_parts(parts);
-  if (parts > 1) {
-    all.passes = parts;
-    all.light_maps = LightMapMode::on;
+    if (!is_work(setting) || !whole || *whole == 0) continue;
+    most = std::min(most, std::get<WholeNumbers>(setting.range).most / *whole);
   }
-  return all;
-}
-
-RenderParameters part_of(const RenderParameters& all) {
-  RenderParameters part = with_work(all, 1.0 / all.passes);
-  part.photons.emitted_photons =
-      std::max<std::uint64_t>(1, all.photons.emitted_photons / photons_of_parts(all.passes));
-  part.light_map_rays = std::max(1, part.light_map_rays);
-  part.passes = 1;
-  return part;
+  return static_cast<int>(most);
 }
 
 RenderParameters first_picture_parameters(const RenderParameters& asked) {

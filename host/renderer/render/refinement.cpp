@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "render/quality.hpp"
+#include "render/render_plan.hpp"
 
 namespace photile {
 namespace {
@@ -36,7 +36,7 @@ constexpr double power_of_nodes = 0.5;
 /// The time of the photons of a part over that of its rays.
 constexpr double time_of_photons = 0.5;
 
-/// Stops a picture when the time is over.
+/// Stops a round when the time is over.
 class Deadline : public Progress {
  public:
   Deadline(Progress& to, const std::function<double()>& elapsed, double seconds)
@@ -48,8 +48,9 @@ class Deadline : public Progress {
   void end() override { to_.end(); }
   void note(const std::string& line) override { to_.note(line); }
   void warn(const std::string& line) override { to_.warn(line); }
-  bool cancelled() const override { return to_.cancelled() || is_over(); }
-  bool is_over() const { return seconds_ > 0 && elapsed_() >= seconds_; }
+  bool cancelled() const override {
+    return to_.cancelled() || (seconds_ > 0 && elapsed_() >= seconds_);
+  }
 
  private:
   Progress& to_;
@@ -57,75 +58,88 @@ class Deadline : public Progress {
   double seconds_;
 };
 
-/// The error of the most work that settings allow, where it is noise.
-double least_error(const RenderParameters& part, int parts, double error) {
-  for (; allows_work(part, 2 * parts); parts *= 2) error /= std::sqrt(2.0);
+/// The error of the most work that is allowed, where it is noise.
+double least_error(int parts, int most_parts, double error) {
+  for (; parts <= most_parts / 2; parts *= 2) error /= std::sqrt(2.0);
   return error;
 }
 
-/// The work of all rounds that add up to `parts` parts, in proportion to their time.
-double work_of(int parts) {
-  const double photons = photons_of_parts(parts);
+}  // namespace
+
+double work_of_pictures(int parts) {
+  const double photons = parts > 0 ? photons_of_parts(parts) : 0;
   return parts * std::pow(photons, power_of_nodes) + time_of_photons * photons;
 }
 
-/// The likely seconds of the next round, after one that took `seconds` and led to `parts` parts.
-///   before   parts before that; 0 = none
-double seconds_of_next(double seconds, int before, int parts) {
-  const double work_before = before > 0 ? work_of(before) : 0;
-  return seconds * (work_of(parts_after(parts)) - work_of(parts)) / (work_of(parts) - work_before);
+double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress& progress) {
+  double error = std::numeric_limits<double>::infinity();
+  for (int parts = 0, next = 1;;) {
+    const double began = steps.elapsed(), error_before = error;
+    Deadline deadline(progress, steps.elapsed, parts < goal.parts ? 0 : goal.seconds);
+    try {
+      error = steps.add(next - parts, deadline);
+    } catch (const Interrupted&) {
+      if (parts < goal.parts || progress.cancelled()) throw;
+      progress.end();
+      progress.note("the time is over; what was being made is given up");
+      return error;
+    }
+    const int parts_before = std::exchange(parts, next);
+    steps.finished(parts, error);
+    next = steps.next(parts);
+    if (parts < goal.parts) {
+      next = std::min(next, goal.parts);
+      continue;
+    }
+    if (!goal.is_given()) return error;
+    if (goal.error > 0) {
+      if (error <= goal.error) return error;
+      const double floor =
+          error > stalled * error_before ? error : least_error(parts, steps.most_parts, error);
+      if (floor > goal.error) {
+        progress.note(fmt::format(
+            "a standard error of {:.3g}% is out of reach: about {:.2g}% is left however much is "
+            "done; the picture is the best so far",
+            100 * goal.error, 100 * floor));
+        return error;
+      }
+    }
+    const double now = steps.elapsed(), work = steps.work(parts);
+    const double of_next =
+        (now - began) * (steps.work(next) - work) / (work - steps.work(parts_before));
+    const bool fits = goal.seconds == 0 || of_next <= planned_part * (goal.seconds - now);
+    if (!fits || next > steps.most_parts) return error;
+  }
 }
 
-void tell_out_of_reach(double error, double floor, Progress& progress) {
-  progress.note(
-      fmt::format("a standard error of {:.3g}% is out of reach: about {:.2g}% is left however much "
-                  "is done; the "
-                  "picture is the best so far",
-                  100 * error, 100 * floor));
+bool in_parts(const RenderParameters& asked) {
+  return asked.light_maps == LightMapMode::on && asked.passes > 1 && nodes_gather(asked);
 }
 
-}  // namespace
+RenderParameters of_parts(const RenderParameters& part, int parts) {
+  RenderParameters all = with_work(part, parts);
+  all.photons.emitted_photons = part.photons.emitted_photons * photons_of_parts(parts);
+  if (parts > 1) {
+    all.passes = parts;
+    all.light_maps = LightMapMode::on;
+  }
+  return all;
+}
+
+RenderParameters part_of(const RenderParameters& all) {
+  RenderParameters part = with_work(all, 1.0 / all.passes);
+  part.photons.emitted_photons =
+      std::max<std::uint64_t>(1, all.photons.emitted_photons / photons_of_parts(all.passes));
+  part.light_map_rays = std::max(1, part.light_map_rays);
+  part.passes = 1;
+  return part;
+}
 
 RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& asked) {
   if (goal.seconds == 0) return asked;
   RenderParameters part = with_work(asked, first_fraction);
   part.photons = asked.photons;
   return part;
-}
-
-RenderResult refine(const RefinementGoal& goal, const RenderParameters& part,
-                    const RefinementSteps& steps, Progress& progress) {
-  std::optional<RenderResult> latest;
-  double before = std::numeric_limits<double>::infinity();
-  int parts = 0, next = 1;
-  for (;;) {
-    const double began = steps.elapsed();
-    Deadline deadline(progress, steps.elapsed, latest ? goal.seconds : 0);
-    try {
-      latest = steps.make(next - parts, deadline);
-    } catch (const Interrupted&) {
-      if (!latest || progress.cancelled()) throw;
-      progress.end();
-      progress.note("the time is over; what was being made is given up");
-      return std::move(*latest);
-    }
-    const int parts_before = std::exchange(parts, next);
-    steps.finished(parts, *latest);
-    const double now = steps.elapsed(), error = latest->standard_error;
-    if (goal.error > 0) {
-      if (error <= goal.error) return std::move(*latest);
-      const double floor = error > stalled * before ? error : least_error(part, parts, error);
-      if (floor > goal.error) {
-        tell_out_of_reach(goal.error, floor, progress);
-        return std::move(*latest);
-      }
-      before = error;
-    }
-    const bool fits = goal.seconds == 0 || seconds_of_next(now - began, parts_before, parts) <=
-                                               planned_part * (goal.seconds - now);
-    next = parts_after(parts);
-    if (!fits || !allows_work(part, next)) return std::move(*latest);
-  }
 }
 
 }  // namespace photile

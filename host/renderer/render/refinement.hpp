@@ -1,45 +1,77 @@
-// Pictures whose light maps grow, until one states a small enough error or the time is over.
+// More work for a better result: it is done in parts, round by round, until a goal is met. Pictures
+// and pages by light maps whose nodes gather are made so, and years of daylight.
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 #include "photile/progress.hpp"
 #include "photile/renderer.hpp"
 
 namespace photile {
 
-/// The goals that end the growing of light maps whose nodes gather; at least one of them is given.
+/// What ends the rounds.
 struct RefinementGoal {
-  double error = 0;    ///< relative standard error that a picture states, at most; 0 = none
-  double seconds = 0;  ///< that all pictures may take, wall clock; 0 = none
+  double error = 0;    ///< relative standard error of the result, at most; 0 = none
+  double seconds = 0;  ///< that all rounds may take, wall clock; 0 = none
+  int parts = 1;       ///< that there are at least, however long they take
 
   bool is_given() const { return error > 0 || seconds > 0; }
 };
 
-/// The callbacks of refine.
+/// The factor on the photons of a part when there are this many parts of rays and samples: photons
+/// err less than rays, and nodes need to lie closer together only when the error of rays is small.
+constexpr int photons_of_parts(int parts) {
+  int photons = 1;
+  while (parts / 16 >= photons) photons *= 4;
+  return photons;
+}
+
+/// The parts with which rounds end where each makes its result anew: 1, 2, 3, 4, 6, 8, 12, 16 and
+/// so on.
+constexpr int parts_after(int parts) {
+  const int power = static_cast<int>(std::bit_floor(static_cast<unsigned>(parts)));
+  return parts == power ? parts + std::max(1, parts / 2) : 2 * power;
+}
+
+/// The work of all rounds that add up to `parts` parts of a picture, in proportion to their time.
+double work_of_pictures(int parts);
+
+/// The callbacks of refine, and how work grows.
 struct RefinementSteps {
-  /// Adds this many parts of work to those before, and makes the picture of all. Errors:
+  /// Adds this many parts to those before. Returns the standard error of the result of all. Errors:
   /// Interrupted, when `progress` says so.
-  std::function<RenderResult(int parts, Progress& progress)> make;
-  /// The picture of this many parts is finished.
-  std::function<void(int parts, const RenderResult&)> finished;
+  std::function<double(int parts, Progress& progress)> add;
+  /// The result of this many parts is there.
+  std::function<void(int parts, double error)> finished = [](int, double) {};
   /// Since the time began to count, seconds.
-  std::function<double()> elapsed;
+  std::function<double()> elapsed = [] { return 0.0; };
+  int most_parts = std::numeric_limits<int>::max();
+  int (*next)(int parts) = parts_after;
+  double (*work)(int parts) = work_of_pictures;
 };
 
+/// Adds parts until the goal is met, and returns the last error. An error that no allowed work
+/// reaches, or that no longer falls with it, ends this with a note. For a time, a round that is not
+/// likely to fit in what is left is not begun, and one that is not ready when the time is over is
+/// given up. So with a time the result depends on how quick the machine is, but each picture is
+/// what render() makes of the settings of its parts (`of_parts`).
+/// Errors: those of `add`; Interrupted, when `progress` says so.
+double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress& progress);
+
+/// Whether these settings ask for parts (docs/light-maps.md): nodes of light maps gather, and there
+/// are several passes, each a part of the work.
+bool in_parts(const RenderParameters& asked);
+/// The settings of this many parts together, which are `in_parts` where there are several.
+RenderParameters of_parts(const RenderParameters& part, int parts);
+/// The settings of one of its parts, which has a ray, a photon and a sample at least. `all.passes`
+/// is at least 1.
+RenderParameters part_of(const RenderParameters& all);
 /// One part of the work on the way to the goal, where these settings are asked for: for an error
 /// the settings themselves, for a time a quarter of their rays and samples, so that there is a
 /// picture soon.
 RenderParameters first_part(const RefinementGoal& goal, const RenderParameters& asked);
-
-/// Adds parts until the goal is met, and returns the last picture. Each round makes one, and leads
-/// to as many parts as `parts_after` says. An error that no allowed work reaches, or that no longer
-/// falls with it, ends this with a note. For a time, the first round is finished however long it
-/// takes, a round that is not likely to fit in what is left is not begun, and one that is not ready
-/// when the time is over is given up. So with a time the picture depends on how quick the machine
-/// is, but each is what render() makes of the settings of its parts (`of_parts`).
-/// Errors: those of `make`; Interrupted, when `progress` says so.
-RenderResult refine(const RefinementGoal& goal, const RenderParameters& part,
-                    const RefinementSteps& steps, Progress& progress);
-
 }  // namespace photile

@@ -56,9 +56,42 @@ void StageCost::add(const TimeTaken& more_time, std::uint64_t more_host_bytes,
 
 void RenderCosts::start_picture() {
   hits = light_maps = estimate = film = {};
-  points_sent = {};
+  sent.points = sent.point_bytes = 0;
   rays = light_map_nodes = hit_count = 0;
   estimate_compile_seconds = 0;
+}
+
+void RenderCosts::count(const PhotonTracerResult& traced) {
+  for (const std::uint64_t paths : traced.photons.emitted_per_light) emitted_photons += paths;
+  stored_photons += traced.photons.total();
+  caustic_photons += traced.caustics.total();
+}
+
+void RenderCosts::add(std::span<const PhotonMaps> on_devices, const TimeTaken& time) {
+  std::uint64_t device_bytes = 0, spilled_bytes = 0;
+  for (const PhotonMaps& one : on_devices) {
+    device_bytes += one.statistics().device_bytes - one.statistics().spilled_bytes;
+    spilled_bytes += one.statistics().spilled_bytes;
+  }
+  build.add(time, spilled_bytes, device_bytes);
+  references += on_devices.front().statistics().references;
+  largest_map = std::max(largest_map, on_devices.front().statistics().largest_map);
+}
+
+void RenderCosts::note_last(const PhotonMapStatistics& statistics) {
+  maps = statistics.maps;
+  normal_filtered_maps = statistics.normal_filtered_maps;
+  map_sizes = statistics.map_sizes;
+}
+
+void RenderCosts::add(const LightTotals& before, const LightTotals& now) {
+  const TimeTaken filling = now.filling - before.filling;
+  light_maps.add(filling - (now.building - before.building), now.node_bytes);
+  light_map_nodes += now.nodes - before.nodes;
+  light_map_errors = now.errors;
+  estimate.add(now.asked - before.asked - filling);
+  estimate_compile_seconds += now.compile_seconds - before.compile_seconds;
+  hit_count += now.hits - before.hits;
 }
 
 RunStatistics RenderCosts::statistics() const {

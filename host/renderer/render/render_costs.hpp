@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cache/surface_cache.hpp"
+#include "photile/photon_maps.hpp"
+#include "photile/photons.hpp"
 #include "photile/statistics.hpp"
+#include "render/shared_photons.hpp"
 
 namespace photile {
 
@@ -27,9 +31,15 @@ StageStatistics stage(const char* name, const StageCost& cost,
 /// Adds time to the row of a stage; to a new one at the end where there is none.
 void add_time(RunStatistics& stages, const char* name, const TimeTaken& time);
 
-/// Points and estimates that went to other processes.
-struct PointTraffic {
-  std::uint64_t points = 0, bytes = 0;
+/// What the light of a pass has taken and given so far.
+struct LightTotals {
+  TimeTaken asked;             ///< all of it
+  TimeTaken filling;           ///< of that: valuing nodes; without light maps as `building`
+  TimeTaken building;          ///< of that: building photon maps, where these are first needed
+  double compile_seconds = 0;  ///< of kernels, where there are no light maps
+  std::uint64_t hits = 0;      ///< that had an estimate
+  std::uint64_t nodes = 0, node_bytes = 0;
+  cache::ErrorSum errors;
 };
 
 /// Counts add up over passes.
@@ -49,10 +59,17 @@ struct RenderCosts {
   double estimate_compile_seconds = 0;                    ///< of them, within `estimate`
   std::vector<std::pair<std::string, double>> fractions;  ///< of several devices
 
-  // Where several processes share the rendering: what this one sent to others, and holds.
-  std::uint64_t photons_sent = 0, photon_bytes_sent = 0, photons_held = 0;
-  PointTraffic points_sent;                               ///< of the picture
+  // Where several processes share the rendering.
+  SentData sent;
   std::vector<std::pair<std::string, double>> processes;  ///< figures of all
+
+  void count(const PhotonTracerResult& traced);
+  /// Maps of one kind of photons, on each device.
+  void add(std::span<const PhotonMaps> maps, const TimeTaken& time);
+  /// The maps of all light.
+  void note_last(const PhotonMapStatistics& statistics);
+  /// What was done since.
+  void add(const LightTotals& before, const LightTotals& now);
 
   /// Resets the costs of the last picture, but not those of the maps.
   void start_picture();

@@ -113,8 +113,8 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   if (asked.gloss == GlossMode::automatic) {
     used_.gloss = read ? GlossMode::rays : GlossMode::photons;
   }
-  const bool at_points =
-      hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic && !gathers_at_nodes();
+  const bool at_points = hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic &&
+                         used_.light_map_rays == 0;
   used_.light_maps = read && !at_points ? LightMapMode::on : LightMapMode::off;
   leaves_out_hidden_ = read && !asked.counts_hidden_photons;
   // Beyond the scene there is nothing to find.
@@ -160,10 +160,6 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
   }
 }
 
-NeighbourGroupParameters RenderPlan::groups(double first_radius) const {
-  return {first_radius, used_.angle_degrees};
-}
-
 PhotonMapParameters RenderPlan::maps(int pass, double first_radius) const {
   return {.radius = estimate_of_pass(pass, {first_radius, used_.neighbours}).radius,
           .photons_per_cell = used_.photons_per_cell,
@@ -179,8 +175,6 @@ EstimateParameters RenderPlan::estimate(int pass, DensityKernel kernel,
           .surface = surface};
 }
 
-/// The light at ray ends may be noisy, because a node adds up many of them, but it must not be
-/// blurred.
 int RenderPlan::neighbours_at_ends() const {
   return std::min(used_.neighbours, std::max(defaults::least_neighbours_at_ends,
                                              used_.neighbours / defaults::neighbours_over_ends));
@@ -188,15 +182,6 @@ int RenderPlan::neighbours_at_ends() const {
 
 double RenderPlan::reach_at_ends(double radius) const {
   return radius * std::sqrt(static_cast<double>(neighbours_at_ends()) / used_.neighbours);
-}
-
-EstimateParameters RenderPlan::estimate_at_ends(
-    DensityKernel kernel, const std::shared_ptr<const SurfaceIndex>& surface) const {
-  return {.neighbours = neighbours_at_ends(),
-          .compiled_neighbours = used_.neighbours,
-          .area = used_.area,
-          .kernel = kernel,
-          .surface = surface};
 }
 
 cache::LightMapParameters RenderPlan::light_maps(double radius, const Scene& scene,

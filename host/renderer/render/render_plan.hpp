@@ -21,6 +21,13 @@ namespace photile {
 /// are not used, or light samples from the hits replace a part of the light.
 bool nodes_gather(const RenderParameters& asked);
 
+/// What finds the light of matt surfaces.
+enum class LightBy {
+  photons,         ///< an estimate at each hit
+  cached_photons,  ///< a cache, whose nodes have estimates
+  cached_rays  ///< a cache, whose nodes gather by rays, which read a coarser cache where they end
+};
+
 /// What light is requested for: pictures, whose hits lie so close that many share nodes of light
 /// maps, or scattered points, which read light maps only where the settings say so.
 enum class HitsAsk { pictures, points };
@@ -36,16 +43,21 @@ class RenderPlan {
   /// photons.
   const RenderParameters& used() const { return used_; }
 
+  LightBy light_by() const {
+    if (used_.light_maps != LightMapMode::on) return LightBy::photons;
+    return used_.light_map_rays > 0 ? LightBy::cached_rays : LightBy::cached_photons;
+  }
+  bool reads_light_maps() const { return light_by() != LightBy::photons; }
+  /// Photons that came by mirrors and glass alone are then kept on their own.
+  bool gathers_at_nodes() const { return light_by() == LightBy::cached_rays; }
+
   int passes() const { return used_.passes; }
   /// Whether the photons of all passes may be kept at once: their number was asked for, and does
   /// not follow from the memory.
   bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
-  bool reads_light_maps() const { return used_.light_maps == LightMapMode::on; }
   /// Whether photons that something hides from a point do not count there. Estimates at the hits of
   /// a picture's rays, as the paper has them, count all.
   bool leaves_out_hidden() const { return leaves_out_hidden_; }
-  bool gathers_at_nodes() const { return used_.light_map_rays > 0; }
-  bool keeps_caustics() const { return gathers_at_nodes(); }
   /// Whether shadow rays find the light of hot spots (trace/hot_spots.hpp), and photons leave it
   /// out: at points, and where rays gather at nodes.
   bool finds_hot_spots() const { return for_points_ || gathers_at_nodes(); }
@@ -61,16 +73,15 @@ class RenderPlan {
   /// no radius follows from them.
   double radius(const Photons& photons, Progress& progress) const;
 
-  NeighbourGroupParameters groups(double first_radius) const;
   PhotonMapParameters maps(int pass, double first_radius) const;
 
   ///   surface   where areas are clipped, else null
   EstimateParameters estimate(int pass, DensityKernel kernel,
                               const std::shared_ptr<const SurfaceIndex>& surface) const;
 
-  /// Where gathering rays end.
-  EstimateParameters estimate_at_ends(DensityKernel kernel,
-                                      const std::shared_ptr<const SurfaceIndex>& surface) const;
+  /// Of estimates where gathering rays end: they may be noisy, because a node adds up many of them,
+  /// but they must not be blurred.
+  int neighbours_at_ends() const;
 
   /// The parameters of light maps from these photons.
   ///   radius   of their maps, metres
@@ -93,7 +104,6 @@ class RenderPlan {
   PrimaryHitParameters hits(const Film& film, int passes) const;
 
  private:
-  int neighbours_at_ends() const;
   /// The reach of an estimate there where one by all neighbours reaches `radius` metres.
   double reach_at_ends(double radius) const;
 

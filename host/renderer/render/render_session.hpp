@@ -23,24 +23,28 @@ struct PreparedScene {
   StageCost cost;
 };
 
-/// Errors: UsageError without a device.
-void require_device(std::span<const Device> devices);
-
-/// What SceneRenderer offers, of any hits that lie close together.
+/// A scene, and pictures of any hits that lie close together, by photon maps.
 class RenderSession {
  public:
-  /// Prepares all passes. References are kept, `scene` aside. Errors: those of SceneRenderer.
+  /// References are kept. Errors: those of RenderPlan; UsageError without a device.
   RenderSession(std::shared_ptr<const PreparedScene> scene, std::span<Device> devices,
-                const RenderParameters& parameters, TracedPhotons* prepared,
-                const KeepPhotons& keep, Progress& progress);
+                const RenderParameters& parameters, Progress& progress,
+                HitsAsk hits = HitsAsk::pictures);
 
+  /// Prepares all passes, which are kept for many pictures: `prepared` and `keep` are those of
+  /// SceneRenderer, and so are errors.
+  void keep_passes(TracedPhotons* prepared, const KeepPhotons& keep, Progress& progress);
+
+  /// A picture. Where passes are not kept, each is made for it, and released before the next.
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
                       const LayerMixdown* mixdown = nullptr);
 
-  /// Lets light maps whose nodes gather grow by a round: `parts` times the requested rays are added
-  /// at the nodes that are read from now on, and photons are traced anew where `photons_of_parts`
-  /// says so. Pictures are then those of `of_parts`, if as many were made on the way.
-  void grow(int parts, Progress& progress);
+  /// Adds parts to the work done so far (render/refinement.hpp), the first of which keeps the
+  /// passes. Later ones are of light maps whose nodes gather: `parts` times the requested rays are
+  /// added at the nodes that are read from now on, and photons are traced anew where
+  /// `photons_of_parts` says so. Pictures are then those of `of_parts`, if as many were made on the
+  /// way.
+  void add_parts(int parts, Progress& progress);
   /// The film asked for, with the samples of all parts.
   Film film() const { return with_work(plan_.used(), parts_).film; }
 
@@ -53,13 +57,15 @@ class RenderSession {
   std::optional<LightMapContents> light_map_contents() const;
 
  private:
+  void set_frames();
+
   const std::shared_ptr<const PreparedScene> scene_;
   std::span<Device> devices_;
   const RenderPlan plan_;
   RenderCosts costs_;
-  PhotonPasses photons_;
-  std::vector<std::unique_ptr<PassLight>> passes_;
-  int parts_ = 1;  ///< of the work that was asked for
+  std::optional<PhotonPasses> photons_;
+  std::vector<std::unique_ptr<PassLight>> passes_;  ///< that are kept
+  int parts_ = 0;                                   ///< of the work that was asked for, if added
   std::optional<cache::LightMapFrames> frames_;
 };
 

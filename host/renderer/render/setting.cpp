@@ -70,12 +70,12 @@ using Kept = decltype(Setting::kept);
 /// A row whose value is a field of the parameters, or of one of their parts.
 template <auto... members>
 Setting row(std::string_view name, std::string_view reader, ValueRange range, std::string_view help,
-            Kept kept, std::string_view otherwise = {}, std::string_view unit = {}) {
+            Kept kept, std::string otherwise = {}, std::string_view unit = {}) {
   return {.name = name,
           .unit = unit,
           .reader = reader,
           .help = help,
-          .otherwise = otherwise,
+          .otherwise = std::move(otherwise),
           .range = std::move(range),
           .kept = kept,
           .value = [](const P& parameters) { return value_of(field<members...>(parameters)); },

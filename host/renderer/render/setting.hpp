@@ -2,6 +2,7 @@
 // checks, options of the command, qualities, records of a run, saved maps, the documentation.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,7 +14,7 @@
 
 namespace photile {
 
-/// A row of the table.
+/// A row of the table; or of a command's own settings, which are no parameters of a rendering.
 struct Setting {
   std::string_view name = {};    ///< in records and refusals, such as "photons_emitted"
   std::string_view unit = {};    ///< "" = none
@@ -23,7 +24,7 @@ struct Setting {
   std::string_view help = {};
   /// What applies where it is not given, which the value 0 stands for. "" = it always has a value
   /// in its range.
-  std::string_view otherwise = {};
+  std::string otherwise = {};
   ValueRange range = {};
   /// The value for each of all_qualities, where they set it.
   std::vector<SettingValue> by_quality = {};
@@ -33,6 +34,8 @@ struct Setting {
 
   SettingValue (*value)(const RenderParameters& parameters) = nullptr;
   void (*set)(RenderParameters& parameters, const SettingValue& value) = nullptr;
+  /// In lists of what a command can set: sets the value, within its range, where that is kept.
+  std::function<void(const SettingValue& value)> assign = {};
 
   bool is_of_quality() const { return !by_quality.empty(); }
   bool is_given(const RenderParameters& parameters) const;

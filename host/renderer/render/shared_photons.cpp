@@ -279,7 +279,7 @@ std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, cons
 }
 
 Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGroups& groups,
-                  const MapOwners& owners, double radius, Photons own, PhotonsMoved& moved) {
+                  const MapOwners& owners, double radius, Photons own, SentData& sent) {
   const std::uint32_t ranks = processes.size();
   const std::vector<std::vector<std::uint32_t>> for_rank =
       photons_for(Destinations(scene, groups, owners, radius), own, ranks);
@@ -287,9 +287,10 @@ Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGr
   std::size_t most = 0;
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
     most = std::max(most, for_rank[rank].size());
-    if (rank != processes.rank()) moved.sent += for_rank[rank].size();
+    if (rank == processes.rank()) continue;
+    sent.photons += for_rank[rank].size();
+    sent.photon_bytes += for_rank[rank].size() * each;
   }
-  moved.bytes = moved.sent * each;
   // A process without photons does not know what others send.
   const std::size_t in_round =
       std::max<std::size_t>(1, defaults::exchange_round_bytes / (each * ranks));
@@ -318,7 +319,7 @@ Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGr
   Photons held = merge_runs(std::move(from));
   held.emitted_per_light = emitted;
   held.of_all = std::move(of_all);
-  moved.held = held.size();
+  sent.photons_held += held.size();
   return held;
 }
 

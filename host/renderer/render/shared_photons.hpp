@@ -40,11 +40,10 @@ class MapOwners {
 ///         oriented face
 std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, const Photons& own);
 
-/// The numbers of photons that were sent and kept.
-struct PhotonsMoved {
-  std::uint64_t sent = 0;   ///< to other processes
-  std::uint64_t bytes = 0;  ///< of these
-  std::uint64_t held = 0;   ///< by this process in the end, for its own maps
+/// What a process sent to others of the same rendering, and what it holds for them.
+struct SentData {
+  std::uint64_t photons = 0, photon_bytes = 0, photons_held = 0;
+  std::uint64_t points = 0, point_bytes = 0;  ///< of the picture; with their light
 };
 
 /// Sends photons to the processes whose maps they may enter, those near a border to several, in
@@ -52,7 +51,8 @@ struct PhotonsMoved {
 /// have them: sorted by oriented face, within it in the order light, path, bounce. Collective.
 ///   own      as photons_of_all; `of_all` is set
 ///   radius   of the maps, metres
+///   sent     is added to
 Photons to_owners(Communicator& processes, const Scene& scene, const NeighbourGroups& groups,
-                  const MapOwners& owners, double radius, Photons own, PhotonsMoved& moved);
+                  const MapOwners& owners, double radius, Photons own, SentData& sent);
 
 }  // namespace photile
