@@ -222,9 +222,9 @@ MUTANTS = (
            "(opaque && setup.caustics) || walk->bounce", "walk->bounce",
            (("trace", "Caustics of a bare bulb*"),)),
     Mutant("photons of all light for those of caustics", "host/renderer/render/photon_passes.cpp",
-           "  Maps maps{build(std::move(traced.photons), parameters, plan_.used().kernel,",
+           "  Parts all = build_maps(std::move(traced.photons), plan_.used().kernel,",
            "  traced.caustics = traced.photons;\n"
-           "  Maps maps{build(std::move(traced.photons), parameters, plan_.used().kernel,",
+           "  Parts all = build_maps(std::move(traced.photons), plan_.used().kernel,",
            (("cache", "gathering: the light of a caustic*"),)),
     Mutant("radiance seen through water as bright as in it", "host/renderer/trace/scatter.cpp",
            "if (material.thin) return 1;", "return 1;",
