@@ -1,8 +1,9 @@
-// Photons of any origin, without a scene: their k nearest around points, and densities.
+// Points and photons of any origin, without a scene: the k nearest around points, and densities.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,12 +30,37 @@ struct CloudParameters {
   float photons_per_cell = defaults::photons_per_cell;  ///< aimed at
 };
 
-/// The neighbours of points: row-major [point][k], nearest first.
+/// The neighbours of points: row-major [point][k], nearest first, those at the same distance in the
+/// order of their indices.
 struct CloudNeighbours {
   int k = 0;
   std::vector<std::uint32_t> photons;   ///< indices; `none` beyond the last
   std::vector<float> squared_distance;  ///< square metres; infinity beyond the last
 };
+
+/// What `find_neighbours` is asked for. The arrays are the caller's.
+struct NeighbourSearch {
+  std::span<const glm::vec3> points;   ///< metres, up to limits::max_coordinate; at least one
+  std::span<const glm::vec3> queries;  ///< as the points
+  int k = defaults::neighbours;        ///< 1 to limits::max_neighbours, also above the points
+  /// Metres, > 0: no neighbour is farther. Infinity: all points count.
+  double max_distance = std::numeric_limits<double>::infinity();
+  /// Unit, as many as points and as queries: only points count whose normals differ from that of
+  /// the query by at most the angle. Both empty: all count.
+  std::span<const glm::vec3> normals = {}, query_normals = {};
+  double angle_degrees = defaults::group_angle_degrees;
+};
+
+/// The k nearest points of each query. Exact: distances are those in double precision, rounded to
+/// floats; of points whose distances agree to a few roundings of a float, any may be the last.
+/// Maps are made with a radius that suits some of the queries; those that find too few are asked
+/// again with larger ones, until all points lie within it. A query whose nearest points are much
+/// farther than they are from each other takes as long as a look at all of them.
+/// Errors: InputError that names the first point or query that is NaN, infinite or too far, or
+/// where there is no point; UsageError for k, distance or angle out of range; DeviceMemoryError;
+/// Interrupted.
+CloudNeighbours find_neighbours(Device& device, const NeighbourSearch& search,
+                                Progress& progress = Progress::none());
 
 struct CloudEstimateParameters {
   int neighbours = defaults::neighbours;           ///< k

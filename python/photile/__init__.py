@@ -1,9 +1,10 @@
 """photile: photon mapping on OpenCL devices, a layer of the picture per light.
 
 Scenes come from files (`load`) or arrays (`Scene`). `trace` gives photons as arrays, `PhotonMaps`
-finds the nearest of any photons on an OpenCL device, `render` gives a picture with a layer for each
-light, `Picture.mix` changes its lights, `relight` those of a file, and `measure` tells lux at
-points. Metres, lumens (or watts), cd/m2 and lux throughout; arrays are numpy's.
+finds the nearest of any photons on an OpenCL device, `neighbours` those of bare points, `render`
+gives a picture with a layer for each light, `Picture.mix` changes its lights, `relight` those of a
+file, and `measure` tells lux at points. Metres, lumens (or watts), cd/m2 and lux throughout; arrays
+are numpy's.
 
 Long work releases the interpreter's lock, hears Ctrl-C and tells a callback how far it is.
 """
@@ -21,7 +22,7 @@ from .errors import (
     UsageError,
 )
 from .measuring import Illuminance, grid, measure
-from .photons import NONE, Neighbours, PhotonMaps, Photons, trace
+from .photons import NONE, Neighbours, PhotonMaps, Photons, neighbours, trace
 from .pictures import SETTINGS, LightState, Picture, png_of, relight, render
 from .scenes import Camera, Light, Material, Scene, load
 
@@ -31,7 +32,8 @@ __all__ = [
     "NONE", "SETTINGS", "Camera", "DeviceError", "DeviceMemoryError", "Error",
     "Illuminance", "InputError", "KernelBuildError", "Light", "LightState", "Material",
     "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "UsageError",
-    "devices", "grid", "load", "measure", "png_of", "relight", "render", "test_devices", "trace",
+    "devices", "grid", "load", "measure", "neighbours", "png_of", "relight", "render", "test_devices",
+    "trace",
 ]
 
 

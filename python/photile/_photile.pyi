@@ -112,6 +112,15 @@ class PhotonMaps:
         self, points: Floats, normals: Optional[Floats], options: dict[str, Any]
     ) -> Floats: ...
 
+def neighbours(
+    points: Floats,
+    queries: Floats,
+    normals: Optional[Floats],
+    query_normals: Optional[Floats],
+    options: dict[str, Any],
+    progress: Callback,
+) -> tuple[Numbers, Floats]: ...
+
 class Picture:
     @property
     def width(self) -> int: ...

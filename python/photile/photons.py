@@ -1,4 +1,4 @@
-"""Photons of a scene, and photon maps over photons of any origin."""
+"""Photons of a scene, photon maps over photons of any origin, and the nearest of bare points."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from . import _photile
 from .errors import InputError, UsageError
 from .scenes import Scene, floats
 
-__all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "trace"]
+__all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "neighbours", "trace"]
 
 NONE: int = _photile.none
 """What stands where there is no neighbour, no light, no material."""
@@ -262,7 +262,7 @@ class PhotonMaps:
             progress,
         )
         if not isinstance(photons, Photons):
-            _check_rounding(photons, self._origin, positions, self.radius)
+            _check_rounding("positions: photon", photons, self._origin, positions, self.radius)
 
     def __len__(self) -> int:
         return len(self._core)
@@ -368,6 +368,78 @@ class PhotonMaps:
         return f"<photile.PhotonMaps: {len(self)} photons, radius {self.radius:.4g} m>"
 
 
+def neighbours(
+    points: ArrayLike,
+    queries: ArrayLike,
+    k: int,
+    normals: Optional[ArrayLike] = None,
+    query_normals: Optional[ArrayLike] = None,
+    *,
+    max_distance: float = np.inf,
+    angle: float = 60.0,
+    device: str = "",
+    progress: _photile.Callback = None,
+) -> tuple[NDArray[np.uint32], NDArray[np.float32]]:
+    """The k nearest points of each query, as ``scipy.spatial.cKDTree(points).query(queries, k)``.
+
+    The search runs on an OpenCL device. It is made anew in each call: pass all queries at once, or
+    keep `PhotonMaps`, whose neighbours lie within a radius.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        At least one. Any unit of length, which distances have as well; coordinates up to 1e12.
+    queries : (m, 3) array
+        As the points. Doubles far from the origin count from the middle of the points before they
+        become floats.
+    k : int
+        1 to 1,000,000; it may exceed n.
+    normals, query_normals : (n, 3) and (m, 3) arrays, optional
+        Unit. With them only points count whose normals differ from the query's by at most ``angle``.
+    max_distance : float
+        Above 0: no neighbour is farther. Infinity: all points count.
+    angle : float
+        Degrees, in [0, 180].
+    device : str
+        As for `render`; of several the first.
+    progress : callable, optional
+        See `render`.
+
+    Returns
+    -------
+    indices : (m, k) array of uint32
+        Rows of ``points``, nearest first, coincident points in the order of their rows; n where
+        there are fewer than k neighbours.
+    distances : (m, k) array of float32
+        Those of the points as floats, computed in double precision; infinity where there are fewer.
+        Of points whose distances agree to a few roundings of a float, any may be the last.
+
+    Raises
+    ------
+    InputError
+        There is no point, arrays do not fit, or hold numbers that are none; the first is named. Or
+        points are so far apart that floats would have other neighbours.
+    UsageError
+        k, the distance or the angle is out of its range.
+    DeviceMemoryError
+        The device's memory does not suffice.
+    """
+    origin = _origin(points)
+    rows = _rows_from(origin, points, "points")
+    found = _photile.neighbours(
+        rows,
+        _rows_from(origin, queries, "queries"),
+        None if normals is None else _rows(normals, "normals"),
+        None if query_normals is None else _rows(query_normals, "query_normals"),
+        {"k": k, "max_distance": max_distance, "angle": angle, "device": device},
+        progress,
+    )
+    apart = found[1][np.isfinite(found[1]) & (found[1] > 0)]
+    if apart.size:
+        _check_rounding("points: point", points, origin, rows, float(2 * np.median(apart)))
+    return found
+
+
 def _radius(radius: Optional[float]) -> float:
     """0 stands for none."""
     if radius is None:
@@ -418,7 +490,11 @@ _LARGEST_ROUNDING = 1 / 64  # of the radius: a tenth of the distance between 50 
 
 
 def _check_rounding(
-    values: ArrayLike, origin: NDArray[np.float64], rows: NDArray[np.float32], radius: float
+    what: str,
+    values: ArrayLike,
+    origin: NDArray[np.float64],
+    rows: NDArray[np.float32],
+    radius: float,
 ) -> None:
     """Refuses positions that are so far apart that floats would tell other neighbours."""
     if np.asarray(values).dtype == np.float32 and not origin.any() or len(rows) == 0:
@@ -427,9 +503,9 @@ def _check_rounding(
     most = np.unravel_index(np.argmax(moved), moved.shape)
     if moved[most] > _LARGEST_ROUNDING * radius:
         raise InputError(
-            f"positions: photon {most[0]} is so far from others that its float lies"
+            f"{what} {most[0]} is so far from others that its float lies"
             f" {moved[most]:.2g} m off, which is too much for a radius of {radius:.4g} m;"
-            " make photon maps of each part of the photons alone"
+            " search each part alone"
         )
 
 

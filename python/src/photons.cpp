@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -167,6 +168,34 @@ class Maps {
   std::size_t light_count_ = 1;
 };
 
+/// (indices, distances), each of shape (queries, k); as many points as there are stand for none.
+py::object neighbours_of(const Array<float>& points, const Array<float>& queries,
+                         const std::optional<Array<float>>& normals,
+                         const std::optional<Array<float>>& query_normals, const py::dict& options,
+                         const py::object& progress) {
+  const NeighbourSearch search{
+      .points = rows_of<glm::vec3>(points, "points"),
+      .queries = rows_of<glm::vec3>(queries, "queries"),
+      .k = field<int>(options, "k"),
+      .max_distance = field<double>(options, "max_distance"),
+      .normals = rows_or_none<glm::vec3>(normals, "normals"),
+      .query_normals = rows_or_none<glm::vec3>(query_normals, "query_normals"),
+      .angle_degrees = field<double>(options, "angle")};
+  const auto device = field<std::string>(options, "device");
+  CloudNeighbours found = run(progress, [&](Progress& told) {
+    const auto devices = devices_of(device);
+    const std::lock_guard lock(devices->mutex);
+    CloudNeighbours near = find_neighbours(devices->devices.front(), search, told);
+    std::replace(near.photons.begin(), near.photons.end(), none,
+                 static_cast<std::uint32_t>(search.points.size()));
+    for (float& distance : near.squared_distance) distance = std::sqrt(distance);
+    return near;
+  });
+  const std::vector<py::ssize_t> shape{queries.shape(0), found.k};
+  return py::make_tuple(taken<std::uint32_t>(std::move(found.photons), shape),
+                        taken<float>(std::move(found.squared_distance), shape));
+}
+
 }  // namespace
 
 void define_photons(py::module_& module) {
@@ -201,6 +230,7 @@ void define_photons(py::module_& module) {
       .def_property_readonly("escaped_flux_per_light",
                              [](const Traced& t) { return t.escaped_flux_per_light; });
   module.def("trace", &trace);
+  module.def("neighbours", &neighbours_of);
 
   py::class_<Maps>(module, "PhotonMaps")
       .def(py::init<const Array<float>&, const std::optional<Array<float>>&,

@@ -96,14 +96,9 @@ std::array<double, 2> errors_of(const GatheredMaps& maps, const PrimaryHits& hit
 
 TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges among it") {
   constexpr double albedo = 0.5;
-  Scene box = closed_box(diffuse(glm::vec3(albedo)));
-  box.lights = {area_light("walls")};
-  for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
-    box.triangle_light[t] = 0;
-    box.lights[0].triangles.push_back(t);
-  }
-  GatheringScene furnace(box, looked_up(200'000));
-  GatheredMaps maps(furnace, few_rays);
+  const Scene box = furnace(diffuse(glm::vec3(albedo)));
+  GatheringScene gathering(box, looked_up(200'000));
+  GatheredMaps maps(gathering, few_rays);
   PrimaryHits inside;
   const PrimaryHits all = points_on(box, 12);
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "gathering_photons.hpp"
 #include "photile/sensors.hpp"
 #include "test_device.hpp"
+#include "test_scenes.hpp"
 #include "trace/sensors.hpp"
 
 namespace photile::test {
@@ -26,6 +27,14 @@ inline std::vector<std::uint64_t> numbers(std::size_t count) {
   std::vector<std::uint64_t> result(count);
   std::iota(result.begin(), result.end(), std::uint64_t{0});
   return result;
+}
+
+/// A closed cube of one metre whose walls all emit and reflect, the same everywhere.
+inline Scene furnace(const Material& wall) {
+  SceneBuilder builder("furnace");
+  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(wall), true, 1,
+              builder.add(area_light("walls")));
+  return builder.build();
 }
 
 /// A scene with its photons, on the device of the tests.

@@ -4,7 +4,6 @@
 
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -27,17 +26,6 @@ const glm::dvec3 up(0, 0, 1);
 
 double lux(const LightTable& light, std::size_t estimate) {
   return luminance(glm::dvec3(light.irradiance[estimate]));
-}
-
-/// A closed cube of one metre whose walls all emit and reflect, the same everywhere.
-Scene furnace(const Material& wall) {
-  Scene scene = closed_box(wall);
-  scene.lights = {area_light("walls")};
-  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    scene.triangle_light[t] = 0;
-    scene.lights[0].triangles.push_back(t);
-  }
-  return scene;
 }
 
 /// A floor, and a lamp that shines up, away from it, at a mirror 0.2 m above. Material 0 is black.

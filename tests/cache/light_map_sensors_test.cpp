@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "photile/sensors.hpp"
-#include "test_device.hpp"
+#include "gathering.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -172,12 +171,7 @@ TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes") 
 
 TEST_CASE("Sensors in the air of a furnace read the same light everywhere, by rays to light maps") {
   constexpr double albedo = 0.5;
-  Scene box = closed_box(diffuse(glm::vec3(albedo)));
-  box.lights = {area_light("walls")};
-  for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
-    box.triangle_light[t] = 0;
-    box.lights[0].triangles.push_back(t);
-  }
+  const Scene box = furnace(diffuse(glm::vec3(albedo)));
   const double truth = 1.0 / 6 / (1 - albedo);  // 1 lm over 6 m2, and each bounce returns half
   std::vector<Sensor> sensors;
   for (const glm::dvec3& normal : {glm::dvec3(0, 0, 1), glm::dvec3(0, -1, 0)}) {

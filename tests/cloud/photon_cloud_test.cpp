@@ -8,14 +8,17 @@
 #include <limits>
 #include <random>
 
+#include "oracle/rounding.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "photile/neighbours.h"
 #include "test_device.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Contains;
+using reference::tie;
 using Points = std::vector<glm::vec3>;
 
 /// Photons and the points that ask for them.
@@ -50,8 +53,7 @@ std::vector<Neighbour> neighbours_of(const Cloud& cloud, std::size_t point, doub
   return result;
 }
 
-/// What single precision may order either way: see neighbour_comparison.hpp.
-constexpr double tie = 8.0 / (1 << 24);
+using reference::tie;  // what single precision may order either way
 
 /// Points whose neighbours are not the k nearest, or not in the order of their distances.
 std::size_t count_wrong(const Cloud& cloud, const CloudNeighbours& found, double radius,
@@ -103,6 +105,15 @@ void check_neighbours(const Cloud& cloud, double radius, std::initializer_list<i
       const CloudNeighbours found = maps.nearest(cloud.points, cloud.point_normals, k);
       REQUIRE(found.photons.size() == cloud.points.size() * static_cast<std::size_t>(k));
       CHECK(count_wrong(cloud, found, radius, angle_degrees) == 0);
+    }
+  }
+  for (const double most : {radius, std::numeric_limits<double>::infinity()}) {
+    for (const int k : ks) {
+      if (cloud.position.empty()) continue;
+      CAPTURE(k, most, cloud.position.size());
+      const NeighbourSearch search{cloud.position,      cloud.points, k, most, cloud.normal,
+                                   cloud.point_normals, angle_degrees};
+      CHECK(count_wrong(cloud, find_neighbours(device(), search), most, angle_degrees) == 0);
     }
   }
 }
@@ -296,6 +307,30 @@ TEST_CASE("what is wrong with photons or points is said in one line") {
   flat.normal.clear();
   PhotonCloud plain(device(), flat.photons(), {.radius = 0.1});
   CHECK_THROWS_WITH(plain.nearest(flat.points, flat.point_normals, 3), Contains("no photon has"));
+}
+
+TEST_CASE("C gets the neighbours that C++ gets, and errors as a status and a line") {
+  const Cloud cloud = fog(2000, 100, {-1, -1, -1}, {1, 1, 1});
+  photile_device* opened = nullptr;
+  CHECK(photile_open_device("no such device", &opened) == PHOTILE_DEVICE_ERROR);
+  REQUIRE(photile_open_device(nullptr, &opened) == PHOTILE_OK);
+  std::vector<std::uint32_t> indices(800);
+  std::vector<float> distances(800);
+  const auto find = [&](std::size_t count, int k, float most = INFINITY) {
+    return photile_find_neighbours(opened, &cloud.position[0].x, count, &cloud.points[0].x, 100, k,
+                                   most, indices.data(), distances.data());
+  };
+  REQUIRE(find(2000, 8) == PHOTILE_OK);
+  const CloudNeighbours expected = find_neighbours(device(), {cloud.position, cloud.points, 8});
+  CHECK(indices == expected.photons);
+  CHECK(distances[799] == std::sqrt(expected.squared_distance[799]));
+  REQUIRE(find(3, 8) == PHOTILE_OK);
+  CHECK((indices[2] < 3 && indices[3] == 3 && std::isinf(distances[3])));
+  CHECK(find(3, 0) == PHOTILE_BAD_INPUT);
+  CHECK(find(3, 8, NAN) == PHOTILE_BAD_INPUT);
+  CHECK(find(0, 8) == PHOTILE_BAD_INPUT);
+  CHECK_THAT(photile_last_error(), Contains("no points"));
+  photile_close_device(opened);
 }
 
 }  // namespace photile::test

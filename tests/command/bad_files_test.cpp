@@ -1,5 +1,4 @@
 // Scenes that cannot be rendered, files that ask for too much, outputs that cannot be written.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>

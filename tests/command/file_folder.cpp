@@ -1,19 +1,15 @@
 #include "file_folder.hpp"
 
-#include <fstream>
-#include <iterator>
+#include "file_bytes.hpp"
 
 namespace photile::test {
 
 std::string FileFolder::write(const std::string& name, const std::string& text) const {
-  std::ofstream(path / name, std::ios::binary) << text;
+  put(path / name, text);
   return *this / name;
 }
 
-std::string FileFolder::read(const std::string& name) const {
-  std::ifstream file(path / name, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+std::string FileFolder::read(const std::string& name) const { return bytes_of(path / name); }
 
 std::size_t FileFolder::file_count() const {
   const auto begin = std::filesystem::directory_iterator(path);

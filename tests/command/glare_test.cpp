@@ -1,7 +1,6 @@
 // Glare, luminaires and projections on the command line.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"

@@ -3,13 +3,12 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "box_scene.hpp"
 #include "child_process.hpp"
+#include "file_bytes.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 
@@ -19,13 +18,6 @@ namespace {
 using Catch::Contains;
 
 // `photile trade`, and pictures made until one is good enough.
-
-std::string text_of(const std::string& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 std::size_t lines_of(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -39,19 +31,19 @@ TEST_CASE("a trade writes its files and prints a row for each requested error", 
                     "--size 24x18 --photons 4k -k 8 --samples 1 --reference-samples 16 -q"));
   for (const char* error : {"10%", "5%", "2%", "1%"}) CHECK_THAT(outcome.output, Contains(error));
 
-  const auto record = nlohmann::json::parse(text_of(results + "/trade.json"));
+  const auto record = nlohmann::json::parse(bytes_of(results + "/trade.json"));
   CHECK(record["reference_samples"] == 16);
   CHECK(record["reference_relative_mse"] > 0);
   const std::size_t renderings = record["renderings"].size();
   CHECK(renderings > 20);
-  CHECK(lines_of(text_of(results + "/trade.csv")) == renderings + 1);  // and a header
-  CHECK_FALSE(text_of(results + "/reference.exr").empty());
+  CHECK(lines_of(bytes_of(results + "/trade.csv")) == renderings + 1);  // and a header
+  CHECK_FALSE(bytes_of(results + "/reference.exr").empty());
 
   // The reference that it wrote is one that it reads, and then traces none.
   const Outcome again = succeed(typed("trade", folder / "box.obj", "-o", folder / "again",
                                       "--size 24x18 --photons 4k -k 8 --samples 1 --reference",
                                       results + "/reference.exr", "-q"));
-  CHECK(text_of(folder / "again/reference.exr").empty());
+  CHECK(bytes_of(folder / "again/reference.exr").empty());
 }
 
 TEST_CASE("pictures are made until one states the requested error, which its settings make again") {
@@ -66,7 +58,7 @@ TEST_CASE("pictures are made until one states the requested error, which its set
       photile({"-o", folder / "box.exr", "--set", "light_map_rays=8", "--photons", "20k",
                "--samples", "2", "--target-error", "0.4%", "--stats", folder / "box.json"});
   CHECK_THAT(outcome.errors, Contains("picture 1: standard error") && Contains("picture 2: "));
-  const auto record = nlohmann::json::parse(text_of(folder / "box.json"));
+  const auto record = nlohmann::json::parse(bytes_of(folder / "box.json"));
   const auto maps = std::find_if(record["stages"].begin(), record["stages"].end(),
                                  [](const auto& s) { return s["stage"] == "light maps"; });
   REQUIRE(maps != record["stages"].end());
@@ -99,7 +91,7 @@ TEST_CASE("pictures are made for a time") {
              Contains("picture 1: ") &&
                  Contains("--photons 1500000 -k 100 --samples 4 --set light_map_rays=16") &&
                  !Contains("picture 2"));
-  CHECK_FALSE(text_of(folder / "box.exr").empty());
+  CHECK_FALSE(bytes_of(folder / "box.exr").empty());
 }
 
 // `photile validate`: the table, the JSON and the exit codes.

@@ -1,7 +1,6 @@
 // What the command line takes and says. What it refuses is in tests/transcript.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
+#include "file_bytes.hpp"
 #include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "photile/renderer.hpp"
@@ -56,21 +56,14 @@ TEST_CASE("a full disk behind standard output is a failure") {
 // Every setting of the table is an option or reached by --set, in the records of a run, and in the
 // documentation.
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 TEST_CASE("the documentation holds the tables of settings as the command prints them") {
   const Outcome tables = succeed({"settings", "--markdown"});
   const std::size_t blank = tables.output.find("\n\n");
   const std::string all = tables.output.substr(0, blank), qualities = tables.output.substr(blank);
   REQUIRE(std::count(all.begin(), all.end(), '\n') > 10);
   REQUIRE(std::count(qualities.begin(), qualities.end(), '\n') > 5);
-  CHECK_THAT(content_of(source_folder() / "docs/settings.md"), Contains(all));
-  CHECK_THAT(content_of(source_folder() / "docs/command-line.md"), Contains(qualities));
+  CHECK_THAT(bytes_of(source_folder() / "docs/settings.md"), Contains(all));
+  CHECK_THAT(bytes_of(source_folder() / "docs/command-line.md"), Contains(qualities));
 }
 
 TEST_CASE("every setting is an option of render, or one that --set reaches") {

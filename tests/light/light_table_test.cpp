@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
-#include <random>
 #include <vector>
 
 #include "light/row_sum.hpp"

@@ -3,9 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <iterator>
-#include <numbers>
 
+#include "file_bytes.hpp"
 #include "photile/layered_picture.hpp"
 #include "scene_files.hpp"
 #include "source_folder.hpp"
@@ -14,11 +13,6 @@ namespace photile::test {
 namespace {
 
 using Catch::Contains;
-
-std::string bytes_in(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
 
 const MixedLight& light_of(const LightMix& mix, const std::string& name) {
   for (const MixedLight& light : mix.lights) {
@@ -78,7 +72,7 @@ std::filesystem::path write_scene(const SceneFolderOnDisk& folder, const nlohman
 TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a glTF file") {
   const SceneFolderOnDisk folder;
   const auto file = write_scene(folder, shared_document());
-  const std::string before = bytes_in(file);
+  const std::string before = bytes_of(file);
   LightMix mix = LightMix::of(load_scene(file), 683);
   change_lights(mix, {{"lamp", "50"},
                       {"bulb", "x3"},
@@ -89,7 +83,7 @@ TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a
   CHECK(copy.file.filename() == "room.late_evening.gltf");
   CHECK(copy.left_out.empty());
   check_reads_back(copy.file, mix);
-  CHECK(bytes_in(file) == before);
+  CHECK(bytes_of(file) == before);
 }
 
 TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
@@ -202,7 +196,7 @@ TEST_CASE("an OBJ file is copied with a library of its own") {
   const auto copy = writing::write_edited_scene(file, {}, mix, "warm");
   CHECK(copy.file.filename() == "room.warm.obj");
   check_reads_back(copy.file, mix);
-  CHECK(bytes_in(folder.path / "materials.mtl") == lamp_and_wall);
+  CHECK(bytes_of(folder.path / "materials.mtl") == lamp_and_wall);
 }
 
 TEST_CASE("lamps of one MTL material that are set differently are told and keep theirs") {

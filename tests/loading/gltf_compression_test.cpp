@@ -7,7 +7,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "scene_files.hpp"
 

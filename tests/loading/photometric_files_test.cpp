@@ -36,11 +36,6 @@ glm::dvec3 towards(double c, double gamma) {
           std::sin(gamma * radians) * std::sin(c * radians), -std::cos(gamma * radians)};
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  text.replace(text.find(what), what.size(), by);
-  return text;
-}
-
 TEST_CASE("an even lamp of 100 cd emits 400 pi lm, whatever part of the circle was measured",
           "[ies]") {
   for (const auto& horizontal :

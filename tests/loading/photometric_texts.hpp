@@ -6,7 +6,6 @@
 #include <array>
 #include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace photile::test {

@@ -1,7 +1,6 @@
 // Light at sensors in the air, against closed forms and against paths from surfaces.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <glm/gtc/constants.hpp>
 
 #include "photile/sensors.hpp"
@@ -110,13 +109,8 @@ TEST_CASE("in a furnace every sensor reads pi L / (1 - rho), planar and cylindri
   constexpr double reflectance = 0.5;
   test::SceneBuilder builder("furnace");
   const auto wall = builder.add(test::diffuse(glm::vec3(static_cast<float>(reflectance))));
-  const auto lamp = builder.add(test::area_light("walls"));
-  for (int axis = 0; axis < 3; ++axis) {
-    glm::vec3 u(0.0f), v(0.0f), across(0.0f);
-    u[(axis + 1) % 3] = v[(axis + 2) % 3] = across[axis] = 1.0f;
-    builder.grid(glm::vec3(0.0f), u, v, 1, wall, lamp);
-    builder.grid(across, v, u, 1, wall, lamp);
-  }
+  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), wall, true, 1,
+              builder.add(test::area_light("walls")));
   const Scene scene = builder.build();
   const double truth = 1.0 / 6 / (1 - reflectance);  // 1 lm from 6 m2
   const Sensor sensor{{0.3, 0.6, 0.4}, glm::normalize(glm::dvec3(1, 2, -1))};
@@ -143,12 +137,7 @@ TEST_CASE("a sensor that sees no lamps reads what is reflected, and the sky") {
   const auto wall = builder.add(test::diffuse(glm::vec3(static_cast<float>(reflectance))));
   const auto lamp = builder.add(test::area_light("walls"));
   if (closed) {
-    for (int axis = 0; axis < 3; ++axis) {
-      glm::vec3 u(0.0f), v(0.0f), across(0.0f);
-      u[(axis + 1) % 3] = v[(axis + 2) % 3] = across[axis] = 1.0f;
-      builder.grid(glm::vec3(0.0f), u, v, 1, wall, lamp);
-      builder.grid(across, v, u, 1, wall, lamp);
-    }
+    builder.box(glm::vec3(0.0f), glm::vec3(1.0f), wall, true, 1, lamp);
   } else {
     builder.grid({-1, -1, 2}, {0, 2, 0}, {2, 0, 0}, 1, builder.add(test::diffuse(glm::vec3(0.0f))),
                  lamp);

@@ -1,5 +1,4 @@
 // Isolines against straight lines and circles, and the colours of values.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

@@ -2,7 +2,6 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
@@ -13,7 +12,6 @@
 namespace photile::test {
 namespace {
 
-using Catch::Contains;
 using namespace photile::measuring;
 using nlohmann::json;
 

@@ -26,14 +26,14 @@ for header in "$source"/include/photile/*.hpp; do
   [ "$name" = photile.hpp ] || grep -q "\"photile/$name\"" "$source/include/photile/photile.hpp" ||
     fail "photile.hpp leaves out $name"
 done
-for program in "$source"/docs/examples/*.cpp; do
+for program in "$source"/docs/examples/*.{cpp,c}; do
   python3 -c 'import sys; sys.exit(open(sys.argv[1]).read() not in open(sys.argv[2]).read())' \
     "$program" "$source/docs/library.md" || fail "docs/library.md shows another $program"
 done
 # The programs are copied, so that no header of the source folder can be found by chance.
 cp -r "$source/docs/examples" "$scratch/out/examples"
 "$cmake" -S "$scratch/out/examples" -B "$scratch/out/build" -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_PREFIX_PATH="$scratch/installed" > "$scratch/out/configure.log"
+  -DCMAKE_C_FLAGS="-std=c99 -pedantic -Wall -Wextra -Werror" -DCMAKE_PREFIX_PATH="$scratch/installed" > "$scratch/out/configure.log"
 "$cmake" --build "$scratch/out/build" -j 2 > "$scratch/out/build.log"
 
 mkdir -p "$scratch/out/benches"
@@ -55,6 +55,12 @@ echo "$room"
 # Straight from the lamp 1500 lm / 4 pi / (2 m)^2 = 29.8 lx in the middle. All light, with a
 # reflectance of 0.8, is 1500 lm / (1 - 0.8) over 85 m2 on average: 88 lx.
 within 60 160 "$(sed -n 's/^x = 2.5 m: \([0-9]*\) lx$/\1/p' <<< "$room")" "lux below the lamp"
+
+points=$("$scratch/out/build/nearest_points")
+echo "$points"
+[ "$(grep -c "^query [012]: point [0-9]*, " <<< "$points")" = 12 ] || fail "not 4 neighbours of 3 queries"
+# A million points in a cube of 1 m, and a query 1 m above its corner.
+within 1 1.02 "$(sed -n 's/^query 2: .*, \(.*\) away$/\1/p;T;q' <<< "$points")" "distance of a point"
 
 (cd "$scratch/out" &&
   build/relit_picture "$source/scenes/cornell-box/cornell-box.obj" lit.exr half.png)

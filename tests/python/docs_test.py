@@ -26,7 +26,7 @@ def test_everything_public_is_documented(name):
             assert inspect.getdoc(value), f"{name}.{member}"
 
 
-@pytest.mark.parametrize("name", ["load", "trace", "render", "relight", "measure", "PhotonMaps",
+@pytest.mark.parametrize("name", ["load", "trace", "render", "relight", "measure", "neighbours", "PhotonMaps",
                                   "Scene"])
 def test_every_parameter_is_in_the_docstring(name):
     thing = getattr(photile, name)

@@ -27,6 +27,12 @@ def test_own_photons():
     assert re.search(r"lux: \[ *[0-9.]+ +[0-9.]+ +0\. *\]", told)
 
 
+def test_nearest_points():
+    told = run("nearest_points.py")
+    assert re.search(r"found: \[8 [1-7] 0\]", told)  # of 27, and of the eighth of that in a corner
+    assert float(re.search(r"nearest: ([0-9.]+)", told)[1]) == pytest.approx(0.554, rel=0.03)
+
+
 def test_own_scene(tmp_path):
     told = run("own_scene.py", tmp_path)
     assert "absorbed: [1. 1.]" in told  # the room is closed

@@ -3,12 +3,11 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <fstream>
 #include <glm/gtc/constants.hpp>
-#include <sstream>
 #include <thread>
 
 #include "common/files.hpp"
+#include "file_bytes.hpp"
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
@@ -26,12 +25,6 @@ constexpr const char* two_records =
          "count": [3, 2], "spacing": [1.8, 2.4], "lumens": 3600.5},
         {"rotation": 30, "file": "downlight.ies", "position": [0.1, 2.4, -0.7],
          "size": [0.2, 0.2]}])";
-
-std::string content_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 /// A folder with the room of the gallery, a photometric file, and a list of luminaires.
 struct Room : TemporaryFolder {
@@ -112,12 +105,12 @@ TEST_CASE("a file that cannot be written stays, and its changes are unsaved") {
   LuminaireEditor editor = room.editor();
   editor.select(0);
   editor.remove();
-  const std::string before = content_of(room.list);
+  const std::string before = bytes_of(room.list);
   std::filesystem::rename(room.list, room.path / "kept.json");
   std::filesystem::create_directory(room.list);  // whatever may write, it cannot take its place
   CHECK_THROWS_AS(editor.save(), OutputError);
   CHECK(editor.unsaved());
-  CHECK(content_of(room.path / "kept.json") == before);
+  CHECK(bytes_of(room.path / "kept.json") == before);
 }
 
 TEST_CASE("a lamp is placed on a surface, and shines away from it") {

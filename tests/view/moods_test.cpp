@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
-#include <sstream>
 
+#include "file_bytes.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
 #include "two_lights.hpp"
@@ -60,9 +60,7 @@ TEST_CASE("a file has powers of four digits, and a mood is what --light would sa
   board.controls()[1].on = false;
   board.controls()[0].kelvin = 2699.7;
   Moods(file).keep("evening", board);
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  CHECK_THAT(text.str(), Contains("200.0") && !Contains("199.98") && Contains("2700"));
+  CHECK_THAT(bytes_of(file), Contains("200.0") && !Contains("199.98") && Contains("2700"));
   const auto changes = Moods(file).changes("evening", lamps());
   REQUIRE(changes.size() == 3);
   CHECK(changes[0].value == "200lm");

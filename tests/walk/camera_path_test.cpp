@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>

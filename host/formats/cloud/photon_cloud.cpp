@@ -14,6 +14,8 @@
 
 #include "cloud/voxels.hpp"
 #include "common/value_range.hpp"
+#include "geometry/box.hpp"
+#include "groups/automatic_radius.hpp"
 #include "maps/build_maps.hpp"
 #include "maps/map_store.hpp"
 #include "photile/errors.hpp"
@@ -25,18 +27,18 @@ namespace photile {
 namespace {
 
 void check_size(std::string_view what, std::size_t size, std::size_t expected,
-                std::string_view owners) {
+                std::string_view owners, std::string_view who = "photon cloud") {
   if (size == expected) return;
-  throw InputError(fmt::format("photon cloud: {} {} for {} {}", size, what, expected, owners));
+  throw InputError(fmt::format("{}: {} {} for {} {}", who, size, what, expected, owners));
 }
 
 void check_places(std::string_view what, std::span<const glm::vec3> places) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const glm::vec3& p = places[i];
     if (scene::within_limit(glm::dvec3(p))) continue;
-    throw InputError(fmt::format(
-        "photon cloud: {} {} lies at ({}, {}, {}); coordinates must be numbers up to {:g} m", what,
-        i, p.x, p.y, p.z, limits::max_coordinate));
+    throw InputError(
+        fmt::format("{} {} lies at ({}, {}, {}); coordinates must be numbers up to {:g} m", what, i,
+                    p.x, p.y, p.z, limits::max_coordinate));
   }
 }
 
@@ -45,8 +47,7 @@ void check_normals(std::string_view what, std::span<const glm::vec3> normals) {
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const double length = glm::length(glm::dvec3(normals[i]));
     if (std::abs(length - 1.0) <= slack) continue;
-    throw InputError(fmt::format("photon cloud: {} {} has a normal of length {}; it must be 1",
-                                 what, i, length));
+    throw InputError(fmt::format("{} {} has a normal of length {}; it must be 1", what, i, length));
   }
 }
 
@@ -56,7 +57,7 @@ void check(const CloudPhotons& photons, const CloudParameters& parameters) {
     throw UsageError(fmt::format("photon cloud: {} photons; at most {} can be indexed", count,
                                  limits::max_stored_photons));
   }
-  if (!(parameters.radius > 0) || !(parameters.radius <= limits::max_coordinate)) {
+  if (!(parameters.radius > 0) || !(parameters.radius <= limits::max_radius)) {
     throw UsageError(
         fmt::format("photon cloud: radius {} m: must be a positive number", parameters.radius));
   }
@@ -65,8 +66,8 @@ void check(const CloudPhotons& photons, const CloudParameters& parameters) {
   if (!photons.normal.empty()) check_size("normals", photons.normal.size(), count, "photons");
   if (!photons.flux.empty()) check_size("flux values", photons.flux.size(), count, "photons");
   if (!photons.light.empty()) check_size("lights", photons.light.size(), count, "photons");
-  check_places("photon", photons.position);
-  check_normals("photon", photons.normal);
+  check_places("photon cloud: photon", photons.position);
+  check_normals("photon cloud: photon", photons.normal);
   for (std::size_t i = 0; i < photons.flux.size(); ++i) {
     const glm::vec3& flux = photons.flux[i];
     if (std::isfinite(flux.x) && std::isfinite(flux.y) && std::isfinite(flux.z)) continue;
@@ -97,6 +98,59 @@ Photons as_stored(const CloudPhotons& cloud, const SceneNeeds& needs) {
   photons.first_of.resize(photons.size() + 1);
   std::iota(photons.first_of.begin(), photons.first_of.end(), 0u);
   return photons;
+}
+
+void check(const NeighbourSearch& search) {
+  if (search.points.empty()) throw InputError("neighbours: there are no points");
+  check_setting("neighbours", setting_value(search.k));
+  check_setting("angle_degrees", setting_value(search.angle_degrees));
+  if (!(search.max_distance > 0)) {
+    throw UsageError(fmt::format("neighbours: largest distance {} m: must be a positive number",
+                                 search.max_distance));
+  }
+  if (!search.normals.empty() || !search.query_normals.empty()) {
+    check_size("normals", search.normals.size(), search.points.size(), "points", "neighbours");
+    check_size("normals", search.query_normals.size(), search.queries.size(), "queries",
+               "neighbours");
+  }
+  check_places("neighbours: point", search.points);
+  check_places("neighbours: query", search.queries);
+  check_normals("neighbours: point", search.normals);
+  check_normals("neighbours: query", search.query_normals);
+}
+
+/// From any query to any point it is no farther than this.
+double largest_distance(const NeighbourSearch& search) {
+  geometry::Box box;
+  for (const glm::vec3& point : search.points) box.extend(point);
+  for (const glm::vec3& query : search.queries) box.extend(query);
+  const double diagonal = glm::distance(glm::dvec3(box.lower), glm::dvec3(box.upper));
+  return std::max(diagonal * (1 + 1e-6), limits::min_radius);
+}
+
+/// Twice the distance to the k-th nearest point, where that is less than around most queries: cubes
+/// as wide as sparse points need would have dense ones in few cells of their grids.
+double radius_for(const NeighbourSearch& search, std::span<const std::uint32_t> open) {
+  constexpr std::size_t most_points = 1 << 18, most_queries = 64, least_rank = 4;
+  const std::size_t all = search.points.size(), count = std::min(all, most_points);
+  const std::size_t sample = std::min(open.size(), most_queries);
+  // In an even part of the points that many stand for k.
+  const std::size_t rank =
+      std::min(std::max(static_cast<std::size_t>(search.k) * count / all, least_rank), count);
+  std::vector<float> distances(sample);
+  tbb::parallel_for(std::size_t{0}, sample, [&](std::size_t i) {
+    const glm::vec3& query = search.queries[open[groups::spread_index(i, sample, open.size())]];
+    std::vector<float> of_points(count);
+    for (std::size_t j = 0; j < count; ++j) {
+      of_points[j] = glm::distance(query, search.points[groups::spread_index(j, count, all)]);
+    }
+    const auto kth = of_points.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+    std::nth_element(of_points.begin(), kth, of_points.end());
+    distances[i] = *kth;
+  });
+  const auto eighth = distances.begin() + static_cast<std::ptrdiff_t>(sample / 8);
+  std::nth_element(distances.begin(), eighth, distances.end());
+  return 2 * static_cast<double>(*eighth);
 }
 
 }  // namespace
@@ -154,8 +208,8 @@ PrimaryHits PhotonCloud::Impl::place(std::span<const glm::vec3> points,
   if (!has_normals && !normals.empty()) {
     throw InputError("photon cloud: the points have normals, but no photon has one to compare");
   }
-  check_places("point", points);
-  check_normals("point", normals);
+  check_places("photon cloud: point", points);
+  check_normals("photon cloud: point", normals);
   const std::size_t photons = positions.size();
   if (points.size() > limits::max_stored_photons - photons) {
     throw UsageError(fmt::format("photon cloud: {} points at once beside {} photons; ask for fewer",
@@ -236,6 +290,51 @@ LightTable PhotonCloud::irradiance(std::span<const glm::vec3> points,
                        .area = AreaMode::disc,
                        .kernel = parameters.kernel});
   return estimator.estimate(impl_->place(points, normals));
+}
+
+CloudNeighbours find_neighbours(Device& device, const NeighbourSearch& search, Progress& progress) {
+  check(search);
+  const auto k = static_cast<std::size_t>(search.k);
+  const std::size_t most = std::min(k, search.points.size());  // that any query finds
+  CloudNeighbours result;
+  result.k = search.k;
+  result.photons.resize(search.queries.size() * k, none);
+  result.squared_distance.resize(result.photons.size(), std::numeric_limits<float>::infinity());
+
+  const double largest = largest_distance(search);
+  const double last = std::min(search.max_distance, largest);
+  std::vector<std::uint32_t> open(search.queries.size());  // queries that found too few so far
+  std::iota(open.begin(), open.end(), 0u);
+  for (double radius = limits::min_radius; !open.empty();) {
+    constexpr double least_growth = 4;
+    radius = std::min(std::max(radius_for(search, open), least_growth * radius), largest);
+    PhotonCloud maps(device, {.position = search.points, .normal = search.normals},
+                     {.radius = radius, .angle_degrees = search.angle_degrees}, progress);
+    std::vector<std::uint32_t> still_open;
+    progress.begin("find neighbours", open.size(), "queries");
+    constexpr std::size_t at_a_time = 1 << 18;  // requests to stop are heard between them
+    for (std::size_t first = 0; first < open.size(); first += at_a_time) {
+      const auto part = std::span(open).subspan(first, std::min(at_a_time, open.size() - first));
+      std::vector<glm::vec3> places, normals;
+      for (const std::uint32_t query : part) {
+        places.push_back(search.queries[query]);
+        if (!search.normals.empty()) normals.push_back(search.query_normals[query]);
+      }
+      const CloudNeighbours found =
+          maps.nearest(places, normals, static_cast<int>(most), std::min(radius, last));
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        std::copy_n(&found.photons[i * most], most, &result.photons[part[i] * k]);
+        std::copy_n(&found.squared_distance[i * most], most, &result.squared_distance[part[i] * k]);
+        if (found.photons[(i + 1) * most - 1] == none) still_open.push_back(part[i]);
+      }
+      progress.advance(part.size());
+      progress.throw_if_cancelled();
+    }
+    progress.end();
+    if (radius >= last) break;
+    open = std::move(still_open);
+  }
+  return result;
 }
 
 }  // namespace photile
