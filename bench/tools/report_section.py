@@ -23,6 +23,7 @@ MEASURES = {
     "lighting/honeybee.py": ["host/lighting/daylight"],
     "pictures/compare_areas.py": ["host/renderer", "kernels"],
     "pictures/gallery.py": ["host/renderer", "kernels"],
+    "pictures/gloss_filter.py": ["host/renderer/render", "host/renderer/trace"],
     "pictures/quality.py": ["host/renderer", "kernels"],
     "rivals/radiance.py": ["host/lighting/measuring", "host/renderer"],
 }

@@ -143,6 +143,17 @@ inline constexpr double node_inset = 0x1p-5;
 /// the radius.
 inline constexpr float photon_ray_offset = 0x1p-2f;
 
+// Filter of gloss (docs/gloss.md)
+/// Pixels on each side that a pixel is averaged with, that two pixels are compared by, and that
+/// show how noisy a pixel is.
+inline constexpr int filter_reach = 8, filter_patch = 1, filter_noise_reach = 3;
+/// Standard errors by which pixels that are averaged may differ beyond their noise.
+inline constexpr float filter_tolerance = 0.6f;
+/// Noise below this fraction of a pixel does not show, and stays.
+inline constexpr float filter_shown_noise = 0.002f;
+/// Differences below this fraction of a pixel count as noise, even where none was measured.
+inline constexpr float filter_least_noise = 0.001f;
+
 // Glass
 /// Fraction of a pixel's sample from which on reflection and refraction are both followed. Glass
 /// seen from the front reflects 0.04.

@@ -78,6 +78,18 @@ inline double kernel_weight(DensityKernel kernel, double relative_squared) {
   return 0;
 }
 
+/// Mean square over squared mean of the weights on a disc: the factor by which a kernel raises the
+/// variance of an estimate.
+inline double kernel_spread(DensityKernel kernel) {
+  switch (kernel) {
+    case DensityKernel::constant:
+      return 1;
+    case DensityKernel::cone:
+      return 3.0 / 2;
+  }
+  return 0;
+}
+
 /// The kernel in use with k neighbours: one photon alone lies at r, where the others are 0.
 inline DensityKernel kernel_used(DensityKernel kernel, int neighbours) {
   return neighbours > 1 ? kernel : DensityKernel::constant;

@@ -95,10 +95,24 @@ struct PrimaryHitParameters {
   int runs = 1;
 };
 
+/// The surfaces of a pixel whose lobes rays follow: sums over its samples, each with its weight.
+struct PixelLobes {
+  std::uint32_t pixel = 0;
+  float weight = 0;             ///< of the samples; 1 where all of them met such a surface
+  glm::vec3 position{0.0f};     ///< metres
+  glm::vec3 normal{0.0f};       ///< unit shading normals
+  glm::vec3 reflectance{0.0f};  ///< of the lobe, towards the eye
+  float roughness = 0;          ///< GGX alpha
+
+  void add(const PixelLobes& more);
+};
+
 struct PrimaryHitBatch {
   PrimaryHits hits;
-  PrimaryHits reflected;  ///< on surfaces seen in lobes; their illuminance is not the pixel's
   std::vector<VisibleEmission> emission;
+  PrimaryHits reflected;  ///< on surfaces seen in lobes; their illuminance is not the pixel's
+  std::vector<VisibleEmission> reflected_emission;  ///< seen in lobes
+  std::vector<PixelLobes> lobes;                    ///< of pixels that have any, row by row
   std::uint64_t rays = 0;
 };
 

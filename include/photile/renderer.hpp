@@ -80,13 +80,14 @@ struct PhotonPaths {
 enum class GlossMode {
   photons,   ///< the photons around a hit, weighed by the lobe: the method of the paper
   rays,      ///< a ray of each hit, along lobes that are narrow or faint; photons for others
-  automatic  ///< rays where light maps are read, else photons
+  filtered,  ///< those rays, with their noise averaged over pixels of a picture that are alike
+  automatic  ///< filtered where light maps are read, else photons
 };
 
-/// "photons", "rays", "auto".
+/// "photons", "rays", "filtered", "auto".
 std::string_view name_of(GlossMode mode);
 inline constexpr std::array all_gloss_modes = {GlossMode::photons, GlossMode::rays,
-                                               GlossMode::automatic};
+                                               GlossMode::filtered, GlossMode::automatic};
 
 /// The settings of a rendering, each once. docs/settings.md states what follows from them, which
 /// stage reads which, and their ranges.

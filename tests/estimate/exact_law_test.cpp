@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "oracle/kernel_weights.hpp"
 #include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
@@ -150,13 +151,16 @@ void check_law(float s, float t, bool half) {
   CHECK(distance * std::sqrt(static_cast<double>(plates)) < 2.693);
   Moments(constant).check_mean();
 
-  const Moments cone(readings(DensityKernel::cone));
-  cone.check_mean();
   const bool whole = s > 0.3f && s < 0.7f && t > 0.3f && t < 0.7f;
-  if (!whole) return;
-  // The integrals of the squared weight and of the weight over the disc are 1/6 and 1/3. Four
-  // standard deviations of the variance of 20,000 are 4%.
-  CHECK(cone.variance == Approx(expected_variance(0.5)).epsilon(0.05));
+  for (const DensityKernel kernel : all_density_kernels) {
+    if (kernel == DensityKernel::constant) continue;
+    const Moments weighted(readings(kernel));
+    weighted.check_mean();
+    // Four standard deviations of the variance of 20,000 are 4%.
+    if (!whole) continue;
+    CHECK(weighted.variance ==
+          Approx(expected_variance(reference::squared_variation(kernel))).epsilon(0.05));
+  }
 }
 
 }  // namespace

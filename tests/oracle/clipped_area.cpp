@@ -33,7 +33,7 @@ Polygon clipped(const Polygon& polygon, const glm::dvec3& normal, double offset)
 double radial_mean(DensityKernel kernel, double rho, double height) {
   if (kernel == DensityKernel::constant) return 0.5;
   const auto at = [&](double x) { return x * weight_at(kernel, std::hypot(x * rho, height)); };
-  constexpr int steps = 8;
+  constexpr int steps = 16;
   double sum = at(0) + at(1);
   for (int i = 1; i < steps; ++i) sum += (i % 2 == 0 ? 2 : 4) * at(static_cast<double>(i) / steps);
   return sum / (3 * steps);

@@ -11,6 +11,12 @@ inline double weight_at(DensityKernel kernel, double distance) {
   return 1;
 }
 
+/// The squared coefficient of variation of the weights over the whole disc.
+inline double squared_variation(DensityKernel kernel) {
+  if (kernel == DensityKernel::cone) return 0.5;  // means of 1/6 for the square and 1/3
+  return 0;
+}
+
 /// The mean of the weights over the whole disc.
 inline double mean_weight(DensityKernel kernel) {
   if (kernel == DensityKernel::cone) return 1.0 / 3;

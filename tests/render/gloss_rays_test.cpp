@@ -332,7 +332,7 @@ TEST_CASE("gloss by rays: rays are for light maps unless asked for") {
   RenderParameters parameters = with_rays();
   parameters.gloss = GlossMode::automatic;
   const auto used = [&] { return render(scene, room_camera(), device(), parameters).used.gloss; };
-  CHECK(used() == GlossMode::rays);
+  CHECK(used() == GlossMode::filtered);
   parameters.light_maps = LightMapMode::off;
   CHECK(used() == GlossMode::photons);
   parameters.gloss = GlossMode::rays;

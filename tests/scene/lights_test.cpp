@@ -103,6 +103,17 @@ TEST_CASE("a numbered light name does not collide with a name of the file") {
   CHECK(lights[2].name == "lamp_3");
 }
 
+TEST_CASE("groups whose names are the same when they are cleaned stay two groups") {
+  std::vector<Light> lights(3);
+  lights[0].group = "desk left";
+  lights[1].group = "desk_left";
+  lights[2].group = "desk left";
+  scene::make_light_names_unique(lights);
+  CHECK(lights[0].group == "desk_left");
+  CHECK(lights[1].group == "desk_left_2");
+  CHECK(lights[2].group == "desk_left");
+}
+
 TEST_CASE("names are listed by the letters that differ, and twenty of them") {
   CHECK(scene::names_like("lamp", {"window", "lamps on the wall", "Amp", "LAMP"}) ==
         "are 'LAMP', 'Amp', 'window', 'lamps on the wall'");

@@ -15,17 +15,10 @@
 
 namespace photile::view {
 
-namespace {
-
-/// Mean square over squared mean of a kernel's weights on its disc: the factor by which it raises
-/// the variance of an estimate.
-double spread_of(DensityKernel kernel) { return kernel == DensityKernel::cone ? 3.0 / 2 : 1; }
-
-}  // namespace
-
 EstimateNoise EstimateNoise::of(const Scene& scene, const RenderParameters& parameters) {
   // The area is that to the k-th photon: the variance of its inverse is 1 / (k - 2).
-  EstimateNoise noise{std::max(1, parameters.neighbours - 2) / spread_of(parameters.kernel), {}};
+  EstimateNoise noise{std::max(1, parameters.neighbours - 2) / kernel_spread(parameters.kernel),
+                      {}};
   const LightGroups groups = light_groups_of(scene);
   noise.paths.resize(groups.groups.size());
   const auto paths =

@@ -176,13 +176,18 @@ pictures::CubeMap cube_of(const tinygltf::Value& light, const tinygltf::Model& m
   if (faces.ArrayLen() != cube.size()) {
     throw files::ResourceError("its specularImages are not six for each size");
   }
+  std::array<double, 6> numbers{};
   for (std::size_t i = 0; i < cube.size(); ++i) {
     const tinygltf::Value& image = faces.Get(static_cast<int>(i));
     const double number = image.IsNumber() ? image.GetNumberAsDouble() : -1.0;
     if (!(number >= 0.0 && number < static_cast<double>(model.images.size()))) {
       throw files::ResourceError(fmt::format("there is no image {}", number));
     }
-    cube[i] = rgbd_picture(model, static_cast<std::size_t>(number), accessors, folder);
+    numbers[i] = number;
+    const auto first = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), number) -
+                                                numbers.begin());
+    cube[i] = first < i ? cube[first]
+                        : rgbd_picture(model, static_cast<std::size_t>(number), accessors, folder);
     if (cube[i].width > limits::max_cube_map_side) {
       throw files::ResourceError(fmt::format("a face is {} texels wide; the limit is {}",
                                              cube[i].width, limits::max_cube_map_side));

@@ -44,20 +44,6 @@ reading::LightTraits light_traits(const tinygltf::Value& extras, const std::stri
                         limits::max_color_temperature, name, warnings)};
 }
 
-namespace {
-
-/// The name, or one with a number after it, that no group has.
-std::string unused(const std::string& name, std::unordered_set<std::string>& groups) {
-  std::string result = scene::clean_light_name(name, limits::max_light_name_bytes);
-  for (int number = 2; !groups.insert(result).second; ++number) {
-    const std::string suffix = fmt::format("_{}", number);
-    result = scene::clean_light_name(name, limits::max_light_name_bytes - suffix.size()) + suffix;
-  }
-  return result;
-}
-
-}  // namespace
-
 std::string lamp_of(const tinygltf::Node& node, const std::string& extension) {
   const tinygltf::Value* found = find_extension(node.extensions, extension.c_str());
   if (found == nullptr) return "";
@@ -76,7 +62,7 @@ void group_instances(std::vector<Light>& lights, std::span<const reading::LightS
   }
   for (const auto& [lamp, members] : instances) {
     if (members.size() < 2) continue;
-    const std::string group = unused(lights[members.front()].name, groups);
+    const std::string group = scene::unused_light_name(lights[members.front()].name, groups);
     for (const std::size_t i : members) lights[i].group = group;
   }
 }

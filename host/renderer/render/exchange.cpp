@@ -94,6 +94,17 @@ void set_rows(std::span<const std::byte> bytes, const Shard& shard, LightLayers&
       });
 }
 
+/// Rank 0 calls set(shard, bytes) with what bytes_of(shard) returns on each of the others.
+template <class BytesOf, class Set>
+void bring_parts(Communicator& processes, const BytesOf& bytes_of, const Set& set) {
+  const std::uint32_t ranks = processes.size();
+  std::vector<Communicator::Bytes> to_each(ranks);
+  if (processes.rank() > 0) to_each[0] = bytes_of(Shard{processes.rank(), ranks});
+  const std::vector<Communicator::Bytes> got = processes.exchange(std::move(to_each));
+  if (processes.rank() > 0) return;
+  for (std::uint32_t rank = 1; rank < ranks; ++rank) set(Shard{rank, ranks}, got[rank]);
+}
+
 std::vector<ContentHash::Digest> digests_of_all(Communicator& processes, const ContentHash& hash) {
   const ContentHash::Digest own = hash.digest();
   return processes.gather_values<ContentHash::Digest>(std::span(&own, 1));
@@ -189,16 +200,30 @@ void require_same(Communicator& processes, const ContentHash& work, std::string_
 }
 
 void bring_rows(Communicator& processes, LightLayers& layers) {
-  const std::uint32_t ranks = processes.size();
-  std::vector<Communicator::Bytes> to_each(ranks);
-  if (processes.rank() > 0) {
-    to_each[0] = bytes_of(layers, {processes.rank(), ranks});
-  }
-  const std::vector<Communicator::Bytes> got = processes.exchange(std::move(to_each));
-  if (processes.rank() > 0) return;
-  for (std::uint32_t rank = 1; rank < ranks; ++rank) {
-    set_rows(got[rank], {rank, ranks}, layers);
-  }
+  bring_parts(
+      processes, [&](const Shard& shard) { return bytes_of(layers, shard); },
+      [&](const Shard& shard, std::span<const std::byte> bytes) {
+        set_rows(bytes, shard, layers);
+      });
+}
+
+void bring_rows(Communicator& processes, int height, std::vector<PixelLobes>& lobes) {
+  const auto rows = static_cast<std::uint64_t>(height);
+  const std::uint64_t width = lobes.size() / rows;
+  bring_parts(
+      processes,
+      [&](const Shard& shard) {
+        ByteWriter bytes;
+        const std::uint64_t first = shard.begin(rows) * width, last = shard.end(rows) * width;
+        bytes.put(std::span<const PixelLobes>(lobes).subspan(first, last - first));
+        return bytes.take();
+      },
+      [&](const Shard& shard, std::span<const std::byte> bytes) {
+        ByteReader reader(bytes);
+        const std::vector<PixelLobes> part = reader.take<PixelLobes>();
+        std::copy(part.begin(), part.end(),
+                  lobes.begin() + static_cast<std::ptrdiff_t>(shard.begin(rows) * width));
+      });
 }
 
 std::uint64_t host_bytes_of_all(Communicator* processes) {

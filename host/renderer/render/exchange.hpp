@@ -62,6 +62,8 @@ void require_same(Communicator& processes, const ContentHash& work, std::string_
 /// Brings the rows of each process, its Shard of them all, to rank 0. The layers of the others stay
 /// as they are. Collective.
 void bring_rows(Communicator& processes, LightLayers& layers);
+/// The same for the lobes of pixels, in `height` rows.
+void bring_rows(Communicator& processes, int height, std::vector<PixelLobes>& lobes);
 
 /// The memory of all machines; of this one where there is one process. Collective.
 std::uint64_t host_bytes_of_all(Communicator* processes);

@@ -158,6 +158,62 @@ void raise_to_zero(LightLayers& layers) {
   for (LightLayers::Row& row : layers.rows) raise(row.radiance);
 }
 
+std::vector<glm::vec3> mixed(const LightLayers& layers, std::span<const double> powers) {
+  const auto width = static_cast<std::size_t>(layers.width);
+  std::vector<glm::vec3> sums(width * static_cast<std::size_t>(layers.height), glm::vec3(0.0f));
+  tbb::parallel_for(0, layers.height, [&](int y) {
+    const std::size_t begin = static_cast<std::size_t>(y) * width;
+    for (std::size_t x = 0; x < width; ++x) {
+      if (layers.sparse()) {
+        const LightLayers::Row& row = layers.rows[static_cast<std::size_t>(y)];
+        for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
+          sums[begin + x] += static_cast<float>(powers[row.light[i]]) * row.radiance[i];
+        }
+        continue;
+      }
+      for (std::size_t light = 0; light < powers.size(); ++light) {
+        sums[begin + x] +=
+            static_cast<float>(powers[light]) * layers.layers[light].radiance[begin + x];
+      }
+    }
+  });
+  return sums;
+}
+
+void add_weighted(LightLayers& layers, int row, const LightLayers& from,
+                  const RowWeights& weights) {
+  const auto y = static_cast<std::size_t>(row), width = static_cast<std::size_t>(layers.width);
+  if (!layers.sparse()) {
+    for (std::size_t light = 0; light < layers.layers.size(); ++light) {
+      const std::vector<glm::vec3>& radiance = from.layers[light].radiance;
+      for (std::size_t x = 0; x < width; ++x) {
+        glm::vec3 sum(0.0f);
+        for (std::uint32_t i = weights.first[x]; i < weights.first[x + 1]; ++i) {
+          sum += weights.weight[i] * radiance[weights.pixel[i]];
+        }
+        layers.layers[light].radiance[y * width + x] += sum;
+      }
+    }
+    return;
+  }
+  const auto from_width = static_cast<std::size_t>(from.width);
+  PixelSums sums(layers.layers.size());
+  LightLayers::Row with;
+  with.first.push_back(0);
+  for (std::size_t x = 0; x < width; ++x) {
+    add_row(layers.rows[y], x, sums);
+    for (std::uint32_t i = weights.first[x]; i < weights.first[x + 1]; ++i) {
+      const LightLayers::Row& other = from.rows[weights.pixel[i] / from_width];
+      const std::size_t column = weights.pixel[i] % from_width;
+      for (std::uint32_t j = other.first[column]; j < other.first[column + 1]; ++j) {
+        sums.of(other.light[j]).add(weights.weight[i] * other.radiance[j], 0.0f);
+      }
+    }
+    end_pixel(sums, with);
+  }
+  layers.rows[y] = std::move(with);
+}
+
 namespace {
 
 /// The scatter of the sums of a pixel's runs: red, green, blue, illuminance.

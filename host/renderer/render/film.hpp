@@ -2,7 +2,9 @@
 // mixed to those of few, and the noise of a pixel's samples is estimated from runs of them.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "photile/estimator.hpp"
@@ -32,6 +34,20 @@ void raise_to_zero(LightLayers& layers);
 ///   runs     as many times as wide as there are runs: column x * count + run has the sum of that
 ///            run of samples of pixel x
 void add_sample_errors(LightLayers& errors, const LightLayers& runs);
+
+/// The sum of the layers at these powers, row by row.
+std::vector<glm::vec3> mixed(const LightLayers& layers, std::span<const double> powers);
+
+/// Pixels of another film, and what each counts in those of a row: entries first[x] to first[x + 1]
+/// are of pixel x.
+struct RowWeights {
+  std::vector<std::uint32_t> first{0};
+  std::vector<std::uint32_t> pixel;
+  std::vector<float> weight;
+};
+
+/// Adds the radiance of pixels of `from` to a row of the layers.
+void add_weighted(LightLayers& layers, int row, const LightLayers& from, const RowWeights& weights);
 
 /// The light of the pooled layers; the lights of a row are summed in its own order.
 LightTable pooled(const LayerMixdown& mixdown, const LightTable& light);

@@ -1,8 +1,10 @@
 #include "render/picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
+#include "light/light_at_points.hpp"
 #include "render/exchange.hpp"
 #include "render/film.hpp"
 
@@ -16,11 +18,15 @@ std::int64_t hits_per_batch(int neighbours) {
          std::max(defaults::neighbours, neighbours);
 }
 
-/// What runs of samples see becomes that of their pixels.
-void join_runs(PrimaryHitBatch& batch, int runs) {
-  const auto count = static_cast<std::uint32_t>(runs);
-  for (std::uint32_t& pixel : batch.hits.pixel) pixel /= count;
-  for (VisibleEmission& seen : batch.emission) seen.pixel /= count;
+/// What `runs` runs of a pixel's samples see becomes that of `less` runs.
+void join_runs(PrimaryHitBatch& batch, int runs, int less) {
+  if (runs == less) return;
+  const auto from = static_cast<std::uint32_t>(runs), to = static_cast<std::uint32_t>(less);
+  const auto join = [&](std::uint32_t& pixel) {
+    pixel = pixel / from * to + pixel % from * to / from;
+  };
+  for (std::uint32_t& pixel : batch.hits.pixel) join(pixel);
+  for (VisibleEmission& seen : batch.emission) join(seen.pixel);
 }
 
 /// Least number of batches of a pooled picture: estimates of many lights wait for their mixdown.
@@ -37,8 +43,7 @@ Picture::Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device>
       film_(plan.hits(film, passes)),
       mixdown_(mixdown),
       costs_(costs),
-      layers_(mixdown ? LightLayers(film_.width, film_.height, mixdown->layers)
-                      : LightLayers(film_.width, film_.height, scene_)),
+      layers_(black_layers(1)),
       fractions_(devices.size(), 0.0) {}
 
 void Picture::add(const HitSource& source, PassLight& light, Progress& progress) {
@@ -50,11 +55,7 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
     hash.add(film_.height);
     require_same(*processes, hash, "a camera, a size or points");
   }
-  if (errors && film_.pass == 0) {
-    *errors = LightLayers(film_.width, film_.height, scene_);
-    film_.runs = std::min(defaults::runs_of_samples, film_.samples_per_pixel);
-    runs_ = LightLayers(film_.width * film_.runs, film_.height, scene_);
-  }
+  if (film_.pass == 0) begin_film(source);
   const auto height = static_cast<std::uint64_t>(film_.height);
   const Shard own = own_rows();
   const int begin = static_cast<int>(own.begin(height)), end = static_cast<int>(own.end(height));
@@ -72,9 +73,14 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
                                                     light.cache()->photon_noise());
     }
     reflected.hits = std::move(batch.reflected);
-    add_hits(source, light, batch, 1.0f / static_cast<float>(film_.samples_per_pixel), progress);
-    if (reflected.hits.size() > 0 || (plan_.used().processes && film_.lobe_rays)) {
-      add_hits(source, light, reflected, 0.0f, progress);  // the pixel's illuminance is not theirs
+    reflected.emission = std::move(batch.reflected_emission);
+    if (filters()) {
+      for (const PixelLobes& seen : batch.lobes) lobes_.lobes[seen.pixel / film_.runs].add(seen);
+    }
+    add_hits(source, light, batch, false, progress);
+    if (reflected.hits.size() > 0 || !reflected.emission.empty() ||
+        (plan_.used().processes && film_.lobe_rays)) {
+      add_hits(source, light, reflected, true, progress);
     }
     progress.advance(static_cast<std::uint64_t>(last - first));
   }
@@ -90,12 +96,59 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
   for (std::size_t i = 0; i < fractions.size(); ++i) fractions_[i] += fractions[i] / film_.passes;
 }
 
+std::vector<double> Picture::powers() const {
+  // Layers of a mixdown are at the powers at which they are to be seen.
+  return mixdown_ ? std::vector<double>(layers_.layers.size(), 1.0) : light::layer_powers(scene_);
+}
+
+LightLayers Picture::black_layers(int columns_per_pixel) const {
+  const int width = columns_per_pixel * film_.width;
+  return mixdown_ ? LightLayers(width, film_.height, mixdown_->layers)
+                  : LightLayers(width, film_.height, scene_);
+}
+
+void Picture::begin_film(const HitSource& source) {
+  const bool filters = plan_.used().gloss == GlossMode::filtered && rays_.needs().glossy &&
+                       source.dense && film_.samples_per_pixel >= LobeFilm::runs;
+  if (!filters && !source.errors) return;
+  film_.runs = std::min(defaults::runs_of_samples, film_.samples_per_pixel);
+  if (source.errors) {
+    *source.errors = black_layers(1);
+    runs_ = black_layers(film_.runs);
+  }
+  if (filters) {
+    lobes_ = {
+        black_layers(2),
+        LightLayers(LobeFilm::runs * film_.width, film_.height, std::vector<std::string>{"all"}),
+        std::vector<PixelLobes>(static_cast<std::size_t>(film_.width) *
+                                static_cast<std::size_t>(film_.height))};
+  }
+}
+
+void Picture::add_lobes() {
+  if (!filters()) return;
+  if (auto* const processes = plan_.used().processes) {
+    bring_rows(*processes, lobes_.halves);
+    bring_rows(*processes, lobes_.mixed);
+    bring_rows(*processes, film_.height, lobes_.lobes);
+    if (processes->rank() > 0) return;
+  }
+  const Stopwatch film_watch;
+  std::array<int, LobeFilm::runs> samples{};
+  for (int sample = 0; sample < film_.samples_per_pixel; ++sample) {
+    ++samples[static_cast<std::size_t>(sample * LobeFilm::runs / film_.samples_per_pixel)];
+  }
+  add_filtered(layers_, lobes_, powers(), samples);
+  costs_.film.add(film_watch.taken());
+}
+
 RenderResult Picture::finish(double radius) {
   if (auto* const processes = plan_.used().processes) bring_rows(*processes, layers_);
+  add_lobes();
   // Light samples may take more off a surface than light maps, which blur, hold there.
-  if (plan_.used().gloss == GlossMode::rays) raise_to_zero(layers_);
+  if (film_.lobe_rays) raise_to_zero(layers_);
   RenderCosts costs = costs_;
-  costs.film.host_bytes = layers_.bytes();
+  costs.film.host_bytes = layers_.bytes() + lobes_.halves.bytes() + lobes_.mixed.bytes();
   costs.fractions.clear();
   costs.compile_seconds = compile_seconds();
   for (std::size_t i = 0; i < devices_.size() && devices_.size() > 1; ++i) {
@@ -147,7 +200,7 @@ PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& li
 }
 
 void Picture::add_hits(const HitSource& source, PassLight& light, PrimaryHitBatch& seen,
-                       float illuminance_weight, const Progress& progress) {
+                       bool by_lobes, const Progress& progress) {
   const Stopwatch light_watch;
   const bool has_errors = source.errors && light.gathered();
   auto [estimates, errors] = light.at(seen.hits, has_errors, progress);
@@ -158,15 +211,34 @@ void Picture::add_hits(const HitSource& source, PassLight& light, PrimaryHitBatc
     estimates = pooled(*mixdown_, estimates);
     pool_emission(*mixdown_, seen);
   }
-  if (source.errors) {
-    add_to_film(runs_, seen, estimates, illuminance_weight);
-    join_runs(seen, film_.runs);
+  // The illuminance of what lobes show is not the pixel's.
+  const float illuminance_weight =
+      by_lobes ? 0.0f : 1.0f / static_cast<float>(film_.samples_per_pixel);
+  if (source.errors) add_to_film(runs_, seen, estimates, illuminance_weight);
+  if (by_lobes && filters()) {
+    add_to_lobes(seen, estimates);
+  } else {
+    join_runs(seen, film_.runs, 1);
+    add_to_film(layers_, seen, estimates, illuminance_weight);
   }
-  add_to_film(layers_, seen, estimates, illuminance_weight);
   costs_.film.add(film_watch.taken());
   if (!has_errors) return;
   seen.emission.clear();  // only its samples have errors
   add_to_film(*source.errors, seen, errors, illuminance_weight);
+}
+
+void Picture::add_to_lobes(PrimaryHitBatch& seen, const LightTable& estimates) {
+  const std::vector<double> of_layers = powers();
+  const LayerMixdown all{{"all"},
+                         std::vector<std::uint32_t>(of_layers.size(), 0),
+                         {of_layers.begin(), of_layers.end()}};
+  const std::vector<VisibleEmission> emission = seen.emission;
+  pool_emission(all, seen);
+  add_to_film(lobes_.mixed, seen, pooled(all, estimates), 0.0f);
+  seen.emission = emission;
+  join_runs(seen, film_.runs, 2);
+  add_to_film(lobes_.halves, seen, estimates, 0.0f);
+  join_runs(seen, 2, 1);
 }
 
 LightTotals Picture::totals(const PassLight& light) const {

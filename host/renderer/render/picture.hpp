@@ -9,6 +9,7 @@
 #include "photile/ray_scene.hpp"
 #include "photile/renderer.hpp"
 #include "render/hit_source.hpp"
+#include "render/lobe_filter.hpp"
 #include "render/photon_passes.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
@@ -32,13 +33,23 @@ class Picture {
   RenderResult finish(double radius);
 
  private:
+  bool filters() const { return !lobes_.lobes.empty(); }
+  /// The powers at which layers are seen together.
+  std::vector<double> powers() const;
+  LightLayers black_layers(int columns_per_pixel) const;
+  /// Makes the films that are filled beside the picture.
+  void begin_film(const HitSource& source);
+  /// Adds what rays found in lobes to the film where that is not done yet.
+  void add_lobes();
   /// Rows of the film that this process makes.
   Shard own_rows() const;
   int rows_per_batch() const;
   PrimaryHitBatch trace_rows(const HitSource& source, const PassLight& light, int first, int last);
-  ///   illuminance_weight   of a whole sample in that of its pixel
-  void add_hits(const HitSource& source, PassLight& light, PrimaryHitBatch& seen,
-                float illuminance_weight, const Progress& progress);
+  ///   by_lobes   the hits are on surfaces that are seen in lobes
+  void add_hits(const HitSource& source, PassLight& light, PrimaryHitBatch& seen, bool by_lobes,
+                const Progress& progress);
+  /// Leaves the hits with the numbers of their pixels.
+  void add_to_lobes(PrimaryHitBatch& seen, const LightTable& estimates);
   double compile_seconds() const;
   LightTotals totals(const PassLight& light) const;
 
@@ -51,6 +62,7 @@ class Picture {
   RenderCosts& costs_;
   LightLayers layers_;
   LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
+  LobeFilm lobes_;    ///< where gloss is filtered; otherwise empty
   std::vector<double> fractions_;
   TimeTaken asked_;         ///< for light
   std::uint64_t hits_ = 0;  ///< at which light was asked for

@@ -47,7 +47,9 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
 
 }  // namespace
 
-std::string_view name_of(GlossMode mode) { return name_in({"photons", "rays", "auto"}, mode); }
+std::string_view name_of(GlossMode mode) {
+  return name_in({"photons", "rays", "filtered", "auto"}, mode);
+}
 
 namespace {
 
@@ -111,7 +113,7 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   const bool read = reads_nodes(asked, passes());
   if (!read) used_.light_map_rays = 0;
   if (asked.gloss == GlossMode::automatic) {
-    used_.gloss = read ? GlossMode::rays : GlossMode::photons;
+    used_.gloss = read ? GlossMode::filtered : GlossMode::photons;
   }
   const bool at_points = hits == HitsAsk::points && asked.light_maps == LightMapMode::automatic &&
                          used_.light_map_rays == 0;
@@ -226,7 +228,7 @@ PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
   hits.samples_per_pixel = passes * ((film.samples_per_pixel - 1) / passes + 1);
   hits.passes = passes;
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
-  hits.lobe_rays = used_.gloss == GlossMode::rays;
+  hits.lobe_rays = used_.gloss != GlossMode::photons;
   hits.split_at_glass = true;
   return hits;
 }

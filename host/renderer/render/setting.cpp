@@ -199,8 +199,8 @@ std::vector<Setting> estimate_rows() {
                            "light samples from a hit, which replace photons directly from lights",
                            kept_for_direct_light, "photons carry it"),
       row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
-                     "what finds the light that lobes reflect; auto: rays where light maps are "
-                     "read, else photons",
+                     "what finds the light that lobes reflect; filtered: rays, whose noise is "
+                     "averaged over pixels; auto: filtered where light maps are read, else photons",
                      not_kept),
       row<&P::light_maps>("light_maps", "light maps", words_of(all_light_map_modes),
                           "matt surfaces are read between nodes; auto: not with naive maps or "

@@ -53,12 +53,23 @@ std::string clean_light_name(std::string_view name, std::size_t max_bytes) {
   return clean.empty() ? std::string("light").substr(0, max_bytes) : clean;
 }
 
+std::string unused_light_name(std::string_view name, std::unordered_set<std::string>& taken) {
+  std::string result = clean_light_name(name, limits::max_light_name_bytes);
+  for (int number = 2; !taken.insert(result).second; ++number) {
+    const std::string suffix = fmt::format("_{}", number);
+    result = clean_light_name(name, limits::max_light_name_bytes - suffix.size()) + suffix;
+  }
+  return result;
+}
+
 void make_light_names_unique(std::vector<Light>& lights) {
   std::unordered_set<std::string> taken, groups;
+  std::map<std::string, std::string> group_named;  // by the name as given
   for (Light& light : lights) {
     if (light.group.empty()) continue;
-    light.group = clean_light_name(light.group, limits::max_light_name_bytes);
-    groups.insert(light.group);
+    const auto [known, is_new] = group_named.try_emplace(light.group);
+    if (is_new) known->second = unused_light_name(light.group, groups);
+    light.group = known->second;
   }
   const auto take = [&](const Light& light) {
     return !(light.group.empty() && groups.contains(light.name)) && taken.insert(light.name).second;

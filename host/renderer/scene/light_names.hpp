@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "photile/scene.hpp"
@@ -15,8 +16,11 @@ namespace photile::scene {
 /// `max_bytes` bytes between characters. "light" when nothing is left.
 std::string clean_light_name(std::string_view name, std::size_t max_bytes);
 
-/// Cleans the names of all lights and groups, and numbers lights whose name occurs twice or belongs
-/// to a group that they are not in: lamp, lamp_2, lamp_3.
+/// The cleaned name, or that with a number, which is not taken yet: lamp, lamp_2, lamp_3.
+std::string unused_light_name(std::string_view name, std::unordered_set<std::string>& taken);
+
+/// Cleans the names of all lights and groups. Groups of different names stay apart, and lights
+/// whose name occurs twice or belongs to a group that they are not in are numbered.
 void make_light_names_unique(std::vector<Light>& lights);
 
 /// What follows "there" in a message: "are 'a', 'b'", "is 'a'" or "are none". Only counts the rest

@@ -68,6 +68,23 @@ void drop_lobe(const glm::vec3& base, EyeRecord& record) {
   lobe.roughness = 1.0f;
 }
 
+void append_lobe(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& bsdf,
+                 EyeRecord& record) {
+  const Scene& scene = *setup.rays->scene;
+  const float weight = end.ray.fraction / static_cast<float>(setup.parameters->samples_per_pixel);
+  const PixelLobes seen{end.ray.pixel,
+                        weight,
+                        weight * end.point.position,
+                        weight * shading_normals(scene, end.point, end.ray.direction).seen,
+                        weight * bsdf.lobe_reflectance(),
+                        weight * reflectance(scene, end.point).alpha};
+  if (record.lobes.empty() || record.lobes.back().pixel != seen.pixel) {
+    record.lobes.push_back(seen);
+  } else {
+    record.lobes.back().add(seen);
+  }
+}
+
 /// The next surface that a ray meets. A surface that is partly there lets the ray on by chance, or
 /// as a part of it that is appended to `split`, where that is given and counts enough.
 std::optional<SurfacePoint> meet(const RayScene::Impl& rays, EyeRay& ray,
@@ -239,6 +256,7 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
       const double rays = bsdf.lobe_rays(), start = scramble.uniform(3);
       const auto first_ray = static_cast<std::uint32_t>(index * rays + start);
       const auto end_ray = static_cast<std::uint32_t>((index + 1) * rays + start);
+      append_lobe(setup, *end, bsdf, reflected);
       end->ray.throughput /= static_cast<float>(rays);
       for (std::uint32_t i = first_ray; i < end_ray; ++i) {
         follow_lobes(setup, *end, {of_pixel, i, path, i - first_ray}, reflected);

@@ -42,6 +42,7 @@ struct EyeRecord {
   std::vector<GlossyEyeHit> glossy;       ///< one for each hit; empty unless the scene is glossy
   std::vector<VisibleEmission> emission;  ///< by light
   std::vector<VisibleEmission> direct;    ///< directly from lights at the hits, by layer
+  std::vector<PixelLobes> lobes;          ///< that rays follow, by pixel
   std::uint64_t rays = 0;
 };
 

@@ -81,13 +81,14 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
 
   PrimaryHitBatch batch = trace::batch_of(ray_scene, std::move(rows), map_of);
   if (!lobe_rays) return batch;
+  for (const EyeRecord& row : reflected_rows) {
+    batch.lobes.insert(batch.lobes.end(), row.lobes.begin(), row.lobes.end());
+  }
   PrimaryHitBatch reflected = trace::batch_of(ray_scene, std::move(reflected_rows), map_of);
   batch.rays += reflected.rays;
-  for (VisibleEmission& seen : reflected.emission) {
-    seen.illuminance = 0;  // of another surface
-    batch.emission.push_back(seen);
-  }
+  for (VisibleEmission& seen : reflected.emission) seen.illuminance = 0;  // of another surface
   batch.reflected = std::move(reflected.hits);
+  batch.reflected_emission = std::move(reflected.emission);
   return batch;
 }
 
@@ -103,6 +104,14 @@ PrimaryHitBatch trace::trace_reflected_hits(const RayScene& ray_scene, const Cam
                                             const PrimaryHitParameters& parameters, int first_row,
                                             int last_row, std::span<const std::uint32_t> map_of) {
   return trace_rows(ray_scene, camera, parameters, first_row, last_row, map_of, true);
+}
+
+void PixelLobes::add(const PixelLobes& more) {
+  weight += more.weight;
+  position += more.position;
+  normal += more.normal;
+  reflectance += more.reflectance;
+  roughness += more.roughness;
 }
 
 std::vector<glm::vec3> emitted_radiance_at_unit_power(const Scene& scene) {
