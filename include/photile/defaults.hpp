@@ -144,9 +144,11 @@ inline constexpr double node_inset = 0x1p-5;
 inline constexpr float photon_ray_offset = 0x1p-2f;
 
 // Filter of gloss (docs/gloss.md)
-/// Pixels on each side that a pixel is averaged with, that two pixels are compared by, and that
-/// show how noisy a pixel is.
-inline constexpr int filter_reach = 8, filter_patch = 1, filter_noise_reach = 3;
+/// A pixel is averaged with those of one row on each side for each `filter_rows` rows that the
+/// picture has, and with `filter_most_reach` at most: what is reflected grows with the picture.
+inline constexpr int filter_rows = 48, filter_most_reach = 8;
+/// Pixels on each side by which two pixels are compared, and that show how noisy a pixel is.
+inline constexpr int filter_patch = 1, filter_noise_reach = 3;
 /// Standard errors by which pixels that are averaged may differ beyond their noise.
 inline constexpr float filter_tolerance = 0.6f;
 /// Noise below this fraction of a pixel does not show, and stays.

@@ -174,8 +174,8 @@ bool has_hidden_caustics(const Scene& scene);
 
 /// What all settings of a rendering follow, unless they are given.
 enum class Quality {
-  draft,  ///< light maps whose nodes have photon estimates: quick, soft
-  good,   ///< light maps whose nodes gather: clean to the eye
+  draft,  ///< light maps whose nodes lie far apart: quick, soft
+  good,   ///< nodes close enough for shadows: clean to the eye
   best    ///< the same with four times the rays, photons and samples
 };
 

@@ -173,8 +173,10 @@ TEST_CASE("rows of few rays reflect no more light than surfaces do") {
   scene.portals = {Room::window()};
   const auto patches = weather::sky_patches(145);
   const Sensor sensor{{2.0, 0.8, 2.5}, {0, 1, 0}};
-  TransportParameters parameters{.rays = 32, .sky = {.max_specular_depth = 8}};
-  parameters.mean_luminance.assign(patches.size() + 1, 1000.0);
+  const TransportParameters parameters{
+      .rays = 32,
+      .sky = {.max_specular_depth = 8},
+      .mean_luminance = std::vector<double>(patches.size() + 1, 1000.0)};
   const RayScene rays(scene);
   const LightTransport transport = light_transport(
       rays, std::span(&sensor, 1), weather::PatchFinder(patches, 0), parameters, Progress::none());
@@ -190,7 +192,7 @@ TEST_CASE("rows of few rays reflect no more light than surfaces do") {
 
 TEST_CASE("light that does not fade between surfaces is an error") {
   const auto between_two_cells = [](float reflected) {
-    LightTransport transport{.patches = 1, .batches = 1};
+    LightTransport transport{.sensors = {}, .cells = {}, .patches = 1, .batches = 1};
     const glm::vec3 sky(0.5f);
     const auto row = [&](std::uint32_t from) {
       return TransportRow{{{0, sky, sky}}, {{from, 0, glm::vec3(reflected)}}, {sky}};

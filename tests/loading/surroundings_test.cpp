@@ -318,7 +318,7 @@ glm::dvec3 texel_direction(std::size_t face, int column, int row, int side) {
 pictures::CubeMap cube_of(int side, const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
   pictures::CubeMap cube;
   for (std::size_t face = 0; face < 6; ++face) {
-    cube[face] = {side, side, {}};
+    cube[face].width = cube[face].height = side;
     for (int row = 0; row < side; ++row) {
       for (int column = 0; column < side; ++column) {
         cube[face].texels.push_back(radiance(texel_direction(face, column, row, side)));

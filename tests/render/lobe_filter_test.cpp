@@ -18,7 +18,7 @@
 namespace photile::test {
 namespace {
 
-constexpr int side = 48;
+constexpr int side = 96;
 
 /// Pixels of one varnished floor; the left half reflects 1, the right half 1 + `step`, with noise.
 struct Floor {
@@ -104,14 +104,14 @@ Moments moments(const LightLayers& layers, int first, int last) {
 
 TEST_CASE("lobe filter: sparks are spread, and no light is lost") {
   std::vector<double> differences;
-  for (unsigned seed = 1; seed <= 24; ++seed) {
+  for (unsigned seed = 1; seed <= 16; ++seed) {
     const Floor floor(0, 1, 2, seed);
     const Moments all = moments(floor.filtered(), 0, side);
     differences.push_back(all.mean / floor.mean - 1);
-    // Of a pixel: sqrt(9 / 4) = 1.5. 17 x 17 pixels average it to less than an eighth.
-    CHECK(all.deviation < 1.5 / 8);
+    // Of a pixel: sqrt(9 / 4) = 1.5. 5 x 5 pixels average it to a fifth at best.
+    CHECK(all.deviation < 1.5 / 3);
   }
-  CHECK_VERDICT(mean_is(differences, 0.0, 0.02));
+  CHECK_VERDICT(mean_is(differences, 0.0, 0.03));
 }
 
 TEST_CASE("lobe filter: where there is no noise, an edge keeps its light") {
@@ -145,7 +145,7 @@ TEST_CASE("lobe filter: all layers have the same weights, in either form") {
 TEST_CASE("lobe filter: a varnished floor has less noise, and as much light") {
   Scene scene = furnished_room(3);
   scene.materials[0] = glossy(glm::vec3(0.2f), glm::vec3(0.2f), 0.15f);
-  const Camera camera = room_camera();
+  const Camera camera = above(2.6, 2.2, 2.0, 1.0);
   RenderParameters parameters = small_picture(20'000, 32, 24, 16);
   parameters.light_maps = LightMapMode::on;
   const auto picture = [&](GlossMode gloss, int samples) {
@@ -166,7 +166,7 @@ TEST_CASE("lobe filter: a varnished floor has less noise, and as much light") {
     }
     return std::pair(squares, sum / all);
   };
-  CHECK(compared(filtered).first < 0.7 * compared(rays).first);
+  CHECK(compared(filtered).first < 0.6 * compared(rays).first);
   CHECK(compared(filtered).second - compared(rays).second == Approx(0).margin(0.002));
 }
 

@@ -75,7 +75,7 @@ class LobeFilter {
       glm::vec2 all(0.0f);
       alike.clear();
       if (shows_noise(pixel)) {
-        for_each_around(x, y, defaults::filter_reach, [&](int u, int v) {
+        for_each_around(x, y, reach_, [&](int u, int v) {
           const std::size_t other = index(u, v);
           const float surfaces = difference(pixel, other);
           if (!(surfaces < farthest)) return;
@@ -188,6 +188,7 @@ class LobeFilter {
   static constexpr float smallest = std::numeric_limits<float>::min();  ///< where all is black
 
   int width_, height_;
+  int reach_ = std::clamp(height_ / defaults::filter_rows, 1, defaults::filter_most_reach);
   std::vector<PixelLobes> lobes_;      ///< means of those that rays follow
   std::vector<glm::vec3> brightness_;  ///< of all that the pixel shows
   std::vector<std::array<HalfPixel, 2>> halves_;
