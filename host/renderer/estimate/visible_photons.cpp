@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "light/light_at_points.hpp"
+#include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
 #include "scene/scene_queries.hpp"
@@ -73,7 +74,7 @@ VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, Den
   for (const glm::vec3& flux : photons.flux) {
     flux_.push_back(static_cast<float>(luminance(glm::dvec3(flux))));
   }
-  find_cavities(radius);
+  find_cavities(radius, photons.of_all.get());
 }
 
 std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& hits,
@@ -113,7 +114,9 @@ std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& h
   return result;
 }
 
-void VisiblePhotons::find_cavities(double radius) {
+/// Processes judge the faces all of whose photons they have, and tell each other: what a face hides
+/// must not depend on which of its photons are here.
+void VisiblePhotons::find_cavities(double radius, const PhotonsOfAll* of_all) {
   const auto depth = static_cast<float>(flat * radius);
   std::vector<std::size_t> first;  // photons of a face
   for (std::size_t i = 0; i < oriented_face_.size(); ++i) {
@@ -122,6 +125,7 @@ void VisiblePhotons::find_cavities(double radius) {
   first.push_back(oriented_face_.size());
   std::vector<std::uint8_t> covers(first.size() - 1, 0);
   tbb::parallel_for(std::size_t{0}, covers.size(), [&](std::size_t face) {
+    if (of_all && of_all->own[oriented_face_[first[face]]] == 0) return;
     const trace::FlushDenormals flush_denormals;
     const std::size_t count = first[face + 1] - first[face];
     const std::size_t step = (count + most_cavity_probes - 1) / most_cavity_probes;
@@ -129,11 +133,13 @@ void VisiblePhotons::find_cavities(double radius) {
       covers[face] = covered(location_of(static_cast<std::uint32_t>(i)), rounding_, depth);
     }
   });
-  std::vector<geometry::Box> boxes;
   for (std::size_t face = 0; face < covers.size(); ++face) {
-    if (covers[face] == 0) continue;
-    cavity_faces_.push_back(oriented_face_[first[face]]);
-    boxes.push_back(geometry::triangle_box(rays_.scene(), triangle_of(cavity_faces_.back())));
+    if (covers[face] != 0) cavity_faces_.push_back(oriented_face_[first[face]]);
+  }
+  if (of_all) cavity_faces_ = of_all->processes->gather_values<std::uint32_t>(cavity_faces_);
+  std::vector<geometry::Box> boxes;
+  for (const std::uint32_t face : cavity_faces_) {
+    boxes.push_back(geometry::triangle_box(rays_.scene(), triangle_of(face)));
   }
   cavities_ = geometry::BoxTree(boxes);
 }

@@ -53,7 +53,7 @@ class VisiblePhotons {
   /// Whether something lies above a point, between these heights, metres.
   bool covered(const trace::SurfaceLocation& point, float from, float to) const;
   /// Finds the faces on which photons lie close below another surface.
-  void find_cavities(double radius);
+  void find_cavities(double radius, const PhotonsOfAll* of_all);
   /// Whether one of these lies behind a surface, within a radius.
   bool is_before_cavity(const trace::SurfaceLocation& here, float radius) const;
   /// Whether a photon lies behind the surface of a disc, with a surface in between.
