@@ -183,12 +183,17 @@ def walk():
                 check(png.read_bytes() == (folder / "3" / png.name).read_bytes(), f"{png.name} differs")
 
 
+ROOM_SMALL = ["--photons", "50k", "--size", "48x36", "--samples", "2"]
+
+
+def furnished():
+    """Cavities, lobes and several lights."""
+    same_pictures([3], [*ROOM_SMALL, "--quality", "draft"], ROOM)
+
+
 def glossy():
-    """Lobes and several lights."""
-    small = ["--photons", "50k", "--size", "48x36", "--samples", "2"]
-    same_pictures([3], [*small, "--quality", "draft"], ROOM)
-    same_pictures([2], [*small, "--set", "light_map_rays=8"], ROOM)
-    same_pictures([2, 3], [*small, "--quality", "draft", "--set", "light_maps=off"], ROOM, by=1)
+    same_pictures([2], [*ROOM_SMALL, "--set", "light_map_rays=8"], ROOM)
+    same_pictures([2, 3], [*ROOM_SMALL, "--quality", "draft", "--set", "light_maps=off"], ROOM, by=1)
 
 
 def different():

@@ -136,7 +136,11 @@ void VisiblePhotons::find_cavities(double radius, const PhotonsOfAll* of_all) {
   for (std::size_t face = 0; face < covers.size(); ++face) {
     if (covers[face] != 0) cavity_faces_.push_back(oriented_face_[first[face]]);
   }
-  if (of_all) cavity_faces_ = of_all->processes->gather_values<std::uint32_t>(cavity_faces_);
+  if (of_all) {
+    cavity_faces_ = of_all->processes->gather_values<std::uint32_t>(cavity_faces_);
+    // Leaves of the tree, which are visited whole, depend on the order.
+    std::sort(cavity_faces_.begin(), cavity_faces_.end());
+  }
   std::vector<geometry::Box> boxes;
   for (const std::uint32_t face : cavity_faces_) {
     boxes.push_back(geometry::triangle_box(rays_.scene(), triangle_of(face)));
