@@ -183,7 +183,7 @@ def walk():
                 check(png.read_bytes() == (folder / "3" / png.name).read_bytes(), f"{png.name} differs")
 
 
-ROOM_SMALL = ["--photons", "50k", "--size", "48x36", "--samples", "2"]
+ROOM_SMALL = ["--photons", "50k", "--size", "48x36", "--samples", "4"]
 
 
 def furnished():

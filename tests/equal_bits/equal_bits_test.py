@@ -42,7 +42,7 @@ WAYS = {
     "errors": ["not stated", "stated"],
 }
 USUAL = {way: values[0] for way, values in WAYS.items()}
-PICTURE = ["--size", "32x24", "--samples", "2", "--eye", "0.3,1.7,0.3", "--look-at", "2,0.5,2.1"]
+PICTURE = ["--size", "32x24", "--samples", "4", "--eye", "0.3,1.7,0.3", "--look-at", "2,0.5,2.1"]
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
        "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_btl": "self,vader", "OMPI_MCA_plm": "isolated"}
 
