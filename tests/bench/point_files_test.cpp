@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "file_bytes.hpp"
 #include "photile/errors.hpp"
 #include "photile/load_scene.hpp"
 #include "source_folder.hpp"
@@ -151,8 +152,7 @@ TEST_CASE("every structure answers queries of files, and each row says what its 
 TEST_CASE("a bench on photons of files notices 17 times the flux") {
   const TemporaryFolder folder;
   const std::string file = "estimate/estimate_hit.clh", right = "1.0f / area";
-  std::ifstream kernel(source_folder() / "kernels" / file);
-  std::string text(std::istreambuf_iterator<char>(kernel), {});
+  std::string text = bytes_of(source_folder() / "kernels" / file);
   REQUIRE(text.find(right) != std::string::npos);
   text.insert(text.find(right), "17.0f * ");
   std::filesystem::create_directory(folder.path / "estimate");

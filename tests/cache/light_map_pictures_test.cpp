@@ -61,10 +61,8 @@ double error_of_lamp(const LightLayers& layers, double height, double side) {
 }  // namespace
 
 TEST_CASE("Light maps are no farther from a lamp's closed form than estimates at hits") {
-  test::SceneBuilder builder;
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 3, builder.add(test::diffuse(glm::vec3(1.0f))));
-  builder.add(test::point_light("lamp", {0, 0, 1}, 1.0));
-  const Scene scene = builder.build();
+  Scene scene = test::plate(test::diffuse(glm::vec3(1.0f)), 4, 3);
+  scene.lights.push_back(test::point_light("lamp", {0, 0, 1}));
   RenderParameters parameters = with_light_maps();
   parameters.photons.emitted_photons = 400'000;
   parameters.neighbours = 200;
@@ -134,10 +132,8 @@ TEST_CASE("Rows traced in several batches change no bit of a picture") {
 }
 
 TEST_CASE("A first picture shows a lamp's closed form, whatever brings that light later") {
-  test::SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(1.0f))));
-  builder.add(test::point_light("lamp", {0, 0, 1}, 1.0));
-  const Scene scene = builder.build();
+  Scene scene = test::plate(test::diffuse(glm::vec3(1.0f)), 2, 1);
+  scene.lights.push_back(test::point_light("lamp", {0, 0, 1}));
   constexpr double side = 0.8;
   const Camera camera = test::above(0, 0, 10, side);
   RenderParameters parameters = with_light_maps();
@@ -168,10 +164,8 @@ TEST_CASE("A first picture shows a lamp's closed form, whatever brings that ligh
 
 TEST_CASE("A hit on a wall reads the same light from wherever it is seen") {
   // Cameras that look straight at the same points of a plate, from nearer and farther.
-  test::SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(test::diffuse(glm::vec3(0.5f))));
-  builder.add(test::point_light("lamp", {0.3f, 0.2f, 1}, 1.0));
-  const Scene scene = builder.build();
+  Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 2, 1);
+  scene.lights.push_back(test::point_light("lamp", {0.3f, 0.2f, 1}));
   RenderParameters parameters = with_light_maps();
   SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);
   const RenderResult first = renderer.render(test::above(0, 0, 10, 1.6), parameters.film);

@@ -142,10 +142,8 @@ TEST_CASE("No light comes through a thin shell whose other side is lit") {
 }
 
 TEST_CASE("A grid on a floor under a lamp reads its closed form between nodes") {
-  SceneBuilder builder;
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 3, builder.add(diffuse(glm::vec3(0.5f))));
-  builder.add(point_light("lamp", {0, 0, 1}, 1.0));
-  const Scene scene = builder.build();
+  Scene scene = plate(diffuse(glm::vec3(0.5f)), 4, 3);
+  scene.lights.push_back(point_light("lamp", {0, 0, 1}));
   const std::vector<Sensor> sensors = grid_on_floor(2.4, 24);
   std::vector<double> truth;
   for (const Sensor& sensor : sensors) {

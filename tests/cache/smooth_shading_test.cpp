@@ -18,6 +18,7 @@
 #include "photile/scene.hpp"
 #include "photile/sensors.hpp"
 #include "smooth_meshes.hpp"
+#include "suns.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -127,10 +128,8 @@ TEST_CASE(
     const double side = i % 2 == 0 ? 1 : -1;
     to_sun.push_back(glm::normalize(glm::dvec3(0.4 * side + 0.01 * i, -0.5 * side, 0.7 * side)));
     lux.push_back(1000.0 / (1 + i));
-    Light sun = point_light("sun " + std::to_string(i), {});
-    sun.kind = LightKind::directional;
-    sun.direction = glm::vec3(-to_sun.back());
-    builder.add_distant(sun, lux.back());
+    builder.add_distant(sun_along(glm::vec3(-to_sun.back()), 0, "sun " + std::to_string(i)),
+                        lux.back());
   }
   const Scene scene = builder.build();
   REQUIRE(needs_of(scene).many_lights() == are_drawn);

@@ -8,6 +8,7 @@
 #include "gathering.hpp"
 #include "photile/defaults.hpp"
 #include "photile/scene.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 #include "trace/light_sampler.hpp"
 
@@ -18,13 +19,7 @@ using std::numbers::pi;
 
 constexpr double sun_diameter = 0.0093, lux = 40'000;
 
-Light overhead_sun() {
-  Light sun = point_light("sun", {});
-  sun.kind = LightKind::directional;
-  sun.direction = {0, 0, -1};
-  sun.angular_diameter = static_cast<float>(sun_diameter);
-  return sun;
-}
+Light overhead_sun() { return sun_along({0, 0, -1}, static_cast<float>(sun_diameter)); }
 
 /// A black floor in z = 0 under a sky and a sun overhead, and a plate 1 m above that leaves y > 0.
 Scene floor_half_in_shadow() {

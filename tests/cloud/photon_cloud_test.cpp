@@ -18,7 +18,7 @@ namespace photile::test {
 namespace {
 
 using Catch::Contains;
-using reference::tie;
+using reference::tie;  // what single precision may order either way
 using Points = std::vector<glm::vec3>;
 
 /// Photons and the points that ask for them.
@@ -52,8 +52,6 @@ std::vector<Neighbour> neighbours_of(const Cloud& cloud, std::size_t point, doub
   std::sort(result.begin(), result.end());
   return result;
 }
-
-using reference::tie;  // what single precision may order either way
 
 /// Points whose neighbours are not the k nearest, or not in the order of their distances.
 std::size_t count_wrong(const Cloud& cloud, const CloudNeighbours& found, double radius,

@@ -60,8 +60,7 @@ TEST_CASE("a small EXR that says that it is huge is refused in little memory") {
   }
   const FileFolder folder;
   write_exr(folder / "row.exr", row);
-  std::ifstream stream(folder / "row.exr", std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::string bytes = folder.read("row.exr");
   const std::string window("dataWindow\0box2i\0", 17);
   const std::int32_t last = 8'999;
   std::memcpy(&bytes[bytes.find(window) + window.size() + 4 * sizeof last], &last, sizeof last);

@@ -66,10 +66,11 @@ TEST_CASE("a picture that takes gigabytes is told before anything is traced") {
 }
 
 /// Runs a line of shell text in which $photile is the command.
-Outcome run_in_shell(const FileFolder& folder, const std::string& text) {
+Outcome run_in_shell(const FileFolder& folder, const std::string& text,
+                     const std::string& shell = "bash") {
   const std::string file = folder.write("line.sh", "photile='" + command() + "'\n" + text);
   const std::string output = folder / "output", errors = folder / "errors";
-  const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' bash '" + file +
+  const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' " + shell + " '" + file +
                                   "' > '" + output + "' 2> '" + errors + "'")
                                      .c_str());
   return {WEXITSTATUS(status), folder.read("output"), folder.read("errors")};
@@ -192,15 +193,11 @@ using Clock = std::chrono::steady_clock;
 /// left there.
 Outcome run_on_small_disk(const FileFolder& folder, const std::string& arguments,
                           const std::string& size = "64k") {
-  const std::string script = "mount -t tmpfs -o size=" + size + " none '" + (folder / "disk") +
-                             "' && '" + command() + "' " + arguments + "; code=$?; ls -A '" +
-                             (folder / "disk") + "'; exit $code";
-  const std::string file = folder.write("run.sh", script);
-  const std::string output = folder / "output", errors = folder / "errors";
-  const int status = std::system(("XDG_CACHE_HOME='" PHOTILE_TEST_CACHE "' unshare -m sh '" + file +
-                                  "' > '" + output + "' 2> '" + errors + "'")
-                                     .c_str());
-  return {WEXITSTATUS(status), folder.read("output"), folder.read("errors")};
+  const std::string disk = folder / "disk";
+  return run_in_shell(folder,
+                      "mount -t tmpfs -o size=" + size + " none '" + disk + "' && \"$photile\" " +
+                          arguments + "; code=$?; ls -A '" + disk + "'; exit $code",
+                      "unshare -m sh");
 }
 
 TEST_CASE("killed a hundred times at any moment, a render leaves the old picture or a new one",

@@ -2,9 +2,9 @@
 #include "weather/weather_file.hpp"
 
 #include <catch2/catch.hpp>
-#include <fstream>
 #include <random>
 
+#include "file_bytes.hpp"
 #include "message_of.hpp"
 #include "photile/errors.hpp"
 #include "temporary_folder.hpp"
@@ -22,14 +22,18 @@ std::string text_of_year() {
 
 std::string error_of(const TemporaryFolder& folder, const std::string& text) {
   const auto file = folder.path / "bad.epw";
-  std::ofstream(file, std::ios::binary) << text;
+  put(file, text);
   return message_of<InputError>([&] { weather::read_weather(file); });
 }
 
-std::size_t hours_in(const TemporaryFolder& folder, const std::string& text) {
+weather::WeatherYear year_of(const TemporaryFolder& folder, const std::string& text) {
   const auto file = folder.path / "good.epw";
-  std::ofstream(file, std::ios::binary) << text;
-  return weather::read_weather(file).hours.size();
+  put(file, text);
+  return weather::read_weather(file);
+}
+
+std::size_t hours_in(const TemporaryFolder& folder, const std::string& text) {
+  return year_of(folder, text).hours.size();
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -41,10 +45,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }  // namespace
 
 TEST_CASE("the hours of a weather file are read, their middle half an hour before their name") {
-  const TemporaryFolder folder;
-  const auto file = folder.path / "good.epw";
-  std::ofstream(file, std::ios::binary) << text_of_year();
-  const weather::WeatherYear year = weather::read_weather(file);
+  const weather::WeatherYear year = year_of(TemporaryFolder(), text_of_year());
   CHECK(year.site.latitude_degrees == 52.5);
   CHECK(year.site.longitude_degrees == 13.4);
   CHECK(year.site.time_zone == 1);
@@ -59,10 +60,7 @@ TEST_CASE("the hours of a weather file are read, their middle half an hour befor
 }
 
 TEST_CASE("a moment takes the row that covers it, and the sun of that row's middle") {
-  const TemporaryFolder folder;
-  const auto file = folder.path / "good.epw";
-  std::ofstream(file, std::ios::binary) << text_of_year();
-  const weather::WeatherYear year = weather::read_weather(file);
+  const weather::WeatherYear year = year_of(TemporaryFolder(), text_of_year());
   // The row of hour 10 covers 9:00 to 10:00.
   for (const double hour : {9.01, 9.5, 9.75, 10.0}) {
     CAPTURE(hour);

@@ -10,6 +10,7 @@
 #include "device/embedded_files.hpp"
 #include "device/launch.hpp"
 #include "device/program_source.hpp"
+#include "file_bytes.hpp"
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 
@@ -280,8 +281,7 @@ TEST_CASE("every kernel but those of benches, and every shared header, is embedd
       if (extension != ".cl" && extension != ".clh" && extension != ".h") continue;
       if (entry.path().parent_path() == root / "kernels/structures") continue;
       ++count;
-      std::ifstream file(entry.path(), std::ios::binary);
-      const std::string text{std::istreambuf_iterator<char>(file), {}};
+      const std::string text = photile::test::bytes_of(entry.path());
       const auto name = std::filesystem::relative(entry.path(), base).string();
       bool found = false;
       for (const auto& embedded : photile::device::embedded_files()) {

@@ -24,7 +24,7 @@ KINDS = {
     "light maps": ["--quality", "draft"],
     "nodes that gather": ["--set", "light_map_rays=8"],
     "estimates at hits": ["--quality", "draft", "--set", "light_maps=off"],
-    "filtered gloss": ["--quality", "draft", "--set", "gloss=filtered"],
+    "gloss that is not filtered": ["--quality", "draft", "--set", "gloss=rays"],
     "maps by triangle": ["--quality", "draft", "--set", "light_maps=off", "--set", "maps=triangle"],
     "maps by patch": ["--quality", "draft", "--set", "light_maps=off", "--set", "maps=patch"],
     "naive maps": ["--quality", "draft", "--set", "light_maps=off", "--set", "maps=naive"],

@@ -14,6 +14,7 @@
 
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
+#include "file_bytes.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "source_folder.hpp"
@@ -54,8 +55,7 @@ std::string errors_of(const std::string& file, const std::string& options,
   const std::string command = fmt::format(
       "{} 2> '{}'", clang_command("-fsyntax-only", options, file, target), log.string());
   if (std::system(command.c_str()) == 0) return {};
-  std::ifstream text(log);
-  return file + " " + options + ": " + std::string{std::istreambuf_iterator<char>(text), {}};
+  return file + " " + options + ": " + bytes_of(log);
 }
 
 using estimate::Specialisation;
@@ -130,9 +130,8 @@ std::set<std::string> matches(const std::string& text, const std::regex& pattern
 
 /// The symbols of kernels/shared/symbols.clh.
 std::set<std::string> symbols() {
-  std::ifstream file(kernel_root() / "shared/symbols.clh");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return matches(text, std::regex("#ifndef ([A-Z0-9_]+)"));
+  return matches(bytes_of(kernel_root() / "shared/symbols.clh"),
+                 std::regex("#ifndef ([A-Z0-9_]+)"));
 }
 
 }  // namespace
@@ -179,8 +178,7 @@ TEST_CASE("kernels read nothing of lobes or lights that the scene does not have"
                       choice.defines().options(), "estimate/estimate.cl"),
         code.string());
     REQUIRE(std::system(command.c_str()) == 0);
-    std::ifstream file(code);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string text = bytes_of(code);
     const auto begin = text.find("@estimate_by_selection(");
     REQUIRE(begin != std::string::npos);
     const std::string body = text.substr(begin, text.find("\n}", begin) - begin);

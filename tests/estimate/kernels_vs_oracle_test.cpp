@@ -96,23 +96,4 @@ TEST_CASE("with fewer than k photons within the radius weights go by the full ra
   }
 }
 
-TEST_CASE("weighted glossy radiance equals the BSDF summed over the oracle's neighbours") {
-  Scene scene = test::empty_scene(2);
-  scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
-  scene.materials[0].roughness = 0.3f;
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
-  const Photons photons = test::uniform_photons(scene, 5000, 59);
-  PrimaryHits hits = test::uniform_hits(scene, 100, 60);
-  test::add_lobes(hits, scene, 61);
-  constexpr int k = 50;
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
-                        {radius, 4});
-  const LightTable estimates =
-      Estimator(maps, scene, {.neighbours = k, .area = AreaMode::disc, .kernel = kernel})
-          .estimate(hits);
-  const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  const auto expected = test::expected_radiance(oracle, photons, hits, 2, k, radius, kernel);
-  CHECK(test::worst_difference(estimates.radiance, expected) <= 3 * test::glossy_tolerance(k));
-}
-
 }  // namespace photile::test

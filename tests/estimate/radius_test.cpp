@@ -19,11 +19,9 @@ namespace {
 constexpr float albedo = 0.5f;
 
 Scene closed_box() {
-  test::SceneBuilder builder;
-  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(albedo))), true,
-              1);
-  builder.add(test::point_light("lamp", glm::vec3(0.5f)));
-  return builder.build();
+  Scene scene = test::closed_box(test::diffuse(glm::vec3(albedo)));
+  scene.lights[0].position = glm::vec3(0.5f);
+  return scene;
 }
 
 std::vector<Sensor> sensors_on_walls() {

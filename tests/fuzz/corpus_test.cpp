@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "file_bytes.hpp"
 #include "targets.hpp"
 
 namespace photile::test {
@@ -35,9 +36,7 @@ struct Verdicts {
 /// Gives every file of a folder to the reader.
 void read_folder(const std::filesystem::path& folder, FuzzTarget target, Verdicts& verdicts) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::ifstream stream(entry.path(), std::ios::binary);
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(stream),
-                                  std::istreambuf_iterator<char>()};
+    const std::string bytes = bytes_of(entry.path());
     CAPTURE(entry.path());
     bool taken = false;
     const long before = peak_kilobytes();

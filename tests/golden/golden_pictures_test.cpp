@@ -11,6 +11,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "file_bytes.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/load_scene.hpp"
 #include "photile/renderer.hpp"
@@ -123,9 +124,7 @@ TileMeans brighter(TileMeans means, double factor) {
 /// Whether these pictures look as they did, but for the noise of 16 seeds.
 void check_pictures(const std::vector<Golden>& pictures) {
   const auto file = test::source_folder() / "tests/golden/golden.csv";
-  std::ifstream stream(file);
-  const std::vector<TileMeans> before = from_csv({std::istreambuf_iterator<char>(stream), {}});
-  stream.close();
+  const std::vector<TileMeans> before = from_csv(bytes_of(file));
   const bool renew = std::getenv("PHOTILE_RENEW_GOLDEN") != nullptr;
   std::vector<TileMeans> all;
   for (const Golden& golden : pictures) {

@@ -67,6 +67,17 @@ std::filesystem::path write_scene(const SceneFolderOnDisk& folder, const nlohman
   return folder.write("room.gltf", document.dump());
 }
 
+/// A copy of the scene with changed lights is read as they are.
+void check_copy(const nlohmann::json& document, const std::vector<LightChange>& changes) {
+  const SceneFolderOnDisk folder;
+  const auto file = write_scene(folder, document);
+  LightMix mix = LightMix::of(load_scene(file), 683);
+  change_lights(mix, changes);
+  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "a");
+  CHECK(copy.left_out.empty());
+  check_reads_back(copy.file, mix);
+}
+
 }  // namespace
 
 TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a glTF file") {
@@ -102,31 +113,20 @@ TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
 }
 
 TEST_CASE("nodes outside the scene may name what no file can hold") {
-  const SceneFolderOnDisk folder;
   nlohmann::json document = shared_document();
   for (const nlohmann::json& number : {nlohmann::json(1e300), nlohmann::json(-7)}) {
     nlohmann::json node{{"name", "stray"}, {"mesh", number}};
     node["extensions"]["KHR_lights_punctual"]["light"] = number;
     document["nodes"].push_back(node);
   }
-  const auto file = write_scene(folder, document);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"lamp", "50"}, {"panel", "x0.25"}});
-  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "evening");
-  CHECK(copy.left_out.empty());
-  check_reads_back(copy.file, mix);
+  check_copy(document, {{"lamp", "50"}, {"panel", "x0.25"}});
 }
 
 TEST_CASE("a lamp that is off is written with intensity 0") {
-  const SceneFolderOnDisk folder;
-  const auto file = write_scene(folder, shared_document());
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"lamp", "off"}, {"panel", "off"}});
-  check_reads_back(writing::write_edited_scene(file, {}, mix, "dark").file, mix);
+  check_copy(shared_document(), {{"lamp", "off"}, {"panel", "off"}});
 }
 
 TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
-  const SceneFolderOnDisk folder;
   nlohmann::json document = shared_document();
   document["nodes"][0]["extras"].update(
       nlohmann::json{{"photile_lumens", 1200}, {"photile_kelvin", 4000}});
@@ -134,20 +134,14 @@ TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
       nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
   document["nodes"][3]["extras"].update(
       nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
-  const auto file = write_scene(folder, document);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
-  check_reads_back(writing::write_edited_scene(file, {}, mix, "a").file, mix);
+  check_copy(document,
+             {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
 }
 
 TEST_CASE("lights of a group are scaled and tinted together in a copy") {
-  const SceneFolderOnDisk folder;
   nlohmann::json document = shared_document();
   for (const int node : {0, 2}) document["nodes"][node]["extras"]["photile_group"] = "all";
-  const auto file = write_scene(folder, document);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"all", "x0.5"}, {"all", "#ffc080"}});
-  check_reads_back(writing::write_edited_scene(file, {}, mix, "a").file, mix);
+  check_copy(document, {{"all", "x0.5"}, {"all", "#ffc080"}});
 }
 
 TEST_CASE("a copy of a GLB keeps what follows its JSON") {

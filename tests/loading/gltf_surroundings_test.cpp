@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "file_bytes.hpp"
 #include "photile/layered_picture.hpp"
 #include "srgb_oracle.hpp"
 #include "textured_square.hpp"
@@ -96,8 +97,7 @@ TEST_CASE("faces come in the order +x -x +y -y +z -z, and the rotation turns the
 
 TEST_CASE("pictures in buffers surround the scene as well") {
   ImageBasedScene six(std::vector<Texel>(6, {255, 255, 255}));
-  std::ifstream png(six.folder.path / "face0.png", std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(png)), {});
+  const std::string bytes = bytes_of(six.folder.path / "face0.png");
   six.folder.write("faces.bin", bytes);
   six.document["buffers"].push_back({{"uri", "faces.bin"}, {"byteLength", bytes.size()}});
   six.document["bufferViews"].push_back({{"buffer", 1}, {"byteLength", bytes.size()}});

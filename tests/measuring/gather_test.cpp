@@ -5,6 +5,7 @@
 
 #include "photile/sensors.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 #include "validation/analytic_cases.hpp"
@@ -207,13 +208,8 @@ TEST_CASE("under half a sky cylinders read half of pi L, half cylinders by where
 
 TEST_CASE("sensors far outside the scene lie in its shadow") {
   Scene scene = test::plate(test::diffuse(glm::vec3(0)), 2);
-  Light sun = test::point_light("sun", {0, 0, 0});
-  sun.kind = LightKind::directional;
-  sun.direction = {0, 0, -1};
-  Light disc = sun;
-  disc.name = "sun with a disc";
-  disc.angular_diameter = 0.01f;
-  scene.lights = {sun, disc};
+  scene.lights = {test::sun_along({0, 0, -1}),
+                  test::sun_along({0, 0, -1}, 0.01f, "sun with a disc")};
   const double shadowless = 1 / (pi * std::pow(bounding_sphere(scene).radius, 2));
   const std::vector<Sensor> sensors{{{0.1, 0.2, -40}, up}, {{3, 0.2, -40}, up}};
   const auto layers = gather_by_paths(scene, sensors, {.rays = 256}, 1).layers;

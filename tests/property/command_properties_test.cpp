@@ -18,6 +18,7 @@
 #include <string_view>
 
 #include "command_run.hpp"
+#include "file_bytes.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "random_command.hpp"
@@ -35,14 +36,6 @@ constexpr std::uint64_t quick_repeats = 5;
 constexpr std::uint64_t any_kernels = 200;
 /// By as many each kind of command has surely succeeded, by the quick ones from the first seed on.
 constexpr std::uint64_t many_commands = 5'000;
-
-std::string bytes_of(const fs::path& file) {
-  std::error_code none;
-  const auto size = fs::file_size(file, none);
-  std::string bytes(none ? 0 : size, '\0');
-  std::ifstream(file, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(size));
-  return bytes;
-}
 
 std::map<fs::path, std::string> contents(const std::vector<fs::path>& files) {
   std::map<fs::path, std::string> result;

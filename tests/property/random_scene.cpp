@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "file_bytes.hpp"
 #include "photile/image.hpp"
 
 namespace photile::test {
@@ -198,8 +199,7 @@ RandomScene write_gltf(const std::filesystem::path& folder, Dice& dice) {
 /// A byte of one of its files replaced, or the end cut off.
 void damage(const RandomScene& scene, Dice& dice) {
   const std::filesystem::path& file = dice.one_of(scene.inputs);
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::string bytes = bytes_of(file);
   const auto place = static_cast<std::size_t>(dice.whole(0, static_cast<int>(bytes.size()) - 1));
   if (dice.chance(0.3)) {
     bytes.resize(place);

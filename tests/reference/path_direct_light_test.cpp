@@ -4,6 +4,7 @@
 
 #include "path_irradiance.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 #include "validation/analytic_cases.hpp"
 
@@ -91,10 +92,7 @@ TEST_CASE(
 
 TEST_CASE("a directional light spreads its flux over the disc of the scene's bounding sphere") {
   Scene scene = test::plate(black, 2.0f, 1);
-  Light sun = test::point_light("sun", {0, 0, 0});
-  sun.kind = LightKind::directional;
-  sun.direction = glm::normalize(glm::vec3(0.6f, 0, -0.8f));
-  scene.lights.push_back(sun);
+  scene.lights.push_back(test::sun_along(glm::normalize(glm::vec3(0.6f, 0, -0.8f))));
   CHECK(irradiance(scene, {0.1, 0.2, 0}) == Approx(0.8 / (pi * 2)).epsilon(1e-5));
 }
 

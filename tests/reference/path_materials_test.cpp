@@ -1,7 +1,7 @@
 // Every material by photon maps and by paths: the same picture.
 #include <catch2/catch.hpp>
-#include <numeric>
 
+#include "../render/pictures.hpp"
 #include "photile/renderer.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
@@ -38,15 +38,11 @@ Scene room_with_plate(const Material& plate) {
 }
 
 double mean_illuminance(const LightLayers& layers) {
-  const std::vector<float>& lux = layers.layers[0].illuminance;
-  return std::accumulate(lux.begin(), lux.end(), 0.0) / static_cast<double>(lux.size());
+  return test::LayerMeans(layers.layers[0]).illuminance;
 }
 
 RenderParameters effort(std::uint64_t photons, int samples) {
-  RenderParameters parameters;
-  parameters.film.width = parameters.film.height = 16;
-  parameters.film.samples_per_pixel = samples;
-  parameters.photons.emitted_photons = photons;
+  RenderParameters parameters = test::small_picture(photons, 16, 16, samples);
   parameters.radius = 0.1;
   return parameters;
 }

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <glm/gtc/constants.hpp>
-#include <numeric>
 
 #include "../render/pictures.hpp"
 #include "photile/renderer.hpp"
@@ -20,12 +19,6 @@ PrimaryHitParameters film(int width, int height, int samples, std::uint64_t seed
   result.samples_per_pixel = samples;
   result.seed = seed;
   return result;
-}
-
-double mean_luminance(const std::vector<glm::vec3>& plane) {
-  double sum = 0;
-  for (const glm::vec3& value : plane) sum += luminance(value);
-  return sum / static_cast<double>(plane.size());
 }
 
 }  // namespace
@@ -55,10 +48,10 @@ TEST_CASE("lights beyond the dense ones give the same path-traced layers, in the
   const LightLayers dense = sparse.dense();
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     power += scene.lights[i].power;
-    sum += scene.lights[i].power * mean_luminance(dense.layers[i].radiance);
-    CHECK(mean_luminance(dense.layers[i].radiance) > 0);
+    sum += scene.lights[i].power * test::LayerMeans(dense.layers[i]).radiance;
+    CHECK(test::LayerMeans(dense.layers[i]).radiance > 0);
   }
-  CHECK(power * mean_luminance(together.layers[0].radiance) == Approx(sum).epsilon(1e-4));
+  CHECK(power * test::LayerMeans(together.layers[0]).radiance == Approx(sum).epsilon(1e-4));
 }
 
 TEST_CASE("a path-traced floor under a point light: mean illuminance and radiance over a square") {
@@ -73,11 +66,8 @@ TEST_CASE("a path-traced floor under a point light: mean illuminance and radianc
   std::vector<double> illuminance, radiance;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const auto layer = trace_paths(scene, camera, film(48, 48, 4, seed)).layers.layers[0];
-    const double power = scene.lights[0].power;
-    illuminance.push_back(power *
-                          std::accumulate(layer.illuminance.begin(), layer.illuminance.end(), 0.0) /
-                          static_cast<double>(layer.illuminance.size()));
-    radiance.push_back(power * mean_luminance(layer.radiance));
+    illuminance.push_back(scene.lights[0].power * test::LayerMeans(layer).illuminance);
+    radiance.push_back(scene.lights[0].power * test::LayerMeans(layer).radiance);
   }
   CHECK_VERDICT(test::mean_is(illuminance, truth, 0.001 * truth));
   const double reflected = truth * double{albedo} / glm::pi<double>();
@@ -101,8 +91,9 @@ TEST_CASE("reflections by paths are what the lobe reflects of a lamp, whatever l
     CHECK(luminance(lobe.layers[0].radiance[pixel]) ==
           Approx(luminance(black.layers[0].radiance[pixel])).epsilon(1e-5));
   }
-  CHECK(mean_luminance(lobe.layers[0].radiance) > 0);
-  CHECK(mean_luminance(lobe.layers[0].radiance) < 0.5 * mean_luminance(white.layers[0].radiance));
+  CHECK(test::LayerMeans(lobe.layers[0]).radiance > 0);
+  CHECK(test::LayerMeans(lobe.layers[0]).radiance <
+        0.5 * test::LayerMeans(white.layers[0]).radiance);
 }
 
 }  // namespace photile::test

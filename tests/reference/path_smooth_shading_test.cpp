@@ -6,6 +6,7 @@
 #include "path_irradiance.hpp"
 #include "smooth_meshes.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -19,10 +20,7 @@ const glm::dvec3 to_sun = glm::normalize(glm::dvec3(0.4, -0.5, 0.7));
 Scene sphere_in_sun(const SmoothMesh& sphere, bool with_normals = true) {
   SceneBuilder builder;
   sphere.add_to(builder, builder.add(diffuse(glm::vec3(albedo))), with_normals);
-  Light sun = point_light("sun", {});
-  sun.kind = LightKind::directional;
-  sun.direction = glm::vec3(-to_sun);
-  builder.add_distant(sun, sun_lux);
+  builder.add_distant(sun_along(glm::vec3(-to_sun)), sun_lux);
   return builder.build();
 }
 

@@ -3,22 +3,13 @@
 #include <glm/gtc/constants.hpp>
 
 #include "photile/renderer.hpp"
+#include "pictures.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
-
-double mean_luminance(const std::vector<glm::vec3>& plane) {
-  double sum = 0;
-  for (const glm::vec3& value : plane) sum += luminance(value);
-  return sum / static_cast<double>(plane.size());
-}
-
-double mean(const std::vector<float>& plane) {
-  return std::accumulate(plane.begin(), plane.end(), 0.0) / static_cast<double>(plane.size());
-}
 
 /// The inside of a sphere of radius 1 whose wall reflects and emits.
 Scene furnace(float albedo, double emitted_radiance, int rings) {
@@ -59,23 +50,16 @@ TEST_CASE("a point light over a floor: mean illuminance and radiance over a squa
 
   std::vector<double> read_illuminance, read_radiance;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    RenderParameters parameters;
-    parameters.photons.emitted_photons = 200'000;
+    RenderParameters parameters = test::small_picture(200'000, 48, 48, 4);
     parameters.seed = seed;
-    parameters.film.width = parameters.film.height = 48;
     const RenderResult result = render(scene, camera, test::device(), parameters);
-    const double power = scene.lights[0].power;
-    read_illuminance.push_back(power * mean(result.layers.layers[0].illuminance));
-    read_radiance.push_back(power * mean_luminance(result.layers.layers[0].radiance));
+    const test::LayerMeans mean(result.layers.layers[0]);
+    read_illuminance.push_back(scene.lights[0].power * mean.illuminance);
+    read_radiance.push_back(scene.lights[0].power * mean.radiance);
   }
-  const auto illuminance_verdict =
-      test::mean_is(read_illuminance, illuminance, 0.015 * illuminance);
-  INFO(illuminance_verdict.message);
-  CHECK(illuminance_verdict.passed);
+  CHECK_VERDICT(test::mean_is(read_illuminance, illuminance, 0.015 * illuminance));
   const double radiance = illuminance * albedo / glm::pi<double>();
-  const auto radiance_verdict = test::mean_is(read_radiance, radiance, 0.015 * radiance);
-  INFO(radiance_verdict.message);
-  CHECK(radiance_verdict.passed);
+  CHECK_VERDICT(test::mean_is(read_radiance, radiance, 0.015 * radiance));
 }
 
 TEST_CASE("a furnace: inside a sphere that emits L and reflects rho the radiance is L / (1 - rho)",
@@ -87,16 +71,13 @@ TEST_CASE("a furnace: inside a sphere that emits L and reflects rho the radiance
     const Camera camera = Camera::look_at({0, 0, 0}, {1, 0.3, 0.2}, {0, 0, 1}, 1.2);
     std::vector<double> radiances;
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-      RenderParameters parameters;
-      parameters.photons.emitted_photons = 150'000;
+      RenderParameters parameters = test::small_picture(150'000, 40, 40, 4);
       parameters.seed = seed;
-      parameters.film.width = parameters.film.height = 40;
       const RenderResult result = render(scene, camera, test::device(), parameters);
-      radiances.push_back(scene.lights[0].power * mean_luminance(result.layers.layers[0].radiance));
+      radiances.push_back(scene.lights[0].power *
+                          test::LayerMeans(result.layers.layers[0]).radiance);
     }
-    const auto verdict = test::mean_is(radiances, 1.0, 0.015);
-    INFO(verdict.message);
-    CHECK(verdict.passed);
+    CHECK_VERDICT(test::mean_is(radiances, 1.0, 0.015));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
+#include "room_beside_paths.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -18,11 +19,8 @@ namespace {
 using std::numbers::pi;
 
 RenderParameters by_rays(int light_samples, std::uint64_t seed = 1) {
-  RenderParameters parameters;
+  RenderParameters parameters = test::small_picture(100'000, 1, 1, 1);
   parameters.direct_rays = light_samples;
-  parameters.film.width = parameters.film.height = 1;
-  parameters.film.samples_per_pixel = 1;
-  parameters.photons.emitted_photons = 100'000;
   parameters.seed = seed;
   return parameters;
 }
@@ -33,49 +31,6 @@ std::uint64_t stored(const Scene& scene, bool direct) {
   parameters.emitted_photons = 10'000;
   parameters.store_direct = direct;
   return trace_photons(rays, parameters).photons.size();
-}
-
-/// Means over a picture of each layer.
-struct Means {
-  std::vector<double> illuminance, radiance;
-
-  explicit Means(const LightLayers& layers) {
-    for (const LightLayers::Layer& layer : layers.layers) {
-      double lux = 0, reflected = 0;
-      for (const float value : layer.illuminance) lux += value;
-      for (const glm::vec3& value : layer.radiance) reflected += luminance(value);
-      illuminance.push_back(lux / static_cast<double>(layer.illuminance.size()));
-      radiance.push_back(reflected / static_cast<double>(layer.radiance.size()));
-    }
-  }
-};
-
-/// Whether rays and photons together see what paths see, in both layers of a furnished room whose
-/// floor is of a material.
-void check_room(const Material& floor, double delta) {
-  Scene scene = test::furnished_room();
-  scene.materials[0] = floor;
-  const Camera camera = test::above(2.6, 2.2, 2.0, 0.4);
-  std::vector<std::vector<double>> differences(4);
-  Means truth{LightLayers()};
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    RenderParameters parameters = by_rays(2, seed);
-    parameters.film.width = parameters.film.height = 8;
-    parameters.film.samples_per_pixel = 64;
-    parameters.photons.emitted_photons = 400'000;
-    parameters.radius = 0.15;
-    const Means own(render(scene, camera, test::device(), parameters).layers);
-    PrimaryHitParameters film = eye_rays(parameters);
-    film.samples_per_pixel = 1024;
-    truth = Means(trace_paths(scene, camera, film).layers);
-    for (std::size_t layer = 0; layer < 2; ++layer) {
-      differences[2 * layer].push_back(own.illuminance[layer] / truth.illuminance[layer] - 1);
-      differences[2 * layer + 1].push_back(own.radiance[layer] / truth.radiance[layer] - 1);
-    }
-  }
-  for (const std::vector<double>& difference : differences) {
-    CHECK_VERDICT(test::mean_is(difference, 0.0, delta));
-  }
 }
 
 }  // namespace
@@ -142,7 +97,7 @@ TEST_CASE("direct rays: light through a pane counts as direct, light by a mirror
       parameters.photons.emitted_photons = 400'000;
       const RenderResult result =
           render(scene, test::above(0, 0, 0.5, 0.2), test::device(), parameters);
-      lux.push_back(Means(result.layers).illuminance[0]);
+      lux.push_back(test::LayerMeans(result.layers.layers[0]).illuminance);
     }
     // Over the square the cosine and distance of either lamp change their light by under 1%.
     CHECK_VERDICT(test::mean_is(lux, direct + image, 0.03 * (direct + image)));
@@ -150,7 +105,11 @@ TEST_CASE("direct rays: light through a pane counts as direct, light by a mirror
 }
 
 TEST_CASE("direct rays: with photons they see what paths see on a glossy floor", "[long][slow]") {
-  check_room(test::glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.3f), 0.06);
+  RenderParameters parameters = test::small_picture(400'000, 8, 8, 64);
+  parameters.direct_rays = 2;
+  parameters.radius = 0.15;
+  test::check_room(test::furnished_room(), test::glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.3f),
+                   parameters, 0.06);
 }
 
 TEST_CASE("direct rays: layers are the same whatever the powers") {
@@ -172,10 +131,10 @@ TEST_CASE("direct rays: layers are the same whatever the powers") {
 TEST_CASE("direct rays: paths find direct light themselves") {
   const Scene scene = test::furnished_room();
   PrimaryHitParameters film = eye_rays(by_rays(2));
-  const Means with(trace_paths(scene, test::above(2.6, 2.2, 2.0, 0.4), film).layers);
+  const Camera camera = test::above(2.6, 2.2, 2.0, 0.4);
+  const LightLayers with = trace_paths(scene, camera, film).layers;
   film.direct_rays = 0;
-  CHECK(with.radiance ==
-        Means(trace_paths(scene, test::above(2.6, 2.2, 2.0, 0.4), film).layers).radiance);
+  CHECK(test::same_bits(with, trace_paths(scene, camera, film).layers));
 }
 
 TEST_CASE("direct rays: more light samples than the limit are refused") {

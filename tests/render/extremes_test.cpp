@@ -15,6 +15,7 @@
 #include "shared_scenes.hpp"
 #include "skipped.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -325,12 +326,7 @@ TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a 
 double diagonal_over_middle(MapMode mode) {
   // Two triangles that meet along the diagonal.
   Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 2.0f, 1);
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::directional;
-  sun.direction = {0, 0, -1};
-  sun.power = 1;
-  scene.lights.push_back(sun);
+  scene.lights.push_back(test::sun_along({0, 0, -1}));
   // The camera sees the inner 1 x 1 m.
   const Camera camera =
       Camera::look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(0.5 / 2.0));

@@ -12,6 +12,7 @@
 #include "photile/renderer.hpp"
 #include "picture_in_parts.hpp"
 #include "pictures.hpp"
+#include "room_beside_paths.hpp"
 #include "statistical_tests.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
@@ -25,13 +26,18 @@ using std::numbers::pi;
 // Light that lobes reflect, by rays: --set gloss=rays.
 
 RenderParameters with_rays(std::uint64_t seed = 1) {
-  RenderParameters parameters;
+  RenderParameters parameters = small_picture(50'000, 8, 8, 16);
   parameters.gloss = GlossMode::rays;
   parameters.light_maps = LightMapMode::on;
-  parameters.film.width = parameters.film.height = 8;
-  parameters.film.samples_per_pixel = 16;
-  parameters.photons.emitted_photons = 50'000;
   parameters.seed = seed;
+  return parameters;
+}
+
+RenderParameters many_rays() {
+  RenderParameters parameters = with_rays();
+  parameters.photons.emitted_photons = 400'000;
+  parameters.light_map_rays = 128;
+  parameters.neighbours = 200;
   return parameters;
 }
 
@@ -39,32 +45,6 @@ Scene glossy_room(const Material& floor) {
   Scene scene = furnished_room(3);
   scene.materials[0] = floor;
   return scene;
-}
-
-/// Both layers of a furnished room with a floor of this material beside the path tracer, in the
-/// mean over a place beside a block.
-void check_room(const Material& floor, RenderParameters parameters, double delta) {
-  const Scene scene = glossy_room(floor);
-  const Camera camera = above(2.6, 2.2, 2.0, 0.4);
-  std::vector<std::vector<double>> differences(4);
-  parameters.photons.emitted_photons = 400'000;
-  parameters.light_map_rays = 128;
-  parameters.neighbours = 200;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    parameters.seed = seed;
-    const LightLayers own = render(scene, camera, device(), parameters).layers;
-    PrimaryHitParameters film = eye_rays(parameters);
-    film.samples_per_pixel = 1024;
-    const LightLayers paths = trace_paths(scene, camera, film).layers;
-    for (std::size_t layer = 0; layer < 2; ++layer) {
-      const LayerMeans mean(own.layers[layer]), truth(paths.layers[layer]);
-      differences[2 * layer].push_back(mean.illuminance / truth.illuminance - 1);
-      differences[2 * layer + 1].push_back(mean.radiance / truth.radiance - 1);
-    }
-  }
-  for (const std::vector<double>& difference : differences) {
-    CHECK_VERDICT(mean_is(difference, 0.0, delta));
-  }
 }
 
 /// A box of 96 m2 whose walls reflect that part of the light, and all emit the same.
@@ -268,16 +248,17 @@ TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does", 
 }
 
 TEST_CASE("gloss by rays: lobes and light maps together see what paths see", "[long][slow]") {
-  check_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), with_rays(), 0.06);
-  check_room(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), with_rays(), 0.06);
+  const RenderParameters parameters = many_rays();
+  check_room(furnished_room(3), glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
+  check_room(furnished_room(3), glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), parameters, 0.06);
 }
 
 TEST_CASE("gloss by rays: with light samples at each hit they see what paths see, too",
           "[long][slow]") {
-  RenderParameters parameters = with_rays();
+  RenderParameters parameters = many_rays();
   parameters.light_maps = LightMapMode::off;
   parameters.direct_rays = 2;
-  check_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
+  check_room(furnished_room(3), glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
 }
 
 TEST_CASE("gloss by rays: illuminance is that of the surface seen, as without lobes") {

@@ -85,25 +85,10 @@ Camera towards_water(double angle) {
 }
 
 RenderParameters parameters_of(std::uint64_t photons, int samples, std::uint64_t seed) {
-  RenderParameters parameters;
-  parameters.film.width = parameters.film.height = picture_side;
-  parameters.film.samples_per_pixel = samples;
-  parameters.photons.emitted_photons = photons;
+  RenderParameters parameters = test::small_picture(photons, picture_side, picture_side, samples);
   parameters.neighbours = 200;
   parameters.seed = seed;
   return parameters;
-}
-
-double mean_radiance(const LightLayers& layers) {
-  double sum = 0;
-  for (const glm::vec3& radiance : layers.layers[0].radiance) sum += luminance(radiance);
-  return sum / static_cast<double>(layers.layers[0].radiance.size());
-}
-
-double mean_illuminance(const LightLayers& layers) {
-  double sum = 0;
-  for (const float illuminance : layers.layers[0].illuminance) sum += illuminance;
-  return sum / static_cast<double>(layers.layers[0].illuminance.size());
 }
 
 /// Whether the radiance that 16 seeds see of a pool at two angles is that of the closed form, and
@@ -119,8 +104,9 @@ void check_pool(double albedo, double delta, const Pictures& pictures) {
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const std::vector<LightLayers> layers = pictures(pool.scene, cameras, seed);
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      radiance[i].push_back(mean_radiance(layers[i]) / pool.unit / truth.radiance(angles[i]));
-      illuminance[i].push_back(mean_illuminance(layers[i]) / pool.unit /
+      const test::LayerMeans mean(layers[i].layers[0]);
+      radiance[i].push_back(mean.radiance / pool.unit / truth.radiance(angles[i]));
+      illuminance[i].push_back(mean.illuminance / pool.unit /
                                ((1 - fresnel(angles[i])) * truth.irradiance));
     }
   }

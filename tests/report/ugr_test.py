@@ -66,6 +66,21 @@ def test_a_long_lamp_that_shines_to_its_sides_alone_glares_crosswise():
     assert along["endwise"][10][0] > along["crosswise"][10][0] + 3
 
 
+@pytest.mark.parametrize("shape, surface", [
+    ("box", 2 * (0.3 * 0.4 + 0.3 * 0.2 + 0.4 * 0.2)), ("upright cylinder", math.pi * (0.3**2 / 2 + 0.3 * 0.2)),
+    ("cylinder along x", math.pi * (0.3**2 / 2 + 0.3 * 0.2)), ("cylinder along y", math.pi * (0.3**2 / 2 + 0.3 * 0.2)),
+    ("ellipsoid", math.pi * 0.3**2)])
+def test_openings_cover_a_quarter_of_their_surface_in_the_mean_over_all_directions(shape, surface):
+    # Cauchy's law of convex bodies.
+    x, y, height = {"box": (0.3, 0.4, 0.2), "ellipsoid": (0.3, 0.3, 0.3), "cylinder along x": (0.2, 0.3, 0.3),
+                    "cylinder along y": (0.3, 0.2, 0.3)}.get(shape, (0.3, 0.3, 0.2))
+    record = lamp([0, 90], [0, 360], [1] * 4, (x, y, shape))
+    record["opening"]["heights"] = 4 * [height]
+    directions = np.random.default_rng(1).normal(size=(200_000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    assert ugr.Luminaire(record).projected_area(directions).mean() == pytest.approx(surface / 4, rel=5e-3)
+
+
 def test_what_is_seen_beyond_85_degrees_from_below_does_not_count():
     texts = ugr.written(lamp([0, 85, 85.05, 90], [0, 360], [0, 0, 1000, 1000] * 2, (0.3, 0.3, "box")))
     assert texts[".txt"].splitlines()[4].split() == ["2H", "x", "2H", *"-" * 10]

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "file_bytes.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "temporary_folder.hpp"
@@ -43,11 +44,8 @@ struct Saved {
   static Camera scene_camera() {
     return Camera::look_at({0.5, 0.3, 1.5}, {2, 2, 0.5}, {0, 0, 1}, 1.0);
   }
-  std::string bytes() const {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  void write(const std::string& bytes) const { std::ofstream(file, std::ios::binary) << bytes; }
+  std::string bytes() const { return bytes_of(file); }
+  void write(const std::string& bytes) const { put(file, bytes); }
 
   TemporaryFolder folder;
   std::filesystem::path file;
@@ -121,12 +119,9 @@ struct SavedRoom {
     drawn = renderer.draw(camera, {24, 16, 1}, powers, seconds, picture);
     return picture;
   }
-  std::string bytes() const {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
+  std::string bytes() const { return bytes_of(file); }
   void refused(const std::string& bytes) const {
-    std::ofstream(file, std::ios::binary) << bytes;
+    put(file, bytes);
     REQUIRE_THROWS_AS(loaded(), InputError);
   }
 
@@ -193,7 +188,7 @@ TEST_CASE("a file whose light maps are damaged, or cut off anywhere, is refused"
     room.refused(whole.substr(0, at + 1));
   }
   LightMapContents foreign = *[&] {
-    std::ofstream(room.file, std::ios::binary) << whole;
+    put(room.file, whole);
     return room.loaded().light_maps;
   }();
   foreign.error.pop_back();

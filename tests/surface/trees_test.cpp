@@ -81,10 +81,7 @@ TEST_CASE("of two triangles at an angle each finds the other") {
 }
 
 TEST_CASE("a search for triangles of other planes ends where it is told to") {
-  test::SceneBuilder builder;
-  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.5f))), true,
-              4);
-  const Scene scene = builder.build();
+  const Scene scene = test::closed_box(test::diffuse(glm::vec3(0.5f)), 4);
   const surface::SurfaceMesh mesh(scene);
   const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, 0.1);
   const surface::PlaneTree planes(mesh, regions);

@@ -8,6 +8,7 @@
 #include "photile/ray_scene.hpp"
 #include "photile/statistics.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 #include "trace/emission_sampling.hpp"
 #include "trace/sampling.hpp"
@@ -122,11 +123,7 @@ TEST_CASE("Caustics of a sun carry the flux that crosses the mirror") {
   SceneBuilder builder;
   builder.grid({-4, -2, 0}, {8, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   builder.grid({0, -0.5f, 0.1f}, {0, 0, 1}, {0, 1, 0}, 1, builder.add(mirror(glm::vec3(1.0f))));
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::directional;
-  sun.direction = glm::normalize(glm::vec3(1, 0, -1));
-  sun.angular_diameter = diameter;
+  const Light sun = sun_along(glm::normalize(glm::vec3(1, 0, -1)), diameter);
   builder.add_distant(sun, 1.0);
   const Scene scene = builder.build();
   const double radius = bounding_sphere(scene).radius;

@@ -10,6 +10,7 @@
 #include "photile/photons.hpp"
 #include "photile/ray_scene.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -40,13 +41,7 @@ EnvironmentMap half_bright_map() {
 }
 
 Scene with_sun(Scene scene, const glm::vec3& towards, float diameter) {
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::directional;
-  sun.direction = -glm::normalize(towards);
-  sun.angular_diameter = diameter;
-  sun.power = 1;
-  scene.lights.push_back(sun);
+  scene.lights.push_back(sun_along(-glm::normalize(towards), diameter));
   return scene;
 }
 

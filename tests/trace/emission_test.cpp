@@ -4,6 +4,7 @@
 #include "photile/errors.hpp"
 #include "photile/photons.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 #include "trace/light_emitter.hpp"
 
@@ -95,9 +96,7 @@ TEST_CASE("A spot light fills the rings below it by the falloff of KHR_lights_pu
 }
 
 TEST_CASE("A directional light gives E = flux cos(theta) / (pi R^2) evenly over a plate") {
-  Light sun = point_light("sun", glm::vec3(0.0f));
-  sun.kind = LightKind::directional;
-  sun.direction = glm::normalize(glm::vec3(0.6f, 0.2f, -0.9f));
+  const Light sun = sun_along(glm::normalize(glm::vec3(0.6f, 0.2f, -0.9f)));
   const Scene scene = lit_plate(sun);
   const double disc = M_PI * std::pow(bounding_sphere(scene).radius, 2);
   CHECK_VERDICT(counts_agree(counts_in_rings(scene, 5), expected_in_rings([&](double r) {

@@ -10,6 +10,7 @@
 #include "photile/ray_scene.hpp"
 #include "photon_sets.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/ray_scene.hpp"
@@ -219,11 +220,7 @@ Scene plate_over_floor(float opacity, float cutoff = 0.0f) {
   material.opacity_cutoff = cutoff;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(material));
   builder.grid({-5, -5, -1}, {10, 0, 0}, {0, 10, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::directional;
-  sun.power = 1;
-  builder.add(sun);
+  builder.add(sun_along({0, 0, -1}));
   return builder.build();
 }
 

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <set>
 
+#include "suns.hpp"
 #include "test_scenes.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/light_sampler.hpp"
@@ -116,10 +117,8 @@ TEST_CASE(
   SceneBuilder builder;
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
   for (int disc = 0; disc < 3; ++disc) {  // too wide to be sampled apart
-    Light light = point_light("disc " + std::to_string(disc), {}, 1.0 + 0.7 * disc);
-    light.kind = LightKind::directional;
-    light.direction = glm::vec3(0, 0, -1);
-    light.angular_diameter = 0.1f;
+    Light light = sun_along({0, 0, -1}, 0.1f, "disc " + std::to_string(disc));
+    light.power = 1.0 + 0.7 * disc;
     builder.add(light);
   }
   const Scene scene = builder.build();

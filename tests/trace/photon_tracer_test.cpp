@@ -12,6 +12,7 @@
 #include "photile/limits.hpp"
 #include "photile/photons.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
@@ -143,9 +144,7 @@ TEST_CASE("Photons of a light all carry the same flux in their strongest channel
 TEST_CASE("A photon is stored where it lands, before it is reflected") {
   Scene scene = plate(diffuse(glm::vec3(0.5f)), 2);
   scene.materials[0].specular = glm::vec3(0.04f);
-  Light sun = point_light("sun", glm::vec3(0.0f));
-  sun.kind = LightKind::directional;
-  sun.direction = glm::normalize(glm::vec3(1, 0, -2));
+  Light sun = sun_along(glm::normalize(glm::vec3(1, 0, -2)));
   sun.color = glm::vec3(0.5f, 1.0f, 2.0f) / static_cast<float>(luminance({0.5, 1.0, 2.0}));
   scene.lights.push_back(sun);
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 1000}).photons;

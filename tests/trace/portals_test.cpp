@@ -12,6 +12,7 @@
 #include "photile/sensors.hpp"
 #include "room_with_window.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "trace/light_emitter.hpp"
 #include "trace/light_sampler.hpp"
 #include "trace/portal_search.hpp"
@@ -90,12 +91,8 @@ TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it
 
 TEST_CASE("a sun through a window brings its lux times what the window shows") {
   Scene scene = Room::builder(diffuse(glm::vec3(0.0f))).build();
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::directional;
-  sun.direction = glm::normalize(glm::vec3(0.1f, -0.4f, 1.0f));
-  sun.angular_diameter = GENERATE(0.0f, 0.0093f);
-  sun.power = 1;
+  const Light sun =
+      sun_along(glm::normalize(glm::vec3(0.1f, -0.4f, 1.0f)), GENERATE(0.0f, 0.0093f));
   scene.lights.push_back(sun);
   scene.portals = {Room::window()};
   const double disc = pi * std::pow(bounding_sphere(scene).radius, 2);

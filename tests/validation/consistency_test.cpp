@@ -6,6 +6,7 @@
 
 #include "photile/sensors.hpp"
 #include "statistical_tests.hpp"
+#include "suns.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 
@@ -57,35 +58,31 @@ double mean(const std::vector<double>& values) {
 /// the disc of the bounding sphere having the radius sqrt(2) m.
 Scene evenly_lit_plate() {
   Scene scene = test::plate(test::diffuse(glm::vec3(0.0f)), 2.0f, 2);
-  Light sun = test::point_light("sun", {0, 0, 0});
-  sun.kind = LightKind::directional;
-  scene.lights.push_back(sun);
+  scene.lights.push_back(test::sun_along({0, 0, -1}));
   return scene;
+}
+
+/// count x count discs side by side read even light without bias.
+void check_even_light(int count, double spacing, std::uint64_t photons, int neighbours,
+                      double delta) {
+  const Scene scene = evenly_lit_plate();
+  const std::vector<Sensor> sensors = square_of_sensors(count, spacing, {0, 0, 1});
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    values.push_back(mean(readings(scene, sensors, with(photons, neighbours, seed))[0]));
+  }
+  const double truth = 1 / (2 * pi);
+  CHECK_VERDICT(test::mean_is(values, truth, delta * truth));
 }
 
 }  // namespace
 
 TEST_CASE("even light is read without bias: a deviation of 1% would be seen", "[slow]") {
-  const Scene scene = evenly_lit_plate();
-  // 20 x 20 discs of some 400 photons, side by side.
-  const std::vector<Sensor> sensors = square_of_sensors(20, 0.08, {0, 0, 1});
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    values.push_back(mean(readings(scene, sensors, with(500'000, 400, seed))[0]));
-  }
-  const double truth = 1 / (2 * pi);
-  CHECK_VERDICT(test::mean_is(values, truth, 0.01 * truth));
+  check_even_light(20, 0.08, 500'000, 400, 0.01);
 }
 
 TEST_CASE("few neighbours are as unbiased as many: k for k - 1 would be seen") {
-  const Scene scene = evenly_lit_plate();
-  const std::vector<Sensor> sensors = square_of_sensors(40, 0.04, {0, 0, 1});
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    values.push_back(mean(readings(scene, sensors, with(100'000, 10, seed))[0]));
-  }
-  const double truth = 1 / (2 * pi);
-  CHECK_VERDICT(test::mean_is(values, truth, 0.03 * truth));  // k for k - 1 gives 11% more
+  check_even_light(40, 0.04, 100'000, 10, 0.03);  // k for k - 1 gives 11% more
 }
 
 TEST_CASE("the squared error falls as photons to the power -2/3 where k grows as to the power 2/3",
@@ -135,9 +132,8 @@ TEST_CASE("interreflected light is read without bias in the middle of a wall", "
 TEST_CASE("each light of two is read at its own power", "[slow]") {
   Scene scene = test::plate(test::diffuse(glm::vec3(0.0f)), 2.0f, 2);
   for (const double power : {100.0, 3.0}) {
-    Light sun = test::point_light("sun of " + std::to_string(power), {0, 0, 0}, power);
-    sun.kind = LightKind::directional;
-    scene.lights.push_back(sun);
+    scene.lights.push_back(test::sun_along({0, 0, -1}, 0, "sun of " + std::to_string(power)));
+    scene.lights.back().power = power;
   }
   const std::vector<Sensor> sensors = square_of_sensors(20, 0.08, {0, 0, 1});
   std::vector<double> first, second;
@@ -158,9 +154,7 @@ TEST_CASE("the unlit side of a lit plate, and a dark wall beside it, read nothin
   const std::uint32_t black = builder.add(test::diffuse(glm::vec3(0.0f)));
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, black);
   builder.grid({0.5f, -1, 0}, {0, 0, 1}, {0, 2, 0}, 2, black);
-  Light sun = test::point_light("sun", {0, 0, 0});
-  sun.kind = LightKind::directional;
-  builder.add(sun);
+  builder.add(test::sun_along({0, 0, -1}));
   const Scene scene = builder.build();
   std::vector<Sensor> sensors = square_of_sensors(5, 0.1, {0, 0, -1});
   for (int i = 0; i < 10; ++i) {

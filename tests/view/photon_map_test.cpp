@@ -21,12 +21,7 @@ Scene corner() {
   const auto grey = builder.add(test::diffuse(glm::vec3(0.5f)));
   builder.grid({0, 0, 4}, {4, 0, 0}, {0, 0, -4}, 4, grey);
   builder.grid({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 4, grey);
-  Light lamp;
-  lamp.name = "lamp";
-  lamp.kind = LightKind::point;
-  lamp.position = {2, 3, 2};
-  lamp.power = 100;
-  builder.add(lamp);
+  builder.add(test::point_light("lamp", {2, 3, 2}, 100));
   return builder.build();
 }
 

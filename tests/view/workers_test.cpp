@@ -22,12 +22,7 @@ Scene lit_floor() {
   test::SceneBuilder builder;
   const std::uint32_t grey = builder.add(test::diffuse(glm::vec3(0.5f)));
   builder.quad({-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0, -0.5f}, {-0.5f, 0, -0.5f}, grey);
-  Light lamp;
-  lamp.name = "lamp";
-  lamp.kind = LightKind::point;
-  lamp.position = {0, 1, 0};
-  lamp.power = 100;
-  builder.add(lamp);
+  builder.add(test::point_light("lamp", {0, 1, 0}, 100));
   return builder.build();
 }
 
@@ -54,44 +49,56 @@ void wait_for(const Condition& condition) {
   REQUIRE(condition());
 }
 
+/// A viewer of a scene, and the photons that are traced for him.
+struct Viewer {
+  explicit Viewer(FrameRequest request, const RenderParameters& parameters = few_photons(),
+                  int most_samples = 4, Scene room = lit_floor())
+      : scene(std::move(room)),
+        frames(most_samples, 30),
+        photons(scene, one_device, parameters, std::nullopt, {},
+                [this](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); }) {
+    frames.show(std::move(request));
+  }
+
+  /// The frame at rest, of this many paths.
+  std::shared_ptr<const Frame> finished(std::uint64_t paths = 40'000) {
+    wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == paths; });
+    CHECK_FALSE(frames.take_error());
+    CHECK_FALSE(photons.take_error());
+    return frames.latest();
+  }
+
+  const Scene scene;
+  FrameWorker frames;
+  PhotonWorker photons;
+};
+
 }  // namespace
 
 TEST_CASE("a viewer that stands still sees what render gives, bit for bit") {
-  const Scene scene = lit_floor();
-  FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, false});
-  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
-  const auto frame = frames.latest();
+  Viewer viewer({from_above(), 40, 30, false});
+  const auto frame = viewer.finished();
   CHECK(frame->samples_per_pixel == 4);
 
   RenderParameters parameters = few_photons();
-  parameters.film.width = 40;
-  parameters.film.height = 30;
-  parameters.film.samples_per_pixel = 4;
-  const RenderResult expected = render(scene, from_above(), test::device(), parameters);
+  parameters.film = {40, 30, 4};
+  const RenderResult expected = render(viewer.scene, from_above(), test::device(), parameters);
   CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
   CHECK(frame->layers.layers[0].illuminance == expected.layers.layers[0].illuminance);
   CHECK_FALSE(frame->reflections);
   REQUIRE(frame->photons);
   CHECK(frame->photons->position.size() == expected.stored_photons);
   CHECK(luminance(glm::dvec3(frame->layers.layers[0].radiance[15 * 40 + 20])) > 0);
-  CHECK_FALSE(frames.take_error());
-  CHECK_FALSE(photons.take_error());
 }
 
 TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what render gives") {
-  const Scene scene = lit_floor();
   RenderParameters parameters = few_photons();
   parameters.light_maps = LightMapMode::on;
-  FrameWorker frames(4, 30);
   const std::vector<glm::vec3> powers{glm::vec3(100.0f)};
   Camera camera = from_above();
   camera.position.x += 0.1;
-  frames.show({camera, 40, 30, true, false, false, powers});
-  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  Viewer viewer({camera, 40, 30, true, false, false, powers}, parameters);
+  FrameWorker& frames = viewer.frames;
   wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   const auto quick = frames.latest();
   REQUIRE(quick->mixed.size() == 40 * 30);
@@ -99,32 +106,23 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
   CHECK_FALSE(frames.finished());
 
   frames.show({from_above(), 40, 30, false, false, false, powers});
-  wait_for([&] { return frames.finished(); });
-  const auto frame = frames.latest();
+  const auto frame = viewer.finished();
   CHECK(frame->mixed.empty());
   parameters.film = {40, 30, 4};
-  const RenderResult expected = render(scene, from_above(), test::device(), parameters);
+  const RenderResult expected = render(viewer.scene, from_above(), test::device(), parameters);
   CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
-  CHECK_FALSE(frames.take_error());
 }
 
 TEST_CASE("of several passes a viewer at rest sees what render gives of all") {
-  const Scene scene = lit_floor();
   RenderParameters parameters = few_photons();
   parameters.photons.emitted_photons = 45'000;
   parameters.passes = 3;
   parameters.film = {40, 30, 4};
   parameters.light_maps = LightMapMode::off;
-  const std::vector<glm::vec3> powers{glm::vec3(100.0f)};
-  FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, false, false, false, powers});
-  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 45'000; });
-  const RenderResult expected = render(scene, from_above(), test::device(), parameters);
-  CHECK(frames.latest()->layers.layers[0].radiance == expected.layers.layers[0].radiance);
-  CHECK_FALSE(frames.take_error());
-  CHECK_FALSE(photons.take_error());
+  Viewer viewer({from_above(), 40, 30, false, false, false, {glm::vec3(100.0f)}}, parameters);
+  const auto frame = viewer.finished(45'000);
+  const RenderResult expected = render(viewer.scene, from_above(), test::device(), parameters);
+  CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
 }
 
 TEST_CASE(
@@ -163,13 +161,10 @@ TEST_CASE(
 }
 
 TEST_CASE("a lamp that is turned down is seen in the next quick frame") {
-  const Scene scene = lit_floor();
   RenderParameters parameters = few_photons();
   parameters.light_maps = LightMapMode::on;
-  FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, true, false, false, {glm::vec3(100.0f)}});
-  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
+  Viewer viewer({from_above(), 40, 30, true, false, false, {glm::vec3(100.0f)}}, parameters);
+  FrameWorker& frames = viewer.frames;
   wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   std::shared_ptr<const Frame> bright, dark;
   for (int i = 0; i < 20; ++i) {  // until all nodes are there
@@ -197,19 +192,16 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
     mixdown.layer_of.push_back(i % 2);
     mixdown.scale.push_back(static_cast<float>(i));
   }
-  const Scene scene = builder.build();
-  FrameWorker frames(4, 30);
-  frames.show(
-      {from_above(), 40, 30, false, false, false, {}, std::make_shared<LayerMixdown>(mixdown)});
-  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
-  const auto frame = frames.latest();
+  Viewer viewer(
+      {from_above(), 40, 30, false, false, false, {}, std::make_shared<LayerMixdown>(mixdown)},
+      few_photons(), 4, builder.build());
+  const auto frame = viewer.finished();
   REQUIRE(frame->layers.layers.size() == 2);
   REQUIRE(frame->noise.paths.size() == 2);
   RenderParameters parameters = few_photons();
   parameters.film = {40, 30, 4};
-  const LightLayers all = render(scene, from_above(), test::device(), parameters).layers.dense();
+  const LightLayers all =
+      render(viewer.scene, from_above(), test::device(), parameters).layers.dense();
   for (const std::size_t layer : {0u, 1u}) {
     for (std::size_t pixel = 0; pixel < 40 * 30; ++pixel) {
       float expected = 0;
@@ -219,17 +211,11 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
       REQUIRE(frame->layers.layers[layer].radiance[pixel].x == Approx(expected).epsilon(1e-4));
     }
   }
-  CHECK_FALSE(frames.take_error());
 }
 
 TEST_CASE("reflections come with a frame where they are asked for: none of a matt floor") {
-  const Scene scene = lit_floor();
-  FrameWorker frames(1, 30);
-  frames.show({from_above(), 40, 30, false, true});
-  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
-  const auto frame = frames.latest();
+  Viewer viewer({from_above(), 40, 30, false, true}, few_photons(), 1);
+  const auto frame = viewer.finished();
   REQUIRE(frame->reflections);
   REQUIRE(frame->reflections->layers[0].radiance.size() == 40 * 30);
   for (const glm::vec3& radiance : frame->reflections->layers[0].radiance) {
@@ -238,19 +224,16 @@ TEST_CASE("reflections come with a frame where they are asked for: none of a mat
 }
 
 TEST_CASE("a frame is of the last viewpoint that was asked for") {
-  const Scene scene = lit_floor();
-  FrameWorker frames(1, 30);
-  PhotonWorker photons(scene, one_device, few_photons(), std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
   Camera camera = from_above();
+  Viewer viewer({camera, 40, 30, true}, few_photons(), 1);
   for (int step = 0; step < 20; ++step) {
     camera.position.x += 0.01;
-    frames.show({camera, 40, 30, true});
+    viewer.frames.show({camera, 40, 30, true});
   }
-  frames.show({camera, 44, 33, false});
-  wait_for([&] { return frames.finished() && frames.latest()->emitted_photons == 40'000; });
-  CHECK(frames.latest()->camera.position == camera.position);
-  CHECK(frames.latest()->layers.width == 44);
+  viewer.frames.show({camera, 44, 33, false});
+  const auto frame = viewer.finished();
+  CHECK(frame->camera.position == camera.position);
+  CHECK(frame->layers.width == 44);
 }
 
 TEST_CASE("what fails in the background is told, and ends nothing else") {
@@ -265,14 +248,10 @@ TEST_CASE("what fails in the background is told, and ends nothing else") {
 }
 
 TEST_CASE("closing the window in the middle of the work waits for no photons") {
-  const Scene scene = lit_floor();
   RenderParameters parameters;
   parameters.photons.emitted_photons = 400'000'000;  // minutes
-  FrameWorker frames(1024, 30);
-  frames.show({from_above(), 400, 300, false});
-  PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
-                       [&](std::shared_ptr<MapGeneration> maps) { frames.use(std::move(maps)); });
-  wait_for([&] { return !photons.progress().stage.empty(); });
+  Viewer viewer({from_above(), 400, 300, false}, parameters, 1024);
+  wait_for([&] { return !viewer.photons.progress().stage.empty(); });
 }
 
 }  // namespace photile::test

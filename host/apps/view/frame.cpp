@@ -41,7 +41,6 @@ EstimateNoise EstimateNoise::pooled(const LayerMixdown& mixdown) const {
   return {photons, std::move(sums)};
 }
 
-using image::for_each_light;
 using image::for_each_pixel;
 
 namespace {

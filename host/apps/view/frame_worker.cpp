@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/stoppable_progress.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::view {
@@ -40,16 +41,6 @@ constexpr int relit_fraction = 2;
 constexpr int first_samples = 4, more_samples = 4;
 
 }  // namespace
-
-/// Ends a frame that is not needed any longer.
-class FrameWorker::Interruption : public Progress {
- public:
-  explicit Interruption(std::function<bool()> outdated) : outdated_(std::move(outdated)) {}
-  bool cancelled() const override { return outdated_(); }
-
- private:
-  std::function<bool()> outdated_;
-};
 
 FrameWorker::FrameWorker(int most_samples, double frames_per_second)
     : most_samples_(most_samples),
@@ -198,8 +189,9 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   if (task.request.moving) std::tie(film.width, film.height) = size_.fit(film.width, film.height);
   film.samples_per_pixel = task.samples;
   // Requests while the viewer moves would otherwise let no frame end.
-  Interruption progress(
-      [&] { return stop.stop_requested() || (!task.request.moving && outdated(task)); });
+  StoppableProgress progress(Progress::none(), [&] {
+    return stop.stop_requested() || (!task.request.moving && outdated(task));
+  });
   const Stopwatch stopwatch;
   const LayerMixdown* const mixdown = task.request.mixdown.get();
   RenderResult result = task.maps->renderer->render(task.request.camera, film, progress, mixdown);

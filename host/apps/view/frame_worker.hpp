@@ -75,8 +75,6 @@ class FrameWorker {
   std::exception_ptr take_error();
 
  private:
-  class Interruption;
-
   /// The input of the next frame.
   struct Task {
     FrameRequest request;

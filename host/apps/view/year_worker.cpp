@@ -3,21 +3,10 @@
 #include <exception>
 #include <utility>
 
+#include "common/stoppable_progress.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::view {
-namespace {
-
-class StopProgress : public Progress {
- public:
-  explicit StopProgress(const std::stop_token& stop) : stop_(stop) {}
-  bool cancelled() const override { return stop_.stop_requested(); }
-
- private:
-  const std::stop_token& stop_;
-};
-
-}  // namespace
 
 void YearWorker::start() {
   thread_ = {};  // what is under way is stopped
@@ -45,7 +34,7 @@ void YearWorker::tell(Lines lines) {
 }
 
 void YearWorker::work(const std::stop_token& stop) {
-  StopProgress progress(stop);
+  StoppableProgress progress(Progress::none(), [&] { return stop.stop_requested(); });
   try {
     measure_([this](Lines lines) { tell(std::move(lines)); }, progress);
   } catch (const Interrupted&) {

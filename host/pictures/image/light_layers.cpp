@@ -42,10 +42,9 @@ std::vector<bool> image::lit_layers(const LightLayers& layers) {
   std::vector<bool> lit(layers.layers.size(), false);
   for (std::size_t y = 0; y < static_cast<std::size_t>(layers.height); ++y) {
     for (std::size_t x = 0; x < static_cast<std::size_t>(layers.width); ++x) {
-      image::for_each_light(layers, x, y,
-                            [&](std::size_t light, float illuminance, const glm::vec3& l) {
-                              if (illuminance > 0 || l != glm::vec3(0.0f)) lit[light] = true;
-                            });
+      for_each_light(layers, x, y, [&](std::size_t light, float illuminance, const glm::vec3& l) {
+        if (illuminance > 0 || l != glm::vec3(0.0f)) lit[light] = true;
+      });
     }
   }
   return lit;
@@ -86,15 +85,13 @@ LightLayers LightLayers::dense() const {
   if (!sparse()) return result;
   result.rows.clear();
   for (Layer& layer : result.layers) add_plane(layer, pixels_of(*this));
-  for (std::size_t y = 0; y < rows.size(); ++y) {
-    const Row& row = rows[y];
-    for (std::size_t x = 0; x + 1 < row.first.size(); ++x) {
-      const std::size_t pixel = y * static_cast<std::size_t>(width) + x;
-      for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
-        result.layers[row.light[i]].radiance[pixel] = row.radiance[i];
-        result.layers[row.light[i]].illuminance[pixel] = row.illuminance[i];
-      }
-    }
+  for (std::size_t pixel = 0; pixel < pixels_of(*this); ++pixel) {
+    const auto columns = static_cast<std::size_t>(width);
+    for_each_light(*this, pixel % columns, pixel / columns,
+                   [&](std::size_t light, float illuminance, const glm::vec3& radiance) {
+                     result.layers[light].radiance[pixel] = radiance;
+                     result.layers[light].illuminance[pixel] = illuminance;
+                   });
   }
   return result;
 }
@@ -181,21 +178,6 @@ std::vector<glm::vec3> scales_of(const LightLayers& layers, const LightMix& mix)
   return scales;
 }
 
-/// Lights that do not reach a pixel would add 0: leaving them out changes no bit.
-void combine_row(const LightLayers::Row& row, std::span<const glm::vec3> scales,
-                 std::span<glm::vec3> picture) {
-  for (std::size_t x = 0; x < picture.size(); ++x) {
-    glm::vec3 sum(0.0f);
-    for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
-      const glm::vec3& scale = scales[row.light[i]];
-      for (int c = 0; c < 3; ++c) {
-        if (scale[c] != 0.0f) sum[c] += row.radiance[i][c] * scale[c];
-      }
-    }
-    picture[x] = sum;
-  }
-}
-
 std::vector<ScaledLayer> scaled_layers(const LightLayers& layers,
                                        std::span<const glm::vec3> scales) {
   std::vector<ScaledLayer> result;
@@ -229,7 +211,17 @@ void image::combine_rows(const LightLayers& layers, std::span<const glm::vec3> s
   const auto width = static_cast<std::size_t>(layers.width), begin = static_cast<std::size_t>(row);
   if (layers.sparse()) {
     tbb::parallel_for(std::size_t{0}, picture.size() / width, [&](std::size_t y) {
-      combine_row(layers.rows[begin + y], scales, picture.subspan(y * width, width));
+      // Lights that do not reach a pixel would add 0: leaving them out changes no bit.
+      for (std::size_t x = 0; x < width; ++x) {
+        glm::vec3& sum = picture[y * width + x];
+        sum = glm::vec3(0.0f);
+        for_each_light(layers, x, begin + y,
+                       [&](std::size_t light, float, const glm::vec3& radiance) {
+                         for (int c = 0; c < 3; ++c) {
+                           if (scales[light][c] != 0.0f) sum[c] += radiance[c] * scales[light][c];
+                         }
+                       });
+      }
     });
     return;
   }

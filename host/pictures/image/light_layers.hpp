@@ -1,4 +1,4 @@
-// The light that reaches one pixel, layer by layer, whichever way the layers are stored.
+// Layers of pictures: which of them have light, and work on all of their pixels.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -11,27 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "light/pixel_light.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
 
 namespace photile::image {
-
-/// Calls add(light, illuminance, radiance) for all that reaches a pixel, at power 1.
-template <class Add>
-void for_each_light(const LightLayers& layers, std::size_t x, std::size_t y, const Add& add) {
-  if (layers.sparse()) {
-    const LightLayers::Row& row = layers.rows[y];
-    for (std::uint32_t i = row.first[x]; i < row.first[x + 1]; ++i) {
-      add(std::size_t{row.light[i]}, row.illuminance[i], row.radiance[i]);
-    }
-    return;
-  }
-  const std::size_t pixel = y * static_cast<std::size_t>(layers.width) + x;
-  for (std::size_t light = 0; light < layers.layers.size(); ++light) {
-    const LightLayers::Layer& layer = layers.layers[light];
-    add(light, layer.illuminance[pixel], layer.radiance[pixel]);
-  }
-}
 
 /// Calls work(pixel) for all pixels, on all cores.
 template <class Work>

@@ -9,40 +9,12 @@
 #include <thread>
 #include <vector>
 
+#include "common/stoppable_progress.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::estimate {
 
 namespace {
-
-/// The progress as one of several devices sees it: only the first reports, all are stopped.
-class SharedProgress : public Progress {
- public:
-  SharedProgress(Progress& progress, bool tells, const std::atomic<bool>& failed)
-      : progress_(progress), tells_(tells), failed_(failed) {}
-
-  void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override {
-    if (tells_) progress_.begin(stage, total, unit);
-  }
-  void advance(std::uint64_t count) override {
-    if (tells_) progress_.advance(count);
-  }
-  void end() override {
-    if (tells_) progress_.end();
-  }
-  void note(const std::string& line) override {
-    if (tells_) progress_.note(line);
-  }
-  void warn(const std::string& line) override {
-    if (tells_) progress_.warn(line);
-  }
-  bool cancelled() const override { return failed_ || progress_.cancelled(); }
-
- private:
-  Progress& progress_;
-  bool tells_;
-  const std::atomic<bool>& failed_;
-};
 
 /// Runs `work` and names the device in its error.
 void run_named(const DeviceInfo& device, const std::function<void()>& work) {
@@ -84,7 +56,9 @@ void for_each_device(std::span<Device> devices, Progress& progress,
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < devices.size(); ++i) {
       threads.emplace_back([&, i] {
-        SharedProgress shared(progress, i == 0, failed);
+        // Only the first reports, all are stopped.
+        StoppableProgress shared(i == 0 ? progress : Progress::none(),
+                                 [&] { return failed || progress.cancelled(); });
         try {
           run_named(devices[i].info(), [&] { work(i, shared); });
         } catch (...) {

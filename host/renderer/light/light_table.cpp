@@ -7,24 +7,14 @@
 #include <cmath>
 #include <utility>
 
+#include "light/table_bytes.hpp"
 #include "photile/defaults.hpp"
 
 namespace photile {
 namespace {
 
-/// Calls visit(column of a, column of b, values for each entry) for the columns of two tables.
-template <class A, class B, class Visit>
-void for_each_column(A& a, B& b, const Visit& visit) {
-  visit(a.irradiance, b.irradiance, std::size_t{1});
-  visit(a.radiance, b.radiance, std::size_t{1});
-  visit(a.by_normal, b.by_normal, std::size_t{1});
-  visit(a.batch, b.batch, static_cast<std::size_t>(b.batches));
-  visit(a.shared_variance, b.shared_variance, std::size_t{1});
-  visit(a.light, b.light, std::size_t{1});
-}
-
 void append_entries(LightTable& to, const LightTable& from, LightTable::Entries entries) {
-  for_each_column(to, from, [&](auto& column, const auto& values, std::size_t width) {
+  light::for_each_column(to, from, [&](auto& column, const auto& values, std::size_t width) {
     if (values.empty()) return;
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(entries.first * width);
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(entries.last * width);
@@ -90,7 +80,7 @@ LightTable LightTable::gathered(std::span<const std::uint32_t> at) const {
     }
     entries = result.first.back();
   }
-  for_each_column(result, *this, [&](auto& column, const auto& values, std::size_t width) {
+  light::for_each_column(result, *this, [&](auto& column, const auto& values, std::size_t width) {
     if (values.empty()) return;
     column.resize(entries * width);
     tbb::parallel_for(std::size_t{0}, at.size(), [&](std::size_t i) {
@@ -117,7 +107,7 @@ LightTable LightTable::slice(std::size_t begin, std::size_t count) const {
 
 std::uint64_t LightTable::bytes() const {
   std::uint64_t bytes = first.size() * sizeof first.front();
-  for_each_column(*this, *this, [&](const auto& column, const auto&, std::size_t) {
+  light::for_each_column(*this, *this, [&](const auto& column, const auto&, std::size_t) {
     bytes += column.size() * sizeof column.front();
   });
   return bytes;

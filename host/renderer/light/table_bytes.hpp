@@ -1,6 +1,7 @@
-// Tables of light as bytes, for processes that send them to each other.
+// The columns of tables of light, and these as bytes, for processes that send them to each other.
 #pragma once
 
+#include <cstddef>
 #include <utility>
 
 #include "common/byte_stream.hpp"
@@ -8,28 +9,31 @@
 
 namespace photile::light {
 
+/// Calls visit(column of a, column of b, values for each entry) for the columns of two tables.
+template <class A, class B, class Visit>
+void for_each_column(A& a, B& b, const Visit& visit) {
+  visit(a.irradiance, b.irradiance, std::size_t{1});
+  visit(a.radiance, b.radiance, std::size_t{1});
+  visit(a.by_normal, b.by_normal, std::size_t{1});
+  visit(a.batch, b.batch, static_cast<std::size_t>(b.batches));
+  visit(a.shared_variance, b.shared_variance, std::size_t{1});
+  visit(a.light, b.light, std::size_t{1});
+}
+
 /// Adds the rows of a table.
 inline void put(const LightTable& rows, ByteWriter& bytes) {
-  bytes.put(rows.irradiance);
-  bytes.put(rows.radiance);
-  bytes.put(rows.by_normal);
   bytes.put(rows.first);
-  bytes.put(rows.light);
-  bytes.put(rows.batch);
-  bytes.put(rows.shared_variance);
+  for_each_column(rows, rows,
+                  [&](const auto& column, const auto&, std::size_t) { bytes.put(column); });
 }
 
 /// Appends the rows that `put` has added, of a table of the same form.
 inline void append(ByteReader& bytes, LightTable& all) {
   LightTable part(all.lights, false);
   part.batches = all.batches;
-  bytes.append_to(part.irradiance);
-  bytes.append_to(part.radiance);
-  bytes.append_to(part.by_normal);
   bytes.append_to(part.first);
-  bytes.append_to(part.light);
-  bytes.append_to(part.batch);
-  bytes.append_to(part.shared_variance);
+  for_each_column(part, part,
+                  [&](auto& column, const auto&, std::size_t) { bytes.append_to(column); });
   all.append(std::move(part));
 }
 

@@ -52,13 +52,13 @@ void append_rows(std::span<const std::byte> bytes, LightTable& all) {
 
 /// Calls visit(values, first, count) for all that a process's rows consist of: `count` values of
 /// planes, from `first` on, or all of sparse rows.
-template <class Layers, class Visit>
-void for_each_part(Layers& layers, const Shard& shard, const Visit& visit) {
+template <class Visit>
+void for_each_part(LightLayers& layers, const Shard& shard, const Visit& visit) {
   const auto height = static_cast<std::uint64_t>(layers.height);
   const auto width = static_cast<std::uint64_t>(layers.width);
   const std::uint64_t begin = shard.begin(height), end = shard.end(height);
   if (!layers.sparse()) {
-    for (auto& layer : layers.layers) {
+    for (LightLayers::Layer& layer : layers.layers) {
       visit(layer.radiance, begin * width, (end - begin) * width);
       visit(layer.illuminance, begin * width, (end - begin) * width);
     }
@@ -73,36 +73,41 @@ void for_each_part(Layers& layers, const Shard& shard, const Visit& visit) {
   }
 }
 
-Communicator::Bytes bytes_of(const LightLayers& layers, const Shard& shard) {
-  ByteWriter bytes;
-  for_each_part(layers, shard, [&](const auto& values, std::size_t first, std::size_t count) {
-    bytes.put(std::span(values).subspan(first, count));
-  });
-  return bytes.take();
+template <class Visit>
+void for_each_part(LobeFilm& film, const Shard& shard, const Visit& visit) {
+  for_each_part(film.halves, shard, visit);
+  for_each_part(film.mixed, shard, visit);
+  const auto height = static_cast<std::uint64_t>(film.mixed.height);
+  const std::uint64_t width = film.lobes.size() / height, begin = shard.begin(height);
+  visit(film.lobes, begin * width, (shard.end(height) - begin) * width);
 }
 
-void set_rows(std::span<const std::byte> bytes, const Shard& shard, LightLayers& layers) {
-  ByteReader reader(bytes);
-  for_each_part(
-      layers, shard, [&]<class T>(std::vector<T>& values, std::size_t first, std::size_t count) {
-        std::vector<T> part = reader.take<T>();
-        if (count == values.size()) {
-          values = std::move(part);
-        } else {
-          std::copy(part.begin(), part.end(), values.begin() + static_cast<std::ptrdiff_t>(first));
-        }
-      });
-}
-
-/// Rank 0 calls set(shard, bytes) with what bytes_of(shard) returns on each of the others.
-template <class BytesOf, class Set>
-void bring_parts(Communicator& processes, const BytesOf& bytes_of, const Set& set) {
-  const std::uint32_t ranks = processes.size();
+template <class Film>
+void bring_parts(Communicator& processes, Film& film) {
+  const std::uint32_t ranks = processes.size(), own = processes.rank();
   std::vector<Communicator::Bytes> to_each(ranks);
-  if (processes.rank() > 0) to_each[0] = bytes_of(Shard{processes.rank(), ranks});
+  if (own > 0) {
+    ByteWriter bytes;
+    for_each_part(film, {own, ranks},
+                  [&](const auto& values, std::size_t first, std::size_t count) {
+                    bytes.put(std::span(values).subspan(first, count));
+                  });
+    to_each[0] = bytes.take();
+  }
   const std::vector<Communicator::Bytes> got = processes.exchange(std::move(to_each));
-  if (processes.rank() > 0) return;
-  for (std::uint32_t rank = 1; rank < ranks; ++rank) set(Shard{rank, ranks}, got[rank]);
+  for (std::uint32_t rank = 1; own == 0 && rank < ranks; ++rank) {
+    ByteReader reader(got[rank]);
+    for_each_part(film, {rank, ranks},
+                  [&]<class T>(std::vector<T>& values, std::size_t first, std::size_t count) {
+                    std::vector<T> part = reader.take<T>();
+                    if (count == values.size()) {
+                      values = std::move(part);
+                    } else {
+                      std::copy(part.begin(), part.end(),
+                                values.begin() + static_cast<std::ptrdiff_t>(first));
+                    }
+                  });
+  }
 }
 
 std::vector<ContentHash::Digest> digests_of_all(Communicator& processes, const ContentHash& hash) {
@@ -118,11 +123,7 @@ LightTable Exchange::at(const PrimaryHits& points, const Progress& progress) {
 
 bool Exchange::is_common(const PrimaryHits& points) const {
   ContentHash hash;
-  hash.add(points.position);
-  hash.add(points.oriented_face);
-  hash.add(points.diffuse_albedo);
-  hash.add(points.outgoing);
-  hash.add(points.lobe);
+  hash.add(bytes_of(points));
   const auto all = digests_of_all(processes_, hash);
   return std::count(all.begin(), all.end(), all.front()) == std::ssize(all);
 }
@@ -199,32 +200,8 @@ void require_same(Communicator& processes, const ContentHash& work, std::string_
   }
 }
 
-void bring_rows(Communicator& processes, LightLayers& layers) {
-  bring_parts(
-      processes, [&](const Shard& shard) { return bytes_of(layers, shard); },
-      [&](const Shard& shard, std::span<const std::byte> bytes) {
-        set_rows(bytes, shard, layers);
-      });
-}
-
-void bring_rows(Communicator& processes, int height, std::vector<PixelLobes>& lobes) {
-  const auto rows = static_cast<std::uint64_t>(height);
-  const std::uint64_t width = lobes.size() / rows;
-  bring_parts(
-      processes,
-      [&](const Shard& shard) {
-        ByteWriter bytes;
-        const std::uint64_t first = shard.begin(rows) * width, last = shard.end(rows) * width;
-        bytes.put(std::span<const PixelLobes>(lobes).subspan(first, last - first));
-        return bytes.take();
-      },
-      [&](const Shard& shard, std::span<const std::byte> bytes) {
-        ByteReader reader(bytes);
-        const std::vector<PixelLobes> part = reader.take<PixelLobes>();
-        std::copy(part.begin(), part.end(),
-                  lobes.begin() + static_cast<std::ptrdiff_t>(shard.begin(rows) * width));
-      });
-}
+void bring_rows(Communicator& processes, LightLayers& layers) { bring_parts(processes, layers); }
+void bring_rows(Communicator& processes, LobeFilm& film) { bring_parts(processes, film); }
 
 std::uint64_t host_bytes_of_all(Communicator* processes) {
   if (!processes) return installed_host_bytes();
@@ -256,20 +233,17 @@ void add_processes(Communicator& all, RenderCosts& costs) {
                        costs.light_map_errors.hits};
   using Counts = std::array<std::uint64_t, own.size()>;
   const auto of_ranks = all.gather_values<Counts>(std::span<const Counts>(&own, 1));
-  const auto sum = [&](std::size_t i) {
-    std::uint64_t total = 0;
-    for (const auto& rank : of_ranks) total += rank[i];
-    return total;
-  };
-  const auto most = [&](std::size_t i) {
-    std::uint64_t largest = 0;
-    for (const auto& rank : of_ranks) largest = std::max(largest, rank[i]);
-    return largest;
-  };
-  costs.references = sum(0), costs.maps = sum(1), costs.normal_filtered_maps = sum(2),
-  costs.largest_map = most(3);
-  costs.rays = sum(4), costs.hit_count = sum(5);
-  costs.light_map_errors = {0, sum(14)};
+  Counts sum{}, most{};
+  for (const Counts& rank : of_ranks) {
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      sum[i] += rank[i];
+      most[i] = std::max(most[i], rank[i]);
+    }
+  }
+  costs.references = sum[0], costs.maps = sum[1], costs.normal_filtered_maps = sum[2],
+  costs.largest_map = most[3];
+  costs.rays = sum[4], costs.hit_count = sum[5];
+  costs.light_map_errors = {0, sum[14]};
   for (const auto& rank : of_ranks)
     costs.light_map_errors.squares += std::bit_cast<double>(rank[13]);
   const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
@@ -278,17 +252,17 @@ void add_processes(Communicator& all, RenderCosts& costs) {
   };
   costs.processes = {
       {"processes", number(all.size())},
-      {"photons sent", number(sum(6))},
-      {"bytes sent per stored photon", ratio(sum(7), costs.stored_photons)},
-      {"photons held, largest over mean", ratio(most(8) * all.size(), sum(8))},
-      {"photons held over stored", ratio(sum(8), costs.stored_photons + costs.caustic_photons)},
-      {"hits sent", number(sum(9))},
-      {"bytes per hit sent", ratio(sum(10), sum(9))},
-      {"bytes sent", number(sum(11))},
+      {"photons sent", number(sum[6])},
+      {"bytes sent per stored photon", ratio(sum[7], costs.stored_photons)},
+      {"photons held, largest over mean", ratio(most[8] * all.size(), sum[8])},
+      {"photons held over stored", ratio(sum[8], costs.stored_photons + costs.caustic_photons)},
+      {"hits sent", number(sum[9])},
+      {"bytes per hit sent", ratio(sum[10], sum[9])},
+      {"bytes sent", number(sum[11])},
       {"calls", number(traffic.calls)},
       {"seconds waited", traffic.seconds},
-      {"host bytes of a process, most", number(most(12))},
-      {"host bytes of a process, mean", ratio(sum(12), all.size())}};
+      {"host bytes of a process, most", number(most[12])},
+      {"host bytes of a process, mean", ratio(sum[12], all.size())}};
 }
 
 }  // namespace photile

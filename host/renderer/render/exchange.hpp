@@ -12,6 +12,7 @@
 #include "light/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/light_layers.hpp"
+#include "render/lobe_filter.hpp"
 #include "render/render_costs.hpp"
 #include "render/shared_photons.hpp"
 
@@ -62,8 +63,7 @@ void require_same(Communicator& processes, const ContentHash& work, std::string_
 /// Brings the rows of each process, its Shard of them all, to rank 0. The layers of the others stay
 /// as they are. Collective.
 void bring_rows(Communicator& processes, LightLayers& layers);
-/// The same for the lobes of pixels, in `height` rows.
-void bring_rows(Communicator& processes, int height, std::vector<PixelLobes>& lobes);
+void bring_rows(Communicator& processes, LobeFilm& film);
 
 /// The memory of all machines; of this one where there is one process. Collective.
 std::uint64_t host_bytes_of_all(Communicator* processes);

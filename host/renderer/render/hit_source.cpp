@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "light/pixel_light.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "trace/eye_path.hpp"
@@ -96,14 +97,12 @@ Film film_of(std::span<const Sensor> sensors, const GatherParameters& gathering)
 /// Replaces the illuminance of the film, which is that of the surfaces seen, by that of the
 /// sensors.
 LightLayers with_own_illuminance(LightLayers layers) {
-  const auto own = [](const glm::vec3& radiance) {
-    return static_cast<float>(glm::pi<double>() * luminance(glm::dvec3(radiance)));
-  };
-  for (LightLayers::Layer& layer : layers.layers) {
-    std::transform(layer.radiance.begin(), layer.radiance.end(), layer.illuminance.begin(), own);
-  }
-  for (LightLayers::Row& row : layers.rows) {
-    std::transform(row.radiance.begin(), row.radiance.end(), row.illuminance.begin(), own);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(layers.height); ++y) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(layers.width); ++x) {
+      for_each_light(layers, x, y, [](std::size_t, float& illuminance, const glm::vec3& radiance) {
+        illuminance = static_cast<float>(glm::pi<double>() * luminance(glm::dvec3(radiance)));
+      });
+    }
   }
   return layers;
 }

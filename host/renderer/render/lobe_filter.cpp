@@ -55,15 +55,10 @@ class LobeFilter {
       }
     }
     // One pixel tells little of its variance, those around it on surfaces that are alike more.
-    std::vector<std::array<glm::vec3, 2>> variance(lobes_.size());
+    const std::vector<std::array<HalfPixel, 2>> alone = halves_;
     tbb::parallel_for(0, height_, [&](int y) {
-      for (int x = 0; x < width_; ++x) variance[index(x, y)] = variance_around(x, y);
+      for (int x = 0; x < width_; ++x) set_variance(alone, x, y);
     });
-    for (std::size_t pixel = 0; pixel < lobes_.size(); ++pixel) {
-      for (std::size_t half = 0; half < 2; ++half) {
-        halves_[pixel][half].variance = variance[pixel][half];
-      }
-    }
   }
 
   /// What the halves of pixels count in the pixels of a row.
@@ -120,10 +115,10 @@ class LobeFilter {
     }
   }
 
-  std::array<glm::vec3, 2> variance_around(int x, int y) const {
+  void set_variance(const std::vector<std::array<HalfPixel, 2>>& alone, int x, int y) {
     const std::size_t pixel = index(x, y);
-    std::array<glm::vec3, 2> variance{glm::vec3(0.0f), glm::vec3(0.0f)};
-    if (!(lobes_[pixel].weight > 0)) return variance;
+    if (!(lobes_[pixel].weight > 0)) return;
+    glm::vec3 variance[2] = {glm::vec3(0.0f), glm::vec3(0.0f)};
     float weights = 0;
     for_each_around(x, y, defaults::filter_noise_reach, [&](int u, int v) {
       const std::size_t other = index(u, v);
@@ -131,11 +126,13 @@ class LobeFilter {
       if (!(surfaces < farthest)) return;
       const float weight = std::exp(-surfaces);
       for (std::size_t half = 0; half < 2; ++half) {
-        variance[half] += weight * halves_[other][half].variance;
+        variance[half] += weight * alone[other][half].variance;
       }
       weights += weight;
     });
-    return {variance[0] / weights, variance[1] / weights};
+    for (std::size_t half = 0; half < 2; ++half) {
+      halves_[pixel][half].variance = variance[half] / weights;
+    }
   }
 
   bool shows_noise(std::size_t pixel) const {

@@ -128,9 +128,7 @@ void Picture::begin_film(const HitSource& source) {
 void Picture::add_lobes() {
   if (!filters()) return;
   if (auto* const processes = plan_.used().processes) {
-    bring_rows(*processes, lobes_.halves);
-    bring_rows(*processes, lobes_.mixed);
-    bring_rows(*processes, film_.height, lobes_.lobes);
+    bring_rows(*processes, lobes_);
     if (processes->rank() > 0) return;
   }
   const Stopwatch film_watch;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/stoppable_progress.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "render/quality.hpp"
@@ -36,28 +37,6 @@ constexpr double power_of_nodes = 0.5;
 /// The time of the photons of a part over that of its rays.
 constexpr double time_of_photons = 0.5;
 
-/// Stops a round when the time is over.
-class Deadline : public Progress {
- public:
-  Deadline(Progress& to, const std::function<double()>& elapsed, double seconds)
-      : to_(to), elapsed_(elapsed), seconds_(seconds) {}
-  void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override {
-    to_.begin(stage, total, unit);
-  }
-  void advance(std::uint64_t count) override { to_.advance(count); }
-  void end() override { to_.end(); }
-  void note(const std::string& line) override { to_.note(line); }
-  void warn(const std::string& line) override { to_.warn(line); }
-  bool cancelled() const override {
-    return to_.cancelled() || (seconds_ > 0 && elapsed_() >= seconds_);
-  }
-
- private:
-  Progress& to_;
-  const std::function<double()>& elapsed_;
-  double seconds_;
-};
-
 /// The error of the most work that is allowed, where it is noise.
 double least_error(int parts, int most_parts, double error) {
   for (; parts <= most_parts / 2; parts *= 2) error /= std::sqrt(2.0);
@@ -75,11 +54,13 @@ double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress
   double error = std::numeric_limits<double>::infinity();
   for (int parts = 0, next = 1;;) {
     const double began = steps.elapsed(), error_before = error;
-    Deadline deadline(progress, steps.elapsed, parts < goal.parts ? 0 : goal.seconds);
+    const bool may_end = parts >= goal.parts;
+    StoppableProgress deadline(
+        progress, [&] { return may_end && goal.seconds > 0 && steps.elapsed() >= goal.seconds; });
     try {
       error = steps.add(next - parts, deadline);
     } catch (const Interrupted&) {
-      if (parts < goal.parts || progress.cancelled()) throw;
+      if (!may_end || progress.cancelled()) throw;
       progress.end();
       progress.note("the time is over; what was being made is given up");
       return error;
