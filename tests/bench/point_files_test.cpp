@@ -23,6 +23,7 @@
 #include "support/subdivision.hpp"
 #include "support/workload.hpp"
 #include "temporary_folder.hpp"
+#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -33,12 +34,6 @@ using Catch::Contains;
 using namespace photile::bench;
 
 // Points that a user brings: what files hold, and what is said of those that hold something else.
-
-std::filesystem::path written(const TemporaryFolder& folder, const std::string& name,
-                              const std::string& content) {
-  std::ofstream(folder.path / name, std::ios::binary) << content;
-  return folder.path / name;
-}
 
 /// Writes an array as numpy.save does, by the format's description (NEP 1).
 template <class Number>
@@ -59,15 +54,15 @@ std::string npy(const std::string& type, const std::string& order, const std::st
 TEST_CASE(
     "points of text and of both widths of NumPy's floats are read, with normals and without") {
   const TemporaryFolder folder;
-  const PointFile text =
-      read_points(written(folder, "a.csv", "x,y,z\n# a comment\n1, 2.5,-3e-2\n\n4;5;6\r\n7\t8 9"));
+  const PointFile text = read_points(
+      put(folder.path / "a.csv", "x,y,z\n# a comment\n1, 2.5,-3e-2\n\n4;5;6\r\n7\t8 9"));
   CHECK(text.position == std::vector<glm::vec3>{{1, 2.5f, -0.03f}, {4, 5, 6}, {7, 8, 9}});
   CHECK(text.normal.empty());
-  const PointFile single = read_points(
-      written(folder, "a.npy", npy<float>("<f4", "False", "(2, 3)", {1, 2, 3, 0.1f, 0.2f, 0.3f})));
+  const PointFile single = read_points(put(
+      folder.path / "a.npy", npy<float>("<f4", "False", "(2, 3)", {1, 2, 3, 0.1f, 0.2f, 0.3f})));
   CHECK(single.position == std::vector<glm::vec3>{{1, 2, 3}, {0.1f, 0.2f, 0.3f}});
   const PointFile twice = read_points(
-      written(folder, "b.npy", npy<double>("<f8", "False", "(1, 6)", {1, 2, 3, 0, 0, -2})));
+      put(folder.path / "b.npy", npy<double>("<f8", "False", "(1, 6)", {1, 2, 3, 0, 0, -2})));
   CHECK(twice.position == std::vector<glm::vec3>{{1, 2, 3}});
   CHECK(twice.normal == std::vector<glm::vec3>{{0, 0, -1}});
 }
@@ -93,7 +88,7 @@ TEST_CASE("files that hold no points are refused with what was found there") {
       {"a.npy", std::string("\x93NUMPY\x01\x00\xff\xff{'descr'", 18), "within its header"},
   }));
   CAPTURE(name, message);
-  const auto file = written(folder, name, content);
+  const auto file = put(folder.path / name, content);
   CHECK_THROWS_WITH(read_points(file), Contains(file.string()) && Contains(message));
   CHECK_THROWS_WITH(read_points(folder.path / "missing.npy"), Contains("no such file"));
 }
@@ -227,10 +222,6 @@ double area(const Scene& scene) {
   double sum = 0;
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) sum += triangle_area(scene, t);
   return sum;
-}
-
-glm::dvec3 front_normal(const Scene& scene, std::uint32_t triangle) {
-  return face_normal(scene, oriented(triangle, scene.front_side[triangle]));
 }
 
 TEST_CASE("subdividing keeps area, fronts, materials, lights and textures") {

@@ -72,32 +72,25 @@ std::uint32_t floor_under(const Scene& scene, const glm::vec3& p) {
   return none;
 }
 
-}  // namespace
+/// A scene on whose floor nodes are valued by a source, and what they tell of points there.
+struct FloorNodes {
+  FloorNodes(Scene things_on_floor, cache::NodeSource& source)
+      : scene(std::move(things_on_floor)), rays(scene), maps(rays, quiet_parameters(), source) {}
 
-TEST_CASE("light beside a box on the floor is that of the floor, not of what it stands on") {
-  const trace::FlushDenormals flush_denormals;
-  const Scene scene = boxes_on_floor();
-  const RayScene rays(scene);
-  FormulaSource source(open_floor);
-  cache::LightMaps maps(rays, quiet_parameters(), source);
-  PrimaryHits hits;
-  for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
-    for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
-      for (const float x : {0.313f - away, 0.687f + away}) {
-        const glm::vec3 place(x, y, 0);
-        add_hit(hits, place, floor_under(scene, place));
-      }
-    }
-  }
-  maps.fill(hits, Progress::none());
-  std::size_t dark = 0;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    CAPTURE(hits.position[i].x, hits.position[i].y);
-    const std::uint32_t oriented_face = hits.oriented_face[i];
-    if (read(maps, hits.position[i], oriented_face) < 9.0f) ++dark;
+  void add(float x, float y) { add_hit(hits, {x, y, 0}, floor_under(scene, {x, y, 0})); }
+  cache::BilinearWeights around(std::size_t hit) const {
     cache::BilinearWeights bilinear;
-    REQUIRE(maps.find(oriented_face, hits.position[i], bilinear));
-    REQUIRE(maps.keep_visible(oriented_face, hits.position[i], bilinear));
+    REQUIRE(maps.find(hits.oriented_face[hit], hits.position[hit], bilinear));
+    return bilinear;
+  }
+  bool keep_visible(std::size_t hit, cache::BilinearWeights& bilinear) const {
+    return maps.keep_visible(hits.oriented_face[hit], hits.position[hit], bilinear);
+  }
+  /// The nodes that the point sees give 10 lx.
+  void check_bright(std::size_t hit) const {
+    CAPTURE(hits.position[hit].x, hits.position[hit].y);
+    cache::BilinearWeights bilinear = around(hit);
+    REQUIRE(keep_visible(hit, bilinear));
     float light = 0, weight = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
       light += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
@@ -106,56 +99,56 @@ TEST_CASE("light beside a box on the floor is that of the floor, not of what it 
     CHECK(weight == Approx(1).epsilon(1e-5));
     CHECK(light == Approx(10).epsilon(1e-5));
   }
-  CHECK(dark > hits.size() / 4);  // without a look
+
+  const trace::FlushDenormals flush_denormals;
+  const Scene scene;
+  const RayScene rays;
+  cache::LightMaps maps;
+  PrimaryHits hits;
+};
+
+}  // namespace
+
+TEST_CASE("light beside a box on the floor is that of the floor, not of what it stands on") {
+  FormulaSource source(open_floor);
+  FloorNodes floor(boxes_on_floor(), source);
+  for (const float away : {0.0005f, 0.001f, 0.002f, 0.004f, 0.006f, 0.01f}) {
+    for (float y = 0.32f; y < 0.68f; y += 0.0171f) {
+      for (const float x : {0.313f - away, 0.687f + away}) floor.add(x, y);
+    }
+  }
+  floor.maps.fill(floor.hits, Progress::none());
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < floor.hits.size(); ++i) {
+    const float unseen = read(floor.maps, floor.hits.position[i], floor.hits.oriented_face[i]);
+    if (unseen < 9.0f) ++dark;
+    floor.check_bright(i);
+  }
+  CHECK(dark > floor.hits.size() / 4);  // where visibility is left out
 }
 
 TEST_CASE("a place in a slot sees none of the nodes under its sides") {
-  const trace::FlushDenormals flush_denormals;
-  const Scene scene = boxes_on_floor();
-  const RayScene rays(scene);
   FormulaSource source(open_floor);
-  cache::LightMaps maps(rays, quiet_parameters(), source);
-  PrimaryHits hits;
-  for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
-    const glm::vec3 place(0.5f * (between_from + between_to), y, 0);
-    add_hit(hits, place, floor_under(scene, place));
-  }
-  maps.fill(hits, Progress::none());
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    cache::BilinearWeights bilinear;
-    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
+  FloorNodes floor(boxes_on_floor(), source);
+  for (float y = 0.35f; y < 0.65f; y += 0.0171f) floor.add(0.5f * (between_from + between_to), y);
+  floor.maps.fill(floor.hits, Progress::none());
+  for (std::size_t i = 0; i < floor.hits.size(); ++i) {
+    cache::BilinearWeights bilinear = floor.around(i);
     const cache::BilinearWeights before = bilinear;
-    CHECK_FALSE(maps.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
+    CHECK_FALSE(floor.keep_visible(i, bilinear));
     CHECK(bilinear.weight == before.weight);
   }
 }
 
 TEST_CASE(
     "a gap between plates is as bright as its own nodes, not as those in the slits below them") {
-  const trace::FlushDenormals flush_denormals;
-  const Scene scene = plates_above_floor();
-  const RayScene rays(scene);
   PlateSource source;
-  cache::LightMaps maps(rays, quiet_parameters(), source);
-  PrimaryHits hits;
+  FloorNodes floor(plates_above_floor(), source);
   for (float y = 0.35f; y < 0.65f; y += 0.0171f) {
-    for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) {
-      const glm::vec3 place(x, y, 0);
-      add_hit(hits, place, floor_under(scene, place));
-    }
+    for (const float x : {0.4985f, 0.4995f, 0.5005f, 0.5015f}) floor.add(x, y);
   }
-  maps.fill(hits, Progress::none());
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    CAPTURE(hits.position[i].x, hits.position[i].y);
-    cache::BilinearWeights bilinear;
-    REQUIRE(maps.find(hits.oriented_face[i], hits.position[i], bilinear));
-    CHECK(maps.keep_visible(hits.oriented_face[i], hits.position[i], bilinear));
-    float light = 0;
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      light += bilinear.weight[corner] * maps.values().irradiance[bilinear.node[corner]].x;
-    }
-    CHECK(light == Approx(10).epsilon(1e-5));
-  }
+  floor.maps.fill(floor.hits, Progress::none());
+  for (std::size_t i = 0; i < floor.hits.size(); ++i) floor.check_bright(i);
 }
 
 TEST_CASE("all nodes of open floor and of a bowl are seen") {

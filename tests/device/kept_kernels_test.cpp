@@ -214,6 +214,13 @@ TEST_CASE("a process that dies publishes nothing, and the next removes its folde
   CHECK(run_folders(cache.path).empty());
 }
 
+void check_right_and_silent(const ChildResult& result) {
+  INFO(result.errors);
+  CHECK(result.exit_code == 0);
+  CHECK_THAT(result.output, Catch::StartsWith(right));
+  CHECK(result.errors.empty());
+}
+
 TEST_CASE("several processes may start at a time on an empty cache") {
   const TemporaryFolder cache;
   std::vector<ChildProcess> running;
@@ -221,13 +228,7 @@ TEST_CASE("several processes may start at a time on an empty cache") {
     running.emplace_back(std::vector<std::string>{PHOTILE_DEVICE_PROBE, "run"},
                          cache_in(cache.path));
   }
-  for (auto& child : running) {
-    const auto result = child.wait();
-    INFO(result.errors);
-    CHECK(result.exit_code == 0);
-    CHECK_THAT(result.output, Catch::StartsWith(right));
-    CHECK(result.errors.empty());
-  }
+  for (auto& child : running) check_right_and_silent(child.wait());
   CHECK(packs(cache.path).size() == 1);
   CHECK(run_folders(cache.path).empty());
   CHECK(probe(cache.path).output == restored);
@@ -254,13 +255,6 @@ ChildResult probe(ChildEnvironment environment) {
   environment.try_emplace("POCL_CACHE_DIR", std::nullopt);
   environment.try_emplace("XDG_CACHE_HOME", std::nullopt);
   return run_child({PHOTILE_DEVICE_PROBE, "run"}, environment);
-}
-
-void check_right_and_silent(const ChildResult& result) {
-  INFO(result.errors);
-  CHECK(result.exit_code == 0);
-  CHECK_THAT(result.output, Catch::StartsWith(right));
-  CHECK(result.errors.empty());
 }
 
 TEST_CASE("a run needs no HOME, nor one that can be written") {

@@ -30,6 +30,13 @@ Photons photons_at(const Scene& scene, const std::vector<glm::vec3>& places, std
   return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
+PhotileGrid first_grid(const PhotonMaps& maps) {
+  PhotileGrid grid{};
+  device::context_of(test::device())
+      .read(maps::store_of(maps).pages.use(0).grids, std::span(&grid, 1));
+  return grid;
+}
+
 }  // namespace
 
 TEST_CASE("extremes: scenes of 1e-6 to 1e6 times the size of a room", "[slow]") {
@@ -254,10 +261,7 @@ TEST_CASE("extremes: photons within a rounding of the borders of cells") {
   const auto grid_of = [&](const Photons& photons, float photons_per_cell) {
     const PhotonMaps maps(test::device(), scene, photons,
                           find_neighbour_groups(scene, {radius, 60}), {radius, photons_per_cell});
-    PhotileGrid grid{};
-    device::context_of(test::device())
-        .read(maps::store_of(maps).pages.use(0).grids, std::span(&grid, 1));
-    return grid;
+    return first_grid(maps);
   };
   const PhotileGrid frame = grid_of(test::uniform_photons(scene, 10, 124, false), 4);
   REQUIRE(std::abs(frame.u_axis_x) == 1);
@@ -311,13 +315,8 @@ TEST_CASE("extremes: photons within the radius by less than rounding moves them 
     return PhotonMaps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                       {radius, 1e-8f});
   };
-  const auto grid_of = [](const PhotonMaps& maps) {
-    PhotileGrid grid{};
-    device::context_of(test::device())
-        .read(maps::store_of(maps).pages.use(0).grids, std::span(&grid, 1));
-    return grid;
-  };
-  const PhotileGrid grid = grid_of(maps_of(photons_at(scene, {glm::vec3(0.5 * length * x)}, 127)));
+  const PhotileGrid grid =
+      first_grid(maps_of(photons_at(scene, {glm::vec3(0.5 * length * x)}, 127)));
   const glm::dvec3 origin(grid.origin_x, grid.origin_y, grid.origin_z);
   const glm::dvec3 u(grid.u_axis_x, grid.u_axis_y, grid.u_axis_z);
   const glm::dvec3 v(grid.v_axis_x, grid.v_axis_y, grid.v_axis_z);
@@ -341,7 +340,7 @@ TEST_CASE("extremes: photons within the radius by less than rounding moves them 
   const Photons photons = photons_at(scene, places, 128);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const PhotonMaps maps = maps_of(photons);
-  REQUIRE(grid_of(maps).cell_width == grid.cell_width);
+  REQUIRE(first_grid(maps).cell_width == grid.cell_width);
   CHECK(test::count_differences(hits, Estimator(maps, scene, {4, 0}).nearest(hits), oracle, photons,
                                 radius) == 0);
 }

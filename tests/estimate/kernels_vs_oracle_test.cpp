@@ -60,6 +60,14 @@ double worst_difference(const Subject& subject, const LightTable& estimates, int
 /// Over the mean weight of a third.
 double tolerance(int k) { return 3 * test::estimate_tolerance(k); }
 
+void check_strategies(const Subject& subject, int k) {
+  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+    CAPTURE(name_of(tuning.strategy));
+    const LightTable estimates = subject.estimate(k, "uniform-grid", tuning);
+    CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("weighted irradiance equals the oracle's for every kind of structure and strategy") {
@@ -70,11 +78,7 @@ TEST_CASE("weighted irradiance equals the oracle's for every kind of structure a
     const LightTable estimates = subject.estimate(k, structure);
     CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
   }
-  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
-    CAPTURE(name_of(tuning.strategy));
-    const LightTable estimates = subject.estimate(k, "uniform-grid", tuning);
-    CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
-  }
+  check_strategies(subject, k);
 }
 
 TEST_CASE("weighted irradiance equals the oracle's for one light and for many, for any k") {
@@ -89,11 +93,7 @@ TEST_CASE("weighted irradiance equals the oracle's for one light and for many, f
 TEST_CASE("with fewer than k photons within the radius weights go by the full radius") {
   const Subject subject(1, 400);
   constexpr int k = 50;
-  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
-    CAPTURE(name_of(tuning.strategy));
-    const LightTable estimates = subject.estimate(k, "uniform-grid", tuning);
-    CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
-  }
+  check_strategies(subject, k);
 }
 
 }  // namespace photile::test

@@ -12,15 +12,12 @@ using std::numbers::pi;
 
 /// The square without emission, lit by one punctual light at a node.
 nlohmann::json lit_by(const nlohmann::json& light, const nlohmann::json& node_members = {}) {
-  nlohmann::json document = square_document();
-  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
-  document["extensionsUsed"] = {"KHR_lights_punctual"};
-  document["extensions"]["KHR_lights_punctual"]["lights"] = nlohmann::json::array({light});
   nlohmann::json node = {{"name", "lamp"}, {"translation", {0, 0, 2}}};
   if (node_members.is_object()) node.update(node_members);
   node["extensions"]["KHR_lights_punctual"]["light"] = 0;
-  document["nodes"].push_back(node);
-  document["scenes"][0]["nodes"] = {0, 1};
+  nlohmann::json document = dark_square_and(node);
+  document["extensionsUsed"] = {"KHR_lights_punctual"};
+  document["extensions"]["KHR_lights_punctual"]["lights"] = nlohmann::json::array({light});
   return document;
 }
 

@@ -13,13 +13,9 @@ using std::numbers::pi;
 
 /// A dark square at z = 0, and a node called Area above it.
 nlohmann::json panel_document(const nlohmann::json& members) {
-  nlohmann::json document = square_document();
-  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   nlohmann::json node = {{"name", "Area"}, {"translation", {0.5, 0.5, 2}}};
   node.update(members);
-  document["nodes"].push_back(node);
-  document["scenes"][0]["nodes"] = {0, 1};
-  return document;
+  return dark_square_and(node);
 }
 
 nlohmann::json with_extras(const nlohmann::json& extras) {

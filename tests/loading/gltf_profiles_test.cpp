@@ -17,13 +17,9 @@ const std::string even_lamp = IesText().str();
 
 /// A dark square and a node called lamp with the given members.
 nlohmann::json document_with(const nlohmann::json& node) {
-  nlohmann::json document = square_document();
-  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
   nlohmann::json lamp = {{"name", "lamp"}, {"translation", {0, 0, 2}}};
   lamp.update(node);
-  document["nodes"].push_back(lamp);
-  document["scenes"][0]["nodes"] = {0, 1};
-  return document;
+  return dark_square_and(lamp);
 }
 
 nlohmann::json with_profiles(nlohmann::json document, const nlohmann::json& lights) {

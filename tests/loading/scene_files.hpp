@@ -68,6 +68,15 @@ inline nlohmann::json square_document() {
   })");
 }
 
+/// The square without emission, and a second node.
+inline nlohmann::json dark_square_and(const nlohmann::json& node) {
+  nlohmann::json document = square_document();
+  document["materials"][0]["emissiveFactor"] = {0, 0, 0};
+  document["nodes"].push_back(node);
+  document["scenes"][0]["nodes"] = {0, 1};
+  return document;
+}
+
 template <typename T>
 std::string bytes_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "file_bytes.hpp"
@@ -13,11 +12,6 @@ namespace photile::test {
 namespace {
 
 using nlohmann::json;
-
-std::filesystem::path write(const std::filesystem::path& file, const std::string& content) {
-  std::ofstream(file, std::ios::binary) << content;
-  return file;
-}
 
 /// Mostly of this size, rarely zero, negative, tiny or huge.
 double power(RandomScene& scene, Dice& dice) {
@@ -120,8 +114,8 @@ RandomScene write_obj(const std::filesystem::path& folder, Dice& dice) {
                      vertices);
   }
   write_picture(folder / "picture.png", dice);
-  scene.file = write(folder / "scene.obj", obj);
-  scene.inputs = {scene.file, write(folder / "scene.mtl", mtl), folder / "picture.png"};
+  scene.file = put(folder / "scene.obj", obj);
+  scene.inputs = {scene.file, put(folder / "scene.mtl", mtl), folder / "picture.png"};
   return scene;
 }
 
@@ -191,8 +185,8 @@ RandomScene write_gltf(const std::filesystem::path& folder, Dice& dice) {
         {{"name", "eye"}, {"camera", 0}, {"translation", {0, 0.5 * s, 0.9 * s}}});
     document["scenes"][0]["nodes"].push_back(document["nodes"].size() - 1);
   }
-  scene.file = write(folder / "scene.gltf", document.dump());
-  scene.inputs = {scene.file, write(folder / "scene.bin", bytes)};
+  scene.file = put(folder / "scene.gltf", document.dump());
+  scene.inputs = {scene.file, put(folder / "scene.bin", bytes)};
   return scene;
 }
 
@@ -206,7 +200,7 @@ void damage(const RandomScene& scene, Dice& dice) {
   } else {
     bytes[place] = static_cast<char>(dice.whole(0, 255));
   }
-  write(file, bytes);
+  put(file, bytes);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
 #include "source_folder.hpp"
+#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -28,10 +29,6 @@ const Light& light_named(const Scene& scene, const std::string& name) {
   INFO(name);
   REQUIRE(found != scene.lights.end());
   return *found;
-}
-
-glm::dvec3 front_normal(const Scene& scene, std::uint32_t triangle) {
-  return face_normal(scene, oriented(triangle, scene.front_side[triangle]));
 }
 
 /// Distance along a ray to a triangle (Moeller and Trumbore 1997), both sides.

@@ -79,6 +79,10 @@ inline Scene closed_box(const Material& wall, int cells = 1) {
   return builder.build();
 }
 
+inline glm::dvec3 front_normal(const Scene& scene, std::uint32_t triangle) {
+  return face_normal(scene, oriented(triangle, scene.front_side[triangle]));
+}
+
 /// A horizontal square plate of `side` metres around the origin in the plane z = 0, its front up.
 inline Scene plate(const Material& material, float side, int cells = 1) {
   SceneBuilder builder("plate");
