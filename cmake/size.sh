@@ -22,9 +22,9 @@ host() { tracked host | grep -E '\.(cpp|hpp)$'; }
 # lengths: the number of lines of each file on standard input, ascending
 lengths() { while read -r file; do wc -l <"$file"; done | sort -n; }
 
-row 'lines of host/' "$(host | lines)" at-most 78250 58000
+row 'lines of host/' "$(host | lines)" at-most 78200 58000
 row 'files of host/' "$(host | wc -l)" at-most 550 520
-row 'lines of host/renderer/' "$(host | grep '^host/renderer/' | lines)" at-most 35850 32000
+row 'lines of host/renderer/' "$(host | grep '^host/renderer/' | lines)" at-most 35800 32000
 row 'lines of the median file of host/' \
   "$(host | lengths | awk '{n[NR] = $1} END {print n[int((NR + 1) / 2)]}')" at-least 90
 row 'headers of host/ under 30 lines' \

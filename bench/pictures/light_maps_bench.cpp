@@ -12,7 +12,6 @@
 #include <random>
 
 #include "cache/charts.hpp"
-#include "cache/light_map_frames.hpp"
 #include "cache/node_mix.hpp"
 #include "cache/surface_cache.hpp"
 #include "estimate/photon_estimate.hpp"
@@ -21,6 +20,7 @@
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "photile/statistics.hpp"
+#include "render/frame_renderer.hpp"
 #include "support/bench_record.hpp"
 #include "support/workload.hpp"
 #include "trace/ray_query.hpp"
@@ -134,7 +134,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   std::vector<glm::vec3> scales;
   for (const double power : powers) scales.emplace_back(power);
 
-  const auto draw = [&](cache::LightMapFrames& frames, const Camera& camera, int width, int height,
+  const auto draw = [&](FrameRenderer& frames, const Camera& camera, int width, int height,
                         double fill_seconds) {
     std::vector<glm::vec3> picture(static_cast<std::size_t>(width * height));
     const Stopwatch stopwatch;
@@ -144,11 +144,11 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   };
   {
     cache::SurfaceCache warm(rays, light_maps, light, by_photons, nullptr);  // compiles the kernels
-    cache::LightMapFrames frames(rays, warm.maps());
+    FrameRenderer frames(rays, warm.maps());
     draw(frames, scene.cameras.front(), 32, 32, all);
   }
   cache::SurfaceCache estimates(rays, light_maps, light, by_photons, nullptr);
-  cache::LightMapFrames frames(rays, estimates.maps());
+  FrameRenderer frames(rays, estimates.maps());
   const auto [width, height] = settings.sizes.front();
   const TimeTaken fill = draw(frames, scene.cameras.front(), width, height, all).first;
   const cache::LightMapStatistics first = estimates.maps().statistics();
@@ -177,7 +177,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
   // Each pixel's mean of 16 rays, nodes filled as it asks for them; the reference has all light.
   if (const auto reference = reference_of(name)) {
     cache::SurfaceCache compared(rays, light_maps, light, by_photons, nullptr);
-    cache::LightMapFrames framed(rays, compared.maps(), compared.source());
+    FrameRenderer framed(rays, compared.maps());
     const Film film{reference->width, reference->height, 16};
     std::vector<glm::vec3> picture(reference->pixels());
     framed.draw(scene.cameras.front(), film, scales, all, picture, Progress::none());
@@ -195,7 +195,7 @@ void measure_scene(const std::string& name, const Scene& scene, Device& device,
 
   // What the window does when somebody turns: frames of a thirtieth of a second.
   cache::SurfaceCache fresh(rays, light_maps, light, by_photons, nullptr);
-  cache::LightMapFrames bounded(rays, fresh.maps(), fresh.source());
+  FrameRenderer bounded(rays, fresh.maps());
   draw(bounded, scene.cameras.front(), width, height, all);
   double longest = 0, drawing = 0;
   std::uint64_t count = 0, empty = 0;

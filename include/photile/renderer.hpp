@@ -269,7 +269,7 @@ class SceneRenderer {
                       const LayerMixdown* mixdown = nullptr);
 
   /// Draws the light on surfaces alone, from light maps: quick enough to walk in, one ray a sample,
-  /// glossy surfaces as if they were matt (host/renderer/cache/light_map_frames.hpp). For
+  /// glossy surfaces as if they were matt (host/renderer/render/frame_renderer.hpp). For
   /// parameters that ask for light maps.
   ///   powers    per layer: power x tint
   ///   filling   of nodes which pixels lack: surface that takes most of the picture comes first;

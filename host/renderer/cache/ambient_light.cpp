@@ -30,10 +30,10 @@ std::array<float, 6> weights_of(const glm::vec3& normal) {
   return weights;
 }
 
-}  // namespace
-
+/// Calls visit(vertex, weight) for the eight around a position.
+///   at   in [0, 1]^3 of the bounds
 template <class Vertices, class Visit>
-void AmbientLight::around(Vertices& vertices, int level, const glm::vec3& at, const Visit& visit) {
+void around(Vertices& vertices, int level, const glm::vec3& at, const Visit& visit) {
   const int side = side_of_lattice(level), cells = side - 1;
   const glm::vec3 in_cells = at * static_cast<float>(cells);
   const glm::ivec3 cell = glm::min(glm::ivec3(in_cells), cells - 1);
@@ -46,6 +46,8 @@ void AmbientLight::around(Vertices& vertices, int level, const glm::vec3& at, co
           weight.x * weight.y * weight.z);
   }
 }
+
+}  // namespace
 
 void AmbientLight::gather(const LightMaps& maps, const Scene& scene,
                           std::span<const glm::vec4> light) {

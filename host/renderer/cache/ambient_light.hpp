@@ -30,10 +30,6 @@ class AmbientLight {
   /// Light times weight, and weight, for the directions +x, -x, +y ...
   using Vertex = std::array<glm::vec4, 6>;
 
-  /// Calls visit(vertex, weight) for the eight around a position.
-  ///   at   in [0, 1]^3 of the bounds
-  template <class Vertices, class Visit>
-  static void around(Vertices& vertices, int level, const glm::vec3& at, const Visit& visit);
   glm::vec3 within_bounds(const glm::vec3& position) const;
 
   glm::vec3 lowest_{0.0f}, extent_{0.0f};  ///< of the nodes, metres

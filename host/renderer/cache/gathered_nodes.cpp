@@ -146,7 +146,8 @@ std::uint64_t GatheredNodes::bytes() const {
 void GatheredNodes::forget() {
   raw_ = {};
   nodes_ = {};
-  gather_.ends().clear();
+  LightMaps& ends = gather_.ends();
+  ends.forget(std::vector<std::uint8_t>(ends.statistics().nodes, 0));
 }
 
 NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {

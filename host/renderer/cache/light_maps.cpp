@@ -49,7 +49,8 @@ int levels_that_fit(const Charts& charts, int requested) {
   return requested;
 }
 
-void check(const LightMapParameters& parameters, std::size_t layers) {
+/// The parameters, checked.
+const LightMapParameters& checked(const LightMapParameters& parameters, std::size_t layers) {
   if (!(parameters.spacing > 0) || !std::isfinite(parameters.spacing)) {
     throw UsageError(
         fmt::format("light maps: a spacing of {} m is not a positive number", parameters.spacing));
@@ -66,11 +67,6 @@ void check(const LightMapParameters& parameters, std::size_t layers) {
     throw UsageError(fmt::format("light maps: {} powers for {} layers of light",
                                  parameters.powers.size(), layers));
   }
-}
-
-/// The parameters, checked.
-const LightMapParameters& checked(const LightMapParameters& parameters, std::size_t layers) {
-  check(parameters, layers);
   return parameters;
 }
 
@@ -87,22 +83,8 @@ LightMaps::LightMaps(const RayScene& rays, const LightMapParameters& parameters,
       levels_(levels_that_fit(charts_, parameters.levels)),
       skipped_levels_(levels_ -
                       levels_that_fit(charts_, parameters.levels - parameters.skipped_levels)),
-      tiles_(charts_) {
-  clear();
-}
-
-void LightMaps::clear() {
-  tiles_.clear();
-  node_at_.clear();
-  values_ = LightTable(rays_.needs());
-  seen_by_middle_.clear();
-  together_.clear();
-  error_.clear();
-  distance_.clear();
-  points_.clear();
-  coordinates_.clear();
-  cells_ = 0;
-}
+      tiles_(charts_),
+      values_(rays.needs()) {}
 
 std::vector<MissingCell> LightMaps::missing_cells(const PrimaryHits& hits,
                                                   std::vector<std::uint32_t>& pending,

@@ -163,8 +163,6 @@ class LightMaps {
   ///   keep   per node
   /// Returns the former numbers of the nodes that are left.
   std::vector<std::uint32_t> forget(std::span<const std::uint8_t> keep);
-  /// Forgets all nodes.
-  void clear();
 
   LightMapStatistics statistics() const;
   /// Bytes of the nodes and of what is used to find them.

@@ -111,14 +111,6 @@ bool holds(const LightTable& values, std::size_t node, std::uint16_t light) {
 
 }  // namespace
 
-void NodeMix::keep(std::span<const std::uint32_t> nodes) {
-  for (std::size_t i = 0; i < nodes.size(); ++i) light_[i] = light_[nodes[i]];
-  light_.resize(nodes.size());
-  if (by_normal_.empty()) return;
-  for (std::size_t i = 0; i < nodes.size(); ++i) by_normal_[i] = by_normal_[nodes[i]];
-  by_normal_.resize(nodes.size());
-}
-
 void NodeMix::mix(const LightTable& values, std::size_t nodes, std::span<const glm::vec3> powers) {
   std::vector<std::size_t> changed;
   for (std::size_t light = 0; light < powers.size(); ++light) {
@@ -143,26 +135,26 @@ void NodeMix::mix(const LightTable& values, std::size_t nodes, std::span<const g
     const std::size_t begin = first + task * nodes_per_mix_task;
     const std::size_t end = std::min(nodes, begin + nodes_per_mix_task);
     if (dense) {
-      for (std::size_t node = begin; smooth && node < end; ++node) {
-        const std::size_t own = node * powers.size();
-        by_normal_[node] = summed_by_normal(values, own, own + powers.size(), powers,
-                                            [&](std::size_t i) { return i - own; });
-      }
       constexpr auto mixes = dense_mixes(std::make_index_sequence<max_dense_lights>());
       mixes[powers.size() - 1](values, begin, end, padded, light_);
-      return;
+      if (!smooth) return;
     }
     for (std::size_t node = begin; node < end; ++node) {
       if (one_of_many && node < known &&
           !holds(values, node, static_cast<std::uint16_t>(changed.front()))) {
         continue;
       }
-      light_[node] = summed(values, values.first[node], values.first[node + 1],
-                            [&](std::size_t i) { return padded[values.light[i]]; });
-      if (!smooth) continue;
-      by_normal_[node] =
-          summed_by_normal(values, values.first[node], values.first[node + 1], powers,
-                           [&](std::size_t i) { return std::size_t{values.light[i]}; });
+      const LightTable::Entries row = values.row(node);
+      const auto layer = [&](std::size_t i) {
+        return dense ? i - row.first : std::size_t{values.light[i]};
+      };
+      if (!dense) {
+        light_[node] =
+            summed(values, row.first, row.last, [&](std::size_t i) { return padded[layer(i)]; });
+      }
+      if (smooth) {
+        by_normal_[node] = summed_by_normal(values, row.first, row.last, powers, layer);
+      }
     }
   });
 }

@@ -23,9 +23,6 @@ class NodeMix {
   ///   powers   per layer: power x tint
   void mix(const LightTable& values, std::size_t nodes, std::span<const glm::vec3> powers);
 
-  /// Keeps these nodes alone, in this order.
-  void keep(std::span<const std::uint32_t> nodes);
-
   /// Per node; the fourth is nothing.
   std::span<const glm::vec4> light() const { return light_; }
   /// Per node the luminance by the normal, as LightTable has it; empty where nodes do not tell it.

@@ -1,7 +1,6 @@
 // Tiles of 8 x 8 cells: the nodes at their corners, and which of them are split.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -103,10 +102,6 @@ class Tiles {
   /// Makes the tile of the next level that refines a cell, if there is none.
   void split(std::uint32_t tile, std::uint32_t cell);
 
-  void clear() {
-    std::fill(root_.begin(), root_.end(), none);
-    tiles_.clear();
-  }
   /// Keeps the tiles that have cells to keep, in this order; each comes after the one that it
   /// refines, and nothing is kept without what is coarser there.
   ///   cells    per tile

@@ -196,11 +196,11 @@ DrawnFrame SceneRenderer::draw(const Camera& camera, const Film& film,
                                std::span<glm::vec3> picture, Progress& progress,
                                SceneRenderer* coarser) {
   return impl_->frames().draw(camera, film, powers, filling, picture, progress,
-                              coarser ? &coarser->impl_->frames() : nullptr);
+                              coarser ? &coarser->impl_->frames().view() : nullptr);
 }
 
 void SceneRenderer::bound_light_maps(std::uint64_t bytes) {
-  if (draws()) impl_->frames().bound(bytes);
+  if (draws()) impl_->frames().view().bound(bytes);
 }
 
 bool SceneRenderer::draws() const { return impl_->reads_light_maps(); }

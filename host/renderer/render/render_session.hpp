@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cache/light_map_frames.hpp"
 #include "photile/renderer.hpp"
+#include "render/frame_renderer.hpp"
 #include "render/hit_source.hpp"
 #include "render/photon_passes.hpp"
 #include "render/quality.hpp"
@@ -52,7 +52,7 @@ class RenderSession {
   /// The light of the scene; where light maps are read there is one pass.
   PassLight& light() { return *passes_.front(); }
   /// Quick pictures, where light maps are read.
-  cache::LightMapFrames& frames() { return *frames_; }
+  FrameRenderer& frames() { return *frames_; }
   /// The contents of the light maps; none where they are not read, or not yet.
   std::optional<LightMapContents> light_map_contents() const;
 
@@ -66,7 +66,7 @@ class RenderSession {
   std::optional<PhotonPasses> photons_;
   std::vector<std::unique_ptr<PassLight>> passes_;  ///< that are kept
   int parts_ = 0;                                   ///< of the work that was asked for, if added
-  std::optional<cache::LightMapFrames> frames_;
+  std::optional<FrameRenderer> frames_;
 };
 
 }  // namespace photile

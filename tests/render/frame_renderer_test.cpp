@@ -1,5 +1,5 @@
 // Quick frames from light maps: what they show while nodes are lacking, and once none is.
-#include "cache/light_map_frames.hpp"
+#include "render/frame_renderer.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ namespace photile::test {
 namespace {
 
 constexpr double all = std::numeric_limits<double>::infinity();
-constexpr int width = 96, height = 64;
+constexpr int frame_width = 96, frame_height = 64;
 
 float waves(const glm::vec3& p, std::uint32_t) {
   return 2.0f + std::sin(9 * p.x) * std::cos(7 * p.y) + std::sin(5 * p.z);
@@ -33,10 +33,10 @@ struct DrawnRoom {
         frames(rays, maps) {}
 
   std::vector<glm::vec3> draw(const Camera& camera, double seconds, float power = 1.0f,
-                              int samples = 1, cache::LightMapFrames* coarser = nullptr) {
-    std::vector<glm::vec3> picture(std::size_t{width} * height);
+                              int samples = 1, cache::FrameView* coarser = nullptr) {
+    std::vector<glm::vec3> picture(std::size_t{frame_width} * frame_height);
     const std::vector<glm::vec3> powers{glm::vec3(power)};
-    drawn = frames.draw(camera, {width, height, samples}, powers, seconds, picture,
+    drawn = frames.draw(camera, {frame_width, frame_height, samples}, powers, seconds, picture,
                         Progress::none(), coarser);
     return picture;
   }
@@ -45,7 +45,7 @@ struct DrawnRoom {
   const RayScene rays;
   FormulaSource source;
   cache::LightMaps maps;
-  cache::LightMapFrames frames;
+  FrameRenderer frames;
   DrawnFrame drawn;
 };
 
@@ -54,15 +54,15 @@ Camera in_the_room(double x) { return Camera::look_at({x, 0.3, 1.5}, {2, 2, 0.5}
 /// The chart in each pixel; none along borders between them, and where nothing is seen.
 std::vector<std::uint32_t> charts_seen(const DrawnRoom& room, const Camera& camera) {
   const auto chart_at = [&](double x, double y) {
-    const glm::vec3 direction(camera.direction(x, y, width, height));
+    const glm::vec3 direction(camera.direction(x, y, frame_width, frame_height));
     const auto hit = trace::intersect(room.rays, glm::vec3(camera.position), direction);
     if (!hit) return none;
     const std::uint32_t side = trace::surface_hit(room.scene, *hit, direction).side;
     return room.maps.charts().chart_of()[oriented(hit->triangle, side)];
   };
   std::vector<std::uint32_t> charts;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < frame_height; ++y) {
+    for (int x = 0; x < frame_width; ++x) {
       const std::uint32_t chart = chart_at(x, y);  // at the corners of the pixel
       const bool inside = chart == chart_at(x + 1, y) && chart == chart_at(x, y + 1) &&
                           chart == chart_at(x + 1, y + 1);
@@ -136,23 +136,23 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
   DrawnRoom coarse(constant(1.0f)), fine(constant(2.0f));
   const Camera camera = in_the_room(0.5);
   const auto of_coarse = coarse.draw(camera, all);
-  const auto without_own = fine.draw(camera, 0, 1.0f, 1, &coarse.frames);
+  const auto without_own = fine.draw(camera, 0, 1.0f, 1, &coarse.frames.view());
   for (std::size_t i = 0; i < of_coarse.size(); ++i) {
     REQUIRE(without_own[i].x == Approx(of_coarse[i].x));
   }
   CHECK(fine.drawn.lacking > 0);
   CHECK(fine.drawn.empty == 0);
   CHECK(fine.drawn.lacking_fraction == 1);
-  fine.draw(camera, 1e-7, 1.0f, 1, &coarse.frames);  // a few nodes
+  fine.draw(camera, 1e-7, 1.0f, 1, &coarse.frames.view());  // a few nodes
   CHECK(fine.drawn.lacking_fraction > 0);
   CHECK(fine.drawn.lacking_fraction < 1);
-  const auto of_fine = fine.draw(camera, all, 1.0f, 1, &coarse.frames);
+  const auto of_fine = fine.draw(camera, all, 1.0f, 1, &coarse.frames.view());
   CHECK(fine.drawn.lacking == 0);
   CHECK(fine.drawn.lacking_fraction == 0);
   CHECK(same_pixels(of_fine, fine.draw(camera, all)));
 
   DrawnRoom empty(constant(1.0f)), waiting(constant(2.0f));
-  waiting.draw(camera, 1e-7, 1.0f, 1, &empty.frames);
+  waiting.draw(camera, 1e-7, 1.0f, 1, &empty.frames.view());
   CHECK(waiting.maps.statistics().nodes == 0);
   CHECK(empty.maps.statistics().nodes > 0);
 }
@@ -165,7 +165,7 @@ TEST_CASE("Pictures of one frame get better until nothing is lacking, chart by c
   const Camera camera = in_the_room(0.5);
   const auto of_coarse = coarse.draw(camera, all);
   const std::vector<glm::vec3> powers{glm::vec3(1.0f)};
-  std::vector<glm::vec3> picture(std::size_t{width} * height);
+  std::vector<glm::vec3> picture(std::size_t{frame_width} * frame_height);
   const std::vector<std::uint32_t> chart_in = charts_seen(fine, camera);
   std::vector<double> lacking;
   std::size_t changing = 0;  // pictures that show both
@@ -187,8 +187,8 @@ TEST_CASE("Pictures of one frame get better until nothing is lacking, chart by c
     return 1e-4;
   };
   const DrawnFrame last =
-      fine.frames.draw(camera, {width, height, 1}, powers, FrameFilling(0, {}, show), picture,
-                       Progress::none(), &coarse.frames);
+      fine.frames.draw(camera, {frame_width, frame_height, 1}, powers, FrameFilling(0, {}, show),
+                       picture, Progress::none(), &coarse.frames.view());
   CHECK(last.lacking == 0);
   CHECK(changing > 0);
   REQUIRE(lacking.size() > 2);
@@ -199,11 +199,11 @@ TEST_CASE("Pictures of one frame get better until nothing is lacking, chart by c
 
 TEST_CASE("A frame that nobody waits for any longer values no more nodes") {
   DrawnRoom room;
-  std::vector<glm::vec3> picture(std::size_t{width} * height);
+  std::vector<glm::vec3> picture(std::size_t{frame_width} * frame_height);
   const std::vector<glm::vec3> powers{glm::vec3(1.0f)};
   const auto nodes = [&] { return room.maps.statistics().nodes; };
   const DrawnFrame drawn =
-      room.frames.draw(in_the_room(0.5), {width, height, 1}, powers,
+      room.frames.draw(in_the_room(0.5), {frame_width, frame_height, 1}, powers,
                        FrameFilling(1e6, [&] { return nodes() > 0; }), picture, Progress::none());
   CHECK(drawn.lacking > 0);
   CHECK(nodes() > 0);
@@ -242,7 +242,7 @@ TEST_CASE("Cells that were seen least recently are forgotten, and come back to t
   const std::uint64_t both = free.maps.statistics().nodes;
   REQUIRE(both > one_view.nodes);
 
-  bounded.frames.bound(one_view.value_bytes + one_view.index_bytes - 1);
+  bounded.frames.view().bound(one_view.value_bytes + one_view.index_bytes - 1);
   for (int turn = 0; turn < 3; ++turn) {
     CHECK(same_pixels(bounded.draw(in_the_room(0.5), all), first));
     CHECK(same_pixels(bounded.draw(behind, all), second));

@@ -1,0 +1,60 @@
+// Pictures of the light on surfaces alone, quick enough to walk in: a ray and a query a sample.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "cache/frame_view.hpp"
+#include "cache/light_maps.hpp"
+#include "photile/camera.hpp"
+#include "photile/light_layers.hpp"
+#include "photile/progress.hpp"
+#include "photile/ray_scene.hpp"
+#include "photile/renderer.hpp"
+#include "trace/distant_light.hpp"
+
+namespace photile {
+
+/// Draws frames from light maps. Rays through the same positions of each pixel; mirrors, glass and
+/// cutouts are followed; a specular lobe is taken for matt reflection of the same strength, and
+/// normal maps are left out.
+class FrameRenderer {
+ public:
+  /// References are kept.
+  FrameRenderer(const RayScene& rays, cache::LightMaps& maps);
+
+  /// The light of its light maps.
+  cache::FrameView& view() { return view_; }
+
+  /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Points for which
+  /// light maps have no light show that of `coarser`; those without that, the light of nodes
+  /// around.
+  ///   powers    per layer: power x tint
+  ///   filling   of nodes which pixels lack: the coarsest, on charts that take most of the picture
+  ///             first, then finer ones where light differs most; their pixels are drawn again
+  ///   coarser   of the same scene, whose nodes are valued first; null = none
+  /// Errors: those of LightMaps::fill.
+  DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
+                  const FrameFilling& filling, std::span<glm::vec3> picture,
+                  const Progress& progress, cache::FrameView* coarser = nullptr);
+
+ private:
+  class Picture;
+
+  /// The data of a triangle that a frame needs, close together.
+  struct Surface {
+    glm::vec3 reflects;  ///< radiance per irradiance, where it is plain
+    enum Kind : std::uint32_t { plain, textured, light, followed } kind;
+  };
+
+  const RayScene& rays_;
+  std::vector<Surface> surfaces_;
+  std::vector<std::uint32_t> layer_of_;  ///< per light
+  std::vector<glm::vec3> emitted_;       ///< per light, at power 1
+  trace::DistantLights distant_;
+  cache::FrameView view_;
+};
+
+}  // namespace photile
