@@ -3,10 +3,11 @@
 
     bench/kernels/parallel.py [--program FILE] [--threads N] [-o FILE.json] [-- COMMAND OF PHOTILE...]
 
-Without a command it measures those of COMMANDS. The states of all threads are read every few milliseconds: a
-thread that waits for a processor counts as one with work, so that other work on the machine changes little. The time on
-n cores is forecast by Amdahl's law: the processor seconds that were spent while one thread alone was runnable, and the
-others divided by n. Stages are those that the command reports on stderr; what it does between them is counted apart.
+Without a command it measures those of COMMANDS. The states of all threads are read every few milliseconds. A thread
+that waits for a processor counts as one with work, and so does one of TBB that looks for work and waits for a
+processor meanwhile: beside other work on the machine the figures come out too low. The time on n cores is forecast by Amdahl's law: the
+processor seconds that were spent while one thread alone was runnable, and the others divided by n. Stages are those
+that the command reports on stderr; what it does between them is counted apart.
 """
 
 import argparse

@@ -193,15 +193,14 @@ TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few
   batch.nodes = batch.points.size();
   batch.number = numbers(batch.nodes);
   batch.coarse.assign(batch.nodes, 0);
-  batch.first_neighbour.push_back(0);
   for (int node = 0; node < side * side; ++node) {
     for (int y = node / side - 1; y <= node / side + 1; ++y)
       for (int x = node % side - 1; x <= node % side + 1; ++x) {
         const int other = y * side + x;
         if (x < 0 || x >= side || y < 0 || y >= side || other == node) continue;
-        batch.neighbour.push_back(static_cast<std::uint32_t>(other));
+        batch.neighbours.items.push_back(static_cast<std::uint32_t>(other));
       }
-    batch.first_neighbour.push_back(static_cast<std::uint32_t>(batch.neighbour.size()));
+    batch.neighbours.first.push_back(static_cast<std::uint32_t>(batch.neighbours.items.size()));
   }
   const auto sum_of = [](const LightTable& light) {
     return std::accumulate(light.irradiance.begin(), light.irradiance.end(), 0.0,

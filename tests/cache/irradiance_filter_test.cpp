@@ -21,14 +21,13 @@ std::size_t index(int x, int y) { return static_cast<std::size_t>(y * side + x);
 /// A square lattice, each point linked to its four neighbours.
 cache::PointLinks lattice() {
   cache::PointLinks links;
-  links.first.push_back(0);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
-      if (x > 0) links.to.push_back(static_cast<std::uint32_t>(index(x - 1, y)));
-      if (x + 1 < side) links.to.push_back(static_cast<std::uint32_t>(index(x + 1, y)));
-      if (y > 0) links.to.push_back(static_cast<std::uint32_t>(index(x, y - 1)));
-      if (y + 1 < side) links.to.push_back(static_cast<std::uint32_t>(index(x, y + 1)));
-      links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
+      if (x > 0) links.items.push_back(static_cast<std::uint32_t>(index(x - 1, y)));
+      if (x + 1 < side) links.items.push_back(static_cast<std::uint32_t>(index(x + 1, y)));
+      if (y > 0) links.items.push_back(static_cast<std::uint32_t>(index(x, y - 1)));
+      if (y + 1 < side) links.items.push_back(static_cast<std::uint32_t>(index(x, y + 1)));
+      links.first.push_back(static_cast<std::uint32_t>(links.items.size()));
       links.position.emplace_back(x, y, 0);
     }
   return links;

@@ -373,17 +373,19 @@ std::string loaded_by(const std::vector<std::string>& arguments) {
   return outcome.errors;
 }
 
-TEST_CASE("OpenImageIO is loaded where a picture is read that is no EXR, and nowhere else") {
+TEST_CASE(
+    "OpenImageIO is loaded where a picture is read that is neither EXR nor PNG, nowhere else") {
   const FileFolder folder;
-  const std::string box = write_box(folder), picture = folder / "a.exr";
-  const std::vector<std::string> render =
-      typed("render", box, "-o", picture, "--size 16x12 --quality draft --photons 2k --quiet");
+  const std::string box = write_box(folder), picture = folder / "a.exr", png = folder / "a.png";
+  const std::vector<std::string> render = typed(
+      "render", box, "-o", picture, "-o", png, "--size 16x12 --quality draft --photons 2k --quiet");
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"--version"}, render,
         std::vector<std::string>{"measure", box, "--plane", "floor+0.75", "--photons", "2k",
                                  "--rays", "16", "--quiet"},
         std::vector<std::string>{"relight", picture, "--light", "left=x2", "-o", folder / "b.exr"},
-        std::vector<std::string>{"compare", picture, picture}}) {
+        std::vector<std::string>{"compare", picture, picture},
+        std::vector<std::string>{"compare", png, png}}) {
     CHECK_THAT(loaded_by(command), !Catch::Contains("OpenImageIO"));
   }
   folder.write("rug.ppm", "P6 1 1 255\n\x80\x40\x20");

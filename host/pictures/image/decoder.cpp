@@ -1,9 +1,11 @@
 #include "image/decoder.hpp"
 
 #include <fmt/format.h>
+#include <png.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <filesystem>
 #include <limits>
 #include <string_view>
@@ -22,7 +24,7 @@ namespace photile::image {
 
 namespace {
 
-constexpr std::string_view exr_reader = "openexr";
+constexpr std::string_view exr_reader = "openexr", png_reader = "png";
 
 std::unique_ptr<Decoder> open_by_openimageio(const char* reader, Encoded bytes) {
   // It stays loaded: OpenImageIO and its libraries are not designed to be unloaded.
@@ -30,9 +32,10 @@ std::unique_ptr<Decoder> open_by_openimageio(const char* reader, Encoded bytes) 
   static auto* const open =
       module.find<decltype(photile_openimageio_decoder)>("photile_openimageio_decoder");
   if (open == nullptr) {
-    throw UsageError(fmt::format(
-        "pictures other than EXR cannot be read: {}; install the package photile-openimageio",
-        module.error()));
+    throw UsageError(
+        fmt::format("pictures other than EXR and PNG cannot be read: {}; install the package "
+                    "photile-openimageio",
+                    module.error()));
   }
   return std::unique_ptr<Decoder>(open(reader, bytes));
 }
@@ -42,7 +45,7 @@ std::unique_ptr<Decoder> open_by_openimageio(const char* reader, Encoded bytes) 
 const char* reader_of(const std::string& name, Encoded bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   using namespace std::string_view_literals;
-  if (text.starts_with("\x89PNG"sv)) return "png";
+  if (text.starts_with("\x89PNG"sv)) return png_reader.data();
   if (text.starts_with("\xFF\xD8"sv)) return "jpeg";
   if (text.starts_with("\x76\x2F\x31\x01"sv)) return exr_reader.data();
   if (text.starts_with("#?"sv)) return "hdr";
@@ -62,6 +65,63 @@ const char* reader_of(const std::string& name, Encoded bytes) {
 }
 
 namespace {
+
+/// By libpng: most textures are PNGs, and need none of the libraries of OpenImageIO.
+class PngDecoder : public Decoder {
+ public:
+  explicit PngDecoder(Encoded bytes) : left_(bytes) {
+    png_set_read_fn(reading_.png, this, &PngDecoder::read);
+    png_read_info(reading_.png, reading_.info);
+    png_set_expand(reading_.png);  // palettes, few bits and transparent colours
+    if constexpr (std::endian::native == std::endian::little) png_set_swap(reading_.png);
+    png_set_interlace_handling(reading_.png);
+    png_read_update_info(reading_.png, reading_.info);
+    shape_ = {static_cast<int>(png_get_image_width(reading_.png, reading_.info)),
+              static_cast<int>(png_get_image_height(reading_.png, reading_.info)),
+              png_get_channels(reading_.png, reading_.info),
+              png_get_bit_depth(reading_.png, reading_.info) == 16 ? Sample::word : Sample::byte};
+  }
+
+  Pixels decode() override {
+    if (shape_.sample == Sample::byte) return values<std::uint8_t>();
+    return values<std::uint16_t>();
+  }
+
+ private:
+  struct Reading {
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, &fail, &ignore);
+    png_infop info = png_create_info_struct(png);
+
+    Reading() = default;
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+    ~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
+  };
+
+  [[noreturn]] static void fail(png_structp, png_const_charp reason) { throw DecodeError(reason); }
+  static void ignore(png_structp, png_const_charp) {}
+  static void read(png_structp png, png_bytep to, std::size_t size) {
+    Encoded& left = static_cast<PngDecoder*>(png_get_io_ptr(png))->left_;
+    if (size > left.size()) fail(png, "the file ends too early");
+    std::copy_n(left.begin(), size, to);
+    left = left.subspan(size);
+  }
+
+  template <class T>
+  std::vector<T> values() {
+    std::vector<T> values(shape_.values());
+    std::vector<png_bytep> rows;
+    const std::size_t in_row = values.size() / static_cast<std::size_t>(shape_.height);
+    for (std::size_t first = 0; first < values.size(); first += in_row) {
+      rows.push_back(reinterpret_cast<png_bytep>(&values[first]));
+    }
+    png_read_image(reading_.png, rows.data());
+    return values;
+  }
+
+  Encoded left_;
+  Reading reading_;
+};
 
 /// The channels of an EXR that are its picture: R, G and B, or Y, of the first part that has them,
 /// or of its one layer, or of that called Combined. Depth, normals or lights are not part of it.
@@ -247,7 +307,11 @@ EncodedPicture::EncodedPicture(const std::string& name, Encoded bytes) {
     if (reader == std::string_view("hdr")) {
       rewritten_ = with_plain_header(read_radiance_header(bytes), bytes);
     }
-    decoder_ = open_by_openimageio(reader, rewritten_.empty() ? bytes : Encoded(rewritten_));
+    if (reader == png_reader) {
+      decoder_ = std::make_unique<PngDecoder>(bytes);
+    } else {
+      decoder_ = open_by_openimageio(reader, rewritten_.empty() ? bytes : Encoded(rewritten_));
+    }
   }
   shape_ = decoder_->shape();
   check_shape(shape_, bytes.size());

@@ -88,10 +88,10 @@ class EncodedPicture {
   PictureShape shape_;
 };
 
-/// Opens a picture: an EXR by photile's own reader, all else by OpenImageIO, which is loaded for
-/// the first of them. Only headers are read, and what they announce is within limits.hpp. `bytes`
-/// must outlive the picture; `name` tells, by its extension, formats that have no signature.
-/// Errors: DecodeError; UsageError where OpenImageIO's module is not installed.
+/// Opens a picture: an EXR by photile's own reader, a PNG by libpng, all else by OpenImageIO, which
+/// is loaded for the first of them. Only headers are read, and what they announce is within
+/// limits.hpp. `bytes` must outlive the picture; `name` tells, by its extension, formats that have
+/// no signature. Errors: DecodeError; UsageError where OpenImageIO's module is not installed.
 std::unique_ptr<EncodedPicture> open_picture(const std::string& name, Encoded bytes);
 
 }  // namespace photile::image
@@ -99,7 +99,7 @@ std::unique_ptr<EncodedPicture> open_picture(const std::string& name, Encoded by
 extern "C" {
 
 /// OpenImageIO's readers, in a separate module (host/pictures/openimageio): opens a picture of any
-/// format but EXR, which `bytes` must outlive; the caller deletes it. Errors: DecodeError.
+/// format but EXR and PNG, which `bytes` must outlive; the caller deletes it. Errors: DecodeError.
 __attribute__((visibility("default"))) photile::image::Decoder* photile_openimageio_decoder(
     const char* reader, photile::image::Encoded bytes);
 

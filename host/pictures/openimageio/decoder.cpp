@@ -2,12 +2,9 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -15,51 +12,6 @@
 
 namespace photile::openimageio {
 namespace {
-
-thread_local int silences = 0;  ///< of this thread
-
-/// A stream that drops what a silent thread prints and hands on the rest.
-std::FILE* filter() {
-  static std::FILE* const stream = [] {
-    cookie_io_functions_t functions{};
-    functions.write = [](void*, const char* text, std::size_t size) {
-      return silences > 0 ? static_cast<ssize_t>(size) : ::write(STDERR_FILENO, text, size);
-    };
-    std::FILE* const opened = fopencookie(nullptr, "w", functions);
-    if (opened != nullptr) std::setvbuf(opened, nullptr, _IONBF, 0);
-    return opened;
-  }();
-  return stream;
-}
-
-std::mutex mutex;
-int silent_threads = 0;
-std::FILE* standard_error = nullptr;  ///< while threads are silent
-
-/// While it lives, what its thread prints to C's `stderr` is dropped. libpng prints there what
-/// OpenImageIO returns as an error, and warnings about pictures that are sound.
-class Silence {
- public:
-  Silence();
-  ~Silence();
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-};
-
-Silence::Silence() {
-  if (silences++ > 0) return;
-  const std::lock_guard lock(mutex);
-  if (silent_threads++ > 0 || filter() == nullptr) return;
-  standard_error = stderr;
-  stderr = filter();
-}
-
-Silence::~Silence() {
-  if (--silences > 0) return;
-  const std::lock_guard lock(mutex);
-  if (--silent_threads > 0 || filter() == nullptr) return;
-  stderr = standard_error;
-}
 
 /// For the process, once.
 void set_up() {
@@ -90,7 +42,6 @@ class OpenImageIODecoder : public image::Decoder {
   OpenImageIODecoder(std::string_view reader, image::Encoded bytes)
       : memory_(bytes.data(), bytes.size()), input_(OIIO::ImageInput::create(std::string(reader))) {
     if (!input_) throw image::DecodeError("OpenImageIO has no reader for it");
-    const Silence silence;
     OIIO::ImageSpec options, spec;
     options["oiio:UnassociatedAlpha"] = 1;
     options["bmp:monochrome_detect"] = 0;
@@ -119,7 +70,6 @@ class OpenImageIODecoder : public image::Decoder {
  private:
   template <class T>
   std::vector<T> values(OIIO::TypeDesc type) {
-    const Silence silence;
     std::vector<T> values(shape_.values());
     // Values that are stored as they are requested need no conversion, for which OpenImageIO would
     // take 64 MiB however small the picture is.

@@ -10,6 +10,7 @@
 
 #include "cache/irradiance_filter.hpp"
 #include "cache/light_maps.hpp"
+#include "common/touched_memory.hpp"
 #include "estimate/map_order.hpp"
 #include "photile/defaults.hpp"
 #include "photile/limits.hpp"
@@ -39,13 +40,11 @@ std::vector<std::uint64_t> numbers_at(const NodeBatch& batch,
 PointLinks links_between(const PointLinks& all, std::span<const std::uint32_t> chosen) {
   std::vector<std::uint32_t> index_of(all.position.size(), none);
   for (std::uint32_t i = 0; i < chosen.size(); ++i) index_of[chosen[i]] = i;
-  PointLinks links;
-  links.first.push_back(0);
-  for (const std::uint32_t point : chosen) {
-    for (const std::uint32_t to : all.of(point)) links.to.push_back(index_of[to]);
-    links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
-    links.position.push_back(all.position[point]);
-  }
+  const auto write = [&](std::size_t i, std::vector<std::uint32_t>& to) {
+    for (const std::uint32_t other : all.of(chosen[i])) to.push_back(index_of[other]);
+  };
+  PointLinks links{index_rows_by_tasks(chosen.size(), write), {}};
+  for (const std::uint32_t point : chosen) links.position.push_back(all.position[point]);
   return links;
 }
 
@@ -151,14 +150,17 @@ void GatheredNodes::forget() {
 }
 
 NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress) {
-  std::vector<std::uint32_t> coarse, fine;
-  for (std::uint32_t i = 0; i < batch.points.size(); ++i) {
-    (batch.coarse[i] ? coarse : fine).push_back(i);
-  }
+  const auto points_that_are = [&](bool coarse) {
+    return numbers_where(batch.points.size(),
+                         [&](std::uint32_t point) { return (batch.coarse[point] != 0) == coarse; });
+  };
+  const std::vector<std::uint32_t> coarse = points_that_are(true);
+  std::vector<std::uint32_t> fine = points_that_are(false);
   gather_new(batch, coarse, rays_.coarse, progress);
   gather_new(batch, fine, rays_.fine, progress);
-  std::vector<std::uint32_t> rows;
-  for (const std::uint64_t number : batch.number) rows.push_back(raw_.row_of.at(number));
+  std::vector<std::uint32_t> rows(batch.number.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(),
+                    [&](std::size_t i) { rows[i] = raw_.row_of.at(batch.number[i]); });
   const PointLinks links = visible_links(batch, rows);
   GatheredParts all = smoothed(links, rows, coarse);
   std::erase_if(fine, [&](std::uint32_t point) { return point >= batch.nodes; });
@@ -205,10 +207,12 @@ LightTable GatheredNodes::errors() const {
 void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points,
                                NodeRays rays, const Progress& progress) {
   std::map<NodeRays, std::vector<std::uint32_t>> with;  // by the rays that they have
-  for (const std::uint32_t point : points) {
-    const std::uint64_t number = batch.number[point];
-    if (raw_.row_of.contains(number)) continue;
-    const auto known = former_.row_of.find(number);
+  const auto is_new = [&](std::uint32_t i) {
+    return !raw_.row_of.contains(batch.number[points[i]]);
+  };
+  for (const std::uint32_t i : numbers_where(points.size(), is_new)) {
+    const std::uint32_t point = points[i];
+    const auto known = former_.row_of.find(batch.number[point]);
     with[known == former_.row_of.end() ? NodeRays{} : former_.rays[known->second]].push_back(point);
   }
   for (const auto& [before, chosen] : with) {
@@ -237,8 +241,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
 ///   rows   of all points
 PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
                                         std::span<const std::uint32_t> rows) const {
-  PointLinks links{{0}, {}, batch.points.position};
-  if (batch.first_neighbour.empty()) return links;
+  if (batch.neighbours.size() == 0) return {{}, batch.points.position};
   const KnownPoints indirect(raw_.light.indirect, {rows.begin(), rows.end()}, layer_powers_);
   const KnownPoints direct(raw_.light.direct, {rows.begin(), rows.end()}, layer_powers_);
   const Scene& scene = gather_.rays().scene();
@@ -246,27 +249,19 @@ PointLinks GatheredNodes::visible_links(const NodeBatch& batch,
     return trace::location_on(scene, batch.points.oriented_face[point],
                               batch.points.position[point]);
   };
-  std::vector<std::uint8_t> hidden(batch.neighbour.size(), 0);
-  tbb::parallel_for(std::size_t{0}, batch.points.size(), [&](std::size_t point) {
+  const auto write = [&](std::size_t point, std::vector<std::uint32_t>& to) {
     const trace::FlushDenormals flush_denormals;
-    for (std::size_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1]; ++i) {
-      const std::size_t other = batch.neighbour[i];
+    for (const std::uint32_t other : batch.neighbours.of(point)) {
       const Contrast reflected(indirect, point, other, layer_powers_);
       const Contrast sent(direct, point, other, layer_powers_);
       if (reflected.difference + sent.difference <=
-          defaults::parting_contrast * std::max(reflected.light, sent.light)) {
-        continue;
+              defaults::parting_contrast * std::max(reflected.light, sent.light) ||
+          sees(gather_.rays(), location(point), location(other))) {
+        to.push_back(other);
       }
-      hidden[i] = sees(gather_.rays(), location(point), location(other)) ? 0 : 1;
     }
-  });
-  for (std::size_t point = 0; point < batch.points.size(); ++point) {
-    for (std::size_t i = batch.first_neighbour[point]; i < batch.first_neighbour[point + 1]; ++i) {
-      if (hidden[i] == 0) links.to.push_back(batch.neighbour[i]);
-    }
-    links.first.push_back(static_cast<std::uint32_t>(links.to.size()));
-  }
-  return links;
+  };
+  return {index_rows_by_tasks(batch.points.size(), write), batch.points.position};
 }
 
 /// Coarse points averaged with those around them.

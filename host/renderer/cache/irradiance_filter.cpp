@@ -368,16 +368,15 @@ LightTable filter_irradiance(LightTable irradiance, const PointLinks& links,
     const KnownPoints points(irradiance, layer_powers);
     tbb::enumerable_thread_specific<PlaneThroughPoints> planes(points, std::span(links.position),
                                                                layer_powers);
-    irradiance =
-        means_of(irradiance, links.first.size() - 1, layer_powers, [&](std::size_t i, auto& light) {
-          PlaneThroughPoints& plane = planes.local();
-          const std::span<const std::uint32_t> others = links.of(i);
-          plane.fit(i, others);
-          light.add_own(points, i, plane.of_own());
-          for (std::size_t j = 0; j < others.size(); ++j) {
-            light.add_other(points, others[j], parameters.tolerated, plane.of_other(j));
-          }
-        });
+    irradiance = means_of(irradiance, links.size(), layer_powers, [&](std::size_t i, auto& light) {
+      PlaneThroughPoints& plane = planes.local();
+      const std::span<const std::uint32_t> others = links.of(i);
+      plane.fit(i, others);
+      light.add_own(points, i, plane.of_own());
+      for (std::size_t j = 0; j < others.size(); ++j) {
+        light.add_other(points, others[j], parameters.tolerated, plane.of_other(j));
+      }
+    });
   }
   return irradiance;
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/index_rows.hpp"
 #include "photile/defaults.hpp"
 #include "photile/light_table.hpp"
 
@@ -26,16 +27,10 @@ struct NoiseTolerance {
   double known = defaults::known_error;
 };
 
-/// Which points are neighbours on one surface, in compressed sparse rows: point i is linked to
-/// to[first[i] .. first[i + 1]). The caller decides what one surface is.
-struct PointLinks {
-  std::vector<std::uint32_t> first;  ///< one more than there are points
-  std::vector<std::uint32_t> to;
+/// Which points are neighbours on one surface: those that each is linked to. The caller decides
+/// what one surface is.
+struct PointLinks : IndexRows {
   std::vector<glm::vec3> position;  ///< of each point
-
-  std::span<const std::uint32_t> of(std::size_t point) const {
-    return std::span(to).subspan(first[point], first[point + 1] - first[point]);
-  }
 };
 
 struct IrradianceFilterParameters {

@@ -25,8 +25,9 @@
 namespace photile::cache {
 namespace {
 
-/// Enough to fill a device with new nodes, little enough to stay in the processor's caches.
-constexpr std::size_t rays_at_a_time = std::size_t{1} << 16;
+/// Enough to fill a device with new nodes and for many cores to wait little between the steps of a
+/// run, little enough for its data to be a small part of memory.
+constexpr std::size_t rays_at_a_time = std::size_t{1} << 18;
 /// Whole rays of a batch.
 int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 
@@ -164,7 +165,7 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
   const std::size_t at_a_time =
       std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
-  GatheredParts all = none_yet();
+  GatheredRuns sums;
   for (std::size_t round = 0; round < most; round += at_a_time) {
     progress.throw_if_cancelled();
     const std::size_t first = std::min(round, points.size());
@@ -196,14 +197,12 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
         .caustic_relative_variance =
             caustics_ ? caustic_relative_variance(parameters_.caustic_neighbours) : 0.0,
         .layer_powers = layer_powers_};
-    for (GatheredParts& part : sums_of(run, first, count)) {
-      all.indirect.append(std::move(part.indirect));
-      all.direct.append(std::move(part.direct));
-      all.distance.insert(all.distance.end(), part.distance.begin(), part.distance.end());
-    }
+    add_sums(run, first, count, sums);
   }
   costs_.estimated += ends_.statistics().nodes - nodes_before;
-  return all;
+  GatheredParts none = none_yet();
+  return {light::joined(std::move(none.indirect), std::move(sums.indirect)),
+          light::joined(std::move(none.direct), std::move(sums.direct)), std::move(sums.distance)};
 }
 
 GatheredParts IrradianceGather::none_yet() const {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <numeric>
 
 #include "common/ascii_text.hpp"
+#include "common/touched_memory.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/statistics.hpp"
@@ -110,13 +112,11 @@ std::vector<MissingCell> LightMaps::missing_cells(const PrimaryHits& hits,
     std::sort(own.cells.begin(), own.cells.end());
     own.cells.erase(std::unique(own.cells.begin(), own.cells.end()), own.cells.end());
   });
-  std::vector<MissingCell> cells;
-  pending.clear();
-  for (const Found& own : found) {
-    cells.insert(cells.end(), own.cells.begin(), own.cells.end());
-    pending.insert(pending.end(), own.hits.begin(), own.hits.end());
-  }
-  std::sort(cells.begin(), cells.end());
+  pending = joined(
+      tasks, [&](std::size_t task) -> const auto& { return found[task].hits; });
+  std::vector<MissingCell> cells = joined(
+      tasks, [&](std::size_t task) -> const auto& { return found[task].cells; });
+  tbb::parallel_sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
 }
@@ -163,14 +163,17 @@ void LightMaps::value(std::span<const NodeCoordinates> nodes, const Progress& pr
 void LightMaps::append(LightTable light, const PrimaryHits& at,
                        std::span<const NodeCoordinates> nodes) {
   light.radiance.clear();
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
+  const std::size_t before = points_.size();
+  together_.resize(before + nodes.size());
+  points_.resize(before + nodes.size());
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t node) {
     double sum = 0;
     light.for_each(node, [&](std::size_t layer, std::size_t i) {
       sum += parameters_.powers[layer] * luminance(glm::dvec3(light.irradiance[i]));
     });
-    together_.push_back(static_cast<float>(sum));
-    points_.push_back({at.position[node], at.oriented_face[node]});
-  }
+    together_[before + node] = static_cast<float>(sum);
+    points_[before + node] = {at.position[node], at.oriented_face[node]};
+  });
   values_.append(std::move(light));
   coordinates_.insert(coordinates_.end(), nodes.begin(), nodes.end());
   seen_by_middle_.resize(points_.size(), unknown);

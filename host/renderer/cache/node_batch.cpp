@@ -12,7 +12,9 @@ namespace photile::cache {
 PrimaryHits node_points(const Scene& scene, Charts& charts, std::span<const NodeCoordinates> nodes,
                         int levels, bool glossy) {
   std::vector<std::uint32_t> used;
-  for (const NodeCoordinates& node : nodes) used.push_back(node.chart);
+  for (const NodeCoordinates& node : nodes) {
+    if (used.empty() || used.back() != node.chart) used.push_back(node.chart);
+  }
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   tbb::parallel_for(std::size_t{0}, used.size(), [&](std::size_t i) { charts.prepare(used[i]); });
@@ -149,20 +151,15 @@ NodeIndex add_surroundings(const Lattices& lattices, const NodeSource::Surroundi
 /// Links of the coarse positions, and of the finer ones that are nodes, to those that are there.
 void link(const Lattices& lattices, const NodeSource::Surroundings& surroundings,
           std::span<const NodeCoordinates> coordinates, const NodeIndex& index, NodeBatch& batch) {
-  std::vector<std::vector<std::uint32_t>> links(coordinates.size());
-  tbb::parallel_for(std::size_t{0}, coordinates.size(), [&](std::size_t i) {
+  const auto write = [&](std::size_t i, std::vector<std::uint32_t>& links) {
     if (!batch.coarse[i] && i >= batch.nodes) return;
     const int window = batch.coarse[i] ? surroundings.window : surroundings.fine_window;
     lattices.around(coordinates[i], window, window, [&](const NodeCoordinates& at) {
       const auto entry = index.find(at);
-      if (entry != index.end() && entry->second != i) links[i].push_back(entry->second);
+      if (entry != index.end() && entry->second != i) links.push_back(entry->second);
     });
-  });
-  batch.first_neighbour.push_back(0);
-  for (const std::vector<std::uint32_t>& to : links) {
-    batch.neighbour.insert(batch.neighbour.end(), to.begin(), to.end());
-    batch.first_neighbour.push_back(static_cast<std::uint32_t>(batch.neighbour.size()));
-  }
+  };
+  batch.neighbours = index_rows_by_tasks(coordinates.size(), write);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/index_rows.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/light_table.hpp"
 #include "photile/progress.hpp"
@@ -20,9 +21,9 @@ struct NodeBatch {
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its position alone, below 2^48
   std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
-  /// Point i of the coarsest lattice, or node i, is linked to neighbour[first_neighbour[i] ..
-  /// first_neighbour[i + 1]), others to none. Empty without surroundings.
-  std::vector<std::uint32_t> first_neighbour, neighbour;
+  /// The neighbours of points of the coarsest lattice and of nodes; others have none. Empty without
+  /// surroundings.
+  IndexRows neighbours;
 };
 
 /// The light of a batch's nodes.

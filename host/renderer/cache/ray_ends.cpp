@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
+#include "common/touched_memory.hpp"
 #include "light/light_at_points.hpp"
 #include "trace/hit_batch.hpp"
 #include "trace/surface.hpp"
@@ -34,12 +35,15 @@ std::vector<std::uint8_t> weigh(RayEnds& ends) {
 /// In the order of the ends that are chosen.
 PrimaryHits hits_of(const trace::EyeRecord& ray_hits, std::span<const std::uint32_t> chosen) {
   trace::EyeRecord record;
-  for (const std::uint32_t end : chosen) {
-    record.hits.push_back(ray_hits.hits[end]);
-    if (!ray_hits.glossy.empty()) record.glossy.push_back(ray_hits.glossy[end]);
-  }
-  std::vector<trace::HitIndex> indices;
-  for (std::uint32_t i = 0; i < chosen.size(); ++i) indices.push_back({0, i});
+  record.hits.resize(chosen.size());
+  record.glossy.resize(ray_hits.glossy.empty() ? 0 : chosen.size());
+  std::vector<trace::HitIndex> indices(chosen.size());
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(chosen.size()),
+                    [&](std::uint32_t i) {
+                      record.hits[i] = ray_hits.hits[chosen[i]];
+                      if (!record.glossy.empty()) record.glossy[i] = ray_hits.glossy[chosen[i]];
+                      indices[i] = {0, i};
+                    });
   return trace::hits_at({&record, 1}, indices);
 }
 
@@ -77,36 +81,30 @@ RayEnds light_at_ends(trace::HemisphereRays rays, light::LightAtPoints& photons,
       .rays = std::move(rays), .weight = {}, .slot = {}, .found = {}, .light = {}, .nodes = {}};
   const trace::EyeRecord& ray_hits = ends.rays.ray_hits;
   std::vector<std::uint8_t> is_found = weigh(ends);
-  PrimaryHits served;
-  for (std::size_t end = 0; end < is_found.size(); ++end) {
-    if (is_found[end]) continue;
-    served.position.push_back(ray_hits.hits[end].position);
-    served.oriented_face.push_back(ray_hits.hits[end].oriented_face);
-  }
-  LightMaps::Around around = maps.around(served, progress);
-
-  std::vector<std::uint32_t> chosen;
-  std::size_t next = 0, kept = 0;
+  const std::vector<std::uint32_t> served =
+      numbers_where(is_found.size(), [&](std::uint32_t end) { return is_found[end] == 0; });
+  PrimaryHits on_maps;
+  on_maps.position.resize(served.size());
+  on_maps.oriented_face.resize(served.size());
+  tbb::parallel_for(std::size_t{0}, served.size(), [&](std::size_t i) {
+    on_maps.position[i] = ray_hits.hits[served[i]].position;
+    on_maps.oriented_face[i] = ray_hits.hits[served[i]].oriented_face;
+  });
+  LightMaps::Around around = maps.around(on_maps, progress);
+  tbb::parallel_for(std::size_t{0}, served.size(), [&](std::size_t i) {
+    if (around.seen[i]) return;
+    is_found[served[i]] = 1;
+    ends.weight[served[i]] = ray_hits.hits[served[i]].throughput;
+  });
+  const std::vector<std::uint32_t> chosen =
+      numbers_where(is_found.size(), [&](std::uint32_t end) { return is_found[end] != 0; });
   ends.slot.resize(is_found.size());
-  for (std::uint32_t end = 0; end < is_found.size(); ++end) {
-    if (!is_found[end]) {
-      const std::size_t own = next++;
-      if (around.seen[own]) {
-        around.nodes[kept] = around.nodes[own];
-        ends.slot[end] = static_cast<std::uint32_t>(kept++);
-        continue;
-      }
-      is_found[end] = 1;
-      ends.weight[end] = ray_hits.hits[end].throughput;
-    }
-    ends.slot[end] = static_cast<std::uint32_t>(chosen.size());
-    chosen.push_back(end);
-  }
-  around.nodes.resize(kept);
+  tbb::parallel_for(std::size_t{0}, served.size(), [&](std::size_t i) {
+    ends.slot[served[i]] = static_cast<std::uint32_t>(chosen.size() + i);
+  });
+  tbb::parallel_for(std::size_t{0}, chosen.size(),
+                    [&](std::size_t i) { ends.slot[chosen[i]] = static_cast<std::uint32_t>(i); });
   ends.nodes = std::move(around.nodes);
-  for (std::size_t end = 0; end < is_found.size(); ++end) {
-    if (!is_found[end]) ends.slot[end] += static_cast<std::uint32_t>(chosen.size());
-  }
   if (!chosen.empty() || maps.processes()) {
     ends.found = hits_of(ray_hits, chosen);
     ends.light = photons.at(ends.found, progress);

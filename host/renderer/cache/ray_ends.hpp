@@ -22,7 +22,7 @@ struct RayEnds {
   std::vector<std::uint32_t> slot;
   PrimaryHits found;                   ///< ends whose light was found where they are ...
   LightTable light;                    ///< ... and that light: a row for each
-  std::vector<BilinearWeights> nodes;  ///< of the ends that read light maps
+  std::vector<BilinearWeights> nodes;  ///< of the ends that may read light maps
 
   /// Adds what the rays of a point of the run see; each of its batches has this many rays.
   ///   of_nodes   the light of the nodes

@@ -186,17 +186,20 @@ struct RunSums : RunLight {
 
 }  // namespace
 
-std::vector<GatheredParts> sums_of(const RunLight& run, std::size_t first, std::size_t count) {
+void add_sums(const RunLight& run, std::size_t first, std::size_t count, GatheredRuns& sums) {
   const RunSums light{run};
-  std::vector<GatheredParts> parts((count + gathering_points_per_task - 1) /
-                                   gathering_points_per_task);
+  const std::size_t before = sums.indirect.size(),
+                    parts = (count + gathering_points_per_task - 1) / gathering_points_per_task;
+  sums.indirect.resize(before + parts);
+  sums.direct.resize(before + parts);
+  sums.distance.resize(first + count);
   const SceneNeeds& needs = run.rays.needs();
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+  tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
     const trace::FlushDenormals flush_denormals;
-    GatheredParts& own = parts[part];
     const int batches = run.parameters.batches;
-    BatchSums indirect(needs, batches, false, own.indirect);
-    BatchSums direct(needs, batches, run.caustic_relative_variance > 0, own.direct);
+    LightTable& of_surfaces = sums.indirect[before + part];
+    BatchSums indirect(needs, batches, false, of_surfaces);
+    BatchSums direct(needs, batches, run.caustic_relative_variance > 0, sums.direct[before + part]);
     const std::size_t last = std::min(count, (part + 1) * gathering_points_per_task);
     for (std::size_t i = part * gathering_points_per_task; i < last; ++i) {
       if (needs.smooth_shading) {
@@ -207,12 +210,11 @@ std::vector<GatheredParts> sums_of(const RunLight& run, std::size_t first, std::
       light.add_indirect(i, indirect);
       indirect.end_point();
       const std::size_t row = i - part * gathering_points_per_task;
-      light.add_direct(i, first + i, own.indirect.total(row, run.layer_powers).luminance, direct);
+      light.add_direct(i, first + i, of_surfaces.total(row, run.layer_powers).luminance, direct);
       direct.end_point();
-      own.distance.push_back(light.distance(i));
+      sums.distance[first + i] = light.distance(i);
     }
   });
-  return parts;
 }
 
 }  // namespace photile::cache

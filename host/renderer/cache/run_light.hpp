@@ -29,7 +29,13 @@ struct RunLight {
   std::span<const double> layer_powers;
 };
 
-/// The light of the points of a run, in their order, in parts that tasks wrote.
-std::vector<GatheredParts> sums_of(const RunLight& run, std::size_t first, std::size_t count);
+/// The light of points, in parts that tasks wrote, in the order of the points.
+struct GatheredRuns {
+  std::vector<LightTable> indirect, direct;
+  std::vector<float> distance;  ///< per point
+};
+
+/// Appends the light of the points of a run.
+void add_sums(const RunLight& run, std::size_t first, std::size_t count, GatheredRuns& sums);
 
 }  // namespace photile::cache

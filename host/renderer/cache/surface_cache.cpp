@@ -12,6 +12,7 @@
 #include "cache/charts.hpp"
 #include "cache/gathered_nodes.hpp"
 #include "cache/node_mix.hpp"
+#include "common/touched_memory.hpp"
 #include "estimate/map_order.hpp"
 #include "light/light_at_points.hpp"
 #include "light/row_sum.hpp"
@@ -203,10 +204,15 @@ LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone
 SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progress& progress) {
   Reading reading{points, {}, {}, {}, {}, {}};
   auto& [_, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
-  for (std::uint32_t point = 0; point < points.size(); ++point) {
-    const bool is_coarse = !points.coarse.empty() && points.coarse[point] != 0;
-    (!serves(points, point) ? alone : is_coarse ? coarse : fine).push_back(point);
-  }
+  const auto that_are = [&](bool served, bool is_coarse) {
+    return numbers_where(points.size(), [&](std::uint32_t point) {
+      const bool coarse_one = !points.coarse.empty() && points.coarse[point] != 0;
+      return serves(points, point) == served && (!served || coarse_one == is_coarse);
+    });
+  };
+  alone = that_are(false, false);
+  fine = that_are(true, false);
+  coarse = that_are(true, true);
   const auto around = [&](std::span<const std::uint32_t> part, LightMaps& maps, int levels) {
     if (part.size() == points.size()) return maps.around(points, progress, levels);
     if (part.empty() && !maps.processes()) return LightMaps::Around{};
@@ -240,10 +246,10 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
 }
 
 void SurfaceCache::count_errors(std::span<const BilinearWeights> nodes) {
-  for (const BilinearWeights& bilinear : nodes) {
-    const double error = maps_.relative_error(bilinear);
-    errors_read_.squares += error * error;
-  }
+  std::vector<double> errors(nodes.size());
+  tbb::parallel_for(std::size_t{0}, nodes.size(),
+                    [&](std::size_t i) { errors[i] = maps_.relative_error(nodes[i]); });
+  for (const double error : errors) errors_read_.squares += error * error;
   errors_read_.hits += nodes.size();
 }
 

@@ -1,10 +1,13 @@
-// Large vectors whose memory all cores touch first, and memory that is given back.
+// Large vectors that all cores write, whose memory they touch first, and memory that is given back.
 #pragma once
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #if defined(__GLIBC__)  // which the headers above define
@@ -29,6 +32,35 @@ std::vector<T> touched_vector(std::size_t count) {
                     });
   values.resize(count);
   return values;
+}
+
+/// The values of parts, one part after the other.
+///   part_of   (i) returns a reference to part i, a vector
+template <class PartOf>
+auto joined(std::size_t count, const PartOf& part_of) {
+  std::vector<std::size_t> first{0};
+  for (std::size_t i = 0; i < count; ++i) first.push_back(first.back() + part_of(i).size());
+  using Value = typename std::decay_t<decltype(part_of(0))>::value_type;
+  std::vector<Value> all = touched_vector<Value>(first.back());
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    std::copy(part_of(i).begin(), part_of(i).end(), all.data() + first[i]);
+  });
+  return all;
+}
+
+/// The numbers below `count` for which is(number) holds, ascending.
+template <class Is>
+std::vector<std::uint32_t> numbers_where(std::size_t count, const Is& is) {
+  constexpr std::size_t per_task = 4096;
+  std::vector<std::vector<std::uint32_t>> found((count + per_task - 1) / per_task);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
+    const std::size_t end = std::min(count, (task + 1) * per_task);
+    for (std::size_t i = task * per_task; i < end; ++i) {
+      if (is(static_cast<std::uint32_t>(i))) found[task].push_back(static_cast<std::uint32_t>(i));
+    }
+  });
+  return joined(
+      found.size(), [&](std::size_t task) -> const auto& { return found[task]; });
 }
 
 /// Gives back to the system what threads have freed: glibc keeps it for each thread apart, where

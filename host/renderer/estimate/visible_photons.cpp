@@ -7,6 +7,7 @@
 #include <glm/gtc/constants.hpp>
 #include <optional>
 
+#include "common/touched_memory.hpp"
 #include "light/light_at_points.hpp"
 #include "photile/communicator.hpp"
 #include "photile/defaults.hpp"
@@ -70,10 +71,10 @@ VisiblePhotons::VisiblePhotons(const RayScene& rays, const Photons& photons, Den
       position_(photons.position),
       oriented_face_(photons.oriented_face),
       light_(photons.light) {
-  flux_.reserve(photons.size());
-  for (const glm::vec3& flux : photons.flux) {
-    flux_.push_back(static_cast<float>(luminance(glm::dvec3(flux))));
-  }
+  flux_.resize(photons.size());
+  tbb::parallel_for(std::size_t{0}, flux_.size(), [&](std::size_t i) {
+    flux_[i] = static_cast<float>(luminance(glm::dvec3(photons.flux[i])));
+  });
   find_cavities(radius, photons.of_all.get());
 }
 
@@ -107,11 +108,7 @@ std::vector<std::uint32_t> VisiblePhotons::beside_something(const PrimaryHits& h
                                   here.position - flat * reach * here.normal);
     if (!chosen[hit]) chosen[hit] = is_before_cavity(here, reach);
   });
-  std::vector<std::uint32_t> result;
-  for (std::uint32_t hit = 0; hit < hits.size(); ++hit) {
-    if (chosen[hit]) result.push_back(hit);
-  }
-  return result;
+  return numbers_where(chosen.size(), [&](std::uint32_t hit) { return chosen[hit] != 0; });
 }
 
 /// Processes judge the faces all of whose photons they have, and tell each other: what a face hides

@@ -1,12 +1,16 @@
 #include "photile/light_table.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
+#include "common/touched_memory.hpp"
+#include "light/row_sum.hpp"
 #include "light/table_bytes.hpp"
 #include "photile/defaults.hpp"
 
@@ -14,12 +18,14 @@ namespace photile {
 namespace {
 
 void append_entries(LightTable& to, const LightTable& from, LightTable::Entries entries) {
+  tbb::task_group columns;
   light::for_each_column(to, from, [&](auto& column, const auto& values, std::size_t width) {
     if (values.empty()) return;
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(entries.first * width);
-    const auto end = values.begin() + static_cast<std::ptrdiff_t>(entries.last * width);
-    column.insert(column.end(), begin, end);
+    columns.run([&column, &values, first = entries.first * width, last = entries.last * width] {
+      column.insert(column.end(), values.data() + first, values.data() + last);
+    });
   });
+  columns.wait();
 }
 
 /// The variance of the mean of independent values.
@@ -67,6 +73,34 @@ void LightTable::append(LightTable more) {
   for (std::size_t row = 1; row < more.first.size(); ++row) {
     first.push_back(before + more.first[row]);
   }
+}
+
+LightTable light::joined(LightTable none, std::vector<LightTable> parts) {
+  if (parts.size() == 1) return std::move(parts.front());
+  LightTable all = std::move(none);
+  std::vector<std::size_t> rows{0}, entries{0};
+  for (const LightTable& part : parts) {
+    rows.push_back(rows.back() + part.rows());
+    entries.push_back(entries.back() + part.irradiance.size());
+  }
+  for (const LightTable& part : parts) {
+    for_each_column(all, part, [&](auto& column, const auto& values, std::size_t width) {
+      if (values.empty() || !column.empty()) return;
+      using Value = typename std::decay_t<decltype(column)>::value_type;
+      column = touched_vector<Value>(entries.back() * width);
+    });
+  }
+  if (all.sparse()) all.first.resize(rows.back() + 1);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+    const LightTable part = std::move(parts[i]);
+    for_each_column(all, part, [&](auto& column, const auto& values, std::size_t width) {
+      std::copy(values.begin(), values.end(), column.data() + entries[i] * width);
+    });
+    for (std::size_t row = 1; row < part.first.size(); ++row) {
+      all.first[rows[i] + row] = entries[i] + part.first[row];
+    }
+  });
+  return all;
 }
 
 LightTable LightTable::gathered(std::span<const std::uint32_t> at) const {
@@ -142,41 +176,44 @@ LightTable::Total LightTable::total(std::size_t row, std::span<const double> pow
 }
 
 LightTable sum_of(const LightTable& a, const LightTable& b, float share_a, float share_b) {
-  LightTable sum(a.lights, a.sparse());
-  sum.batches = a.batches;
+  constexpr std::size_t rows_per_task = 256;
+  LightTable none(a.lights, a.sparse());
+  none.batches = a.batches;
   const bool shared = !a.shared_variance.empty() || !b.shared_variance.empty();
   const bool smooth = !a.by_normal.empty() || !b.by_normal.empty();
   const auto count = static_cast<std::size_t>(a.batches);
-  std::vector<std::size_t> entry_of(a.lights);
-  for (std::size_t row = 0; row < a.rows(); ++row) {
-    const std::size_t first = sum.irradiance.size(), of_none = first + a.lights;
-    entry_of.assign(a.lights, of_none);
-    const auto add = [&](const LightTable& part, float share) {
-      part.for_each(row, [&](std::size_t layer, std::size_t entry) {
-        if (entry_of[layer] == of_none) {
-          entry_of[layer] = sum.irradiance.size();
-          sum.irradiance.emplace_back(0.0f);
-          if (smooth) sum.by_normal.emplace_back(0.0f);
-          sum.batch.resize(sum.batch.size() + count, 0.0f);
-          if (sum.sparse()) sum.light.push_back(static_cast<std::uint16_t>(layer));
-          if (shared) sum.shared_variance.push_back(0);
-        }
-        const std::size_t to = entry_of[layer];
-        sum.irradiance[to] += share * part.irradiance[entry];
-        if (smooth) sum.by_normal[to] += share * part.by_normal[entry];
-        for (std::size_t b = 0; b < count; ++b) {
-          sum.batch[to * count + b] += share * part.batch[entry * count + b];
-        }
-        if (!part.shared_variance.empty()) {
-          sum.shared_variance[to] += share * share * part.shared_variance[entry];
-        }
-      });
-    };
-    add(a, share_a);
-    add(b, share_b);
-    if (sum.sparse()) sum.first.push_back(sum.irradiance.size());
-  }
-  return sum;
+  const auto write = [&](std::size_t begin, std::size_t end, LightTable& sum) {
+    std::vector<std::size_t> entry_of(a.lights);
+    for (std::size_t row = begin; row < end; ++row) {
+      const std::size_t first = sum.irradiance.size(), of_none = first + a.lights;
+      entry_of.assign(a.lights, of_none);
+      const auto add = [&](const LightTable& part, float share) {
+        part.for_each(row, [&](std::size_t layer, std::size_t entry) {
+          if (entry_of[layer] == of_none) {
+            entry_of[layer] = sum.irradiance.size();
+            sum.irradiance.emplace_back(0.0f);
+            if (smooth) sum.by_normal.emplace_back(0.0f);
+            sum.batch.resize(sum.batch.size() + count, 0.0f);
+            if (sum.sparse()) sum.light.push_back(static_cast<std::uint16_t>(layer));
+            if (shared) sum.shared_variance.push_back(0);
+          }
+          const std::size_t to = entry_of[layer];
+          sum.irradiance[to] += share * part.irradiance[entry];
+          if (smooth) sum.by_normal[to] += share * part.by_normal[entry];
+          for (std::size_t b = 0; b < count; ++b) {
+            sum.batch[to * count + b] += share * part.batch[entry * count + b];
+          }
+          if (!part.shared_variance.empty()) {
+            sum.shared_variance[to] += share * share * part.shared_variance[entry];
+          }
+        });
+      };
+      add(a, share_a);
+      add(b, share_b);
+      if (sum.sparse()) sum.first.push_back(sum.irradiance.size());
+    }
+  };
+  return light::rows_by_tasks(a.rows(), rows_per_task, none, write);
 }
 
 }  // namespace photile

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "light/table_bytes.hpp"
 #include "photile/light_table.hpp"
 
 namespace photile::light {
@@ -104,9 +105,7 @@ LightTable rows_by_tasks(std::size_t count, std::size_t rows_per_task, const Lig
     const std::size_t first = part * rows_per_task;
     write(first, std::min(count, first + rows_per_task), parts[part]);
   });
-  LightTable all = none;
-  for (LightTable& part : parts) all.append(std::move(part));
-  return all;
+  return joined(none, std::move(parts));
 }
 
 }  // namespace photile::light

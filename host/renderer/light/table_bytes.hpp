@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "common/byte_stream.hpp"
 #include "photile/light_table.hpp"
@@ -19,6 +20,10 @@ void for_each_column(A& a, B& b, const Visit& visit) {
   visit(a.shared_variance, b.shared_variance, std::size_t{1});
   visit(a.light, b.light, std::size_t{1});
 }
+
+/// The rows of all parts, one part after the other; `none`, which has no rows, where there are no
+/// parts. All are of one form.
+LightTable joined(LightTable none, std::vector<LightTable> parts);
 
 /// Adds the rows of a table.
 inline void put(const LightTable& rows, ByteWriter& bytes) {

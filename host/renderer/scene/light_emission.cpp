@@ -1,5 +1,7 @@
 #include "scene/light_emission.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -91,15 +93,19 @@ glm::dvec3 textured_radiance(const Scene& scene, const Light& light,
 
 EmissionCells::EmissionCells(const Scene& scene, const Light& light) : light_(&light) {
   double area = 0;
-  std::vector<double> bright;  // luminance of each cell
+  std::vector<glm::dvec3> means;  // of the cells of a triangle
+  std::vector<double> bright;     // luminance of each cell
   for (const std::uint32_t triangle : light.triangles) {
     const std::uint32_t n = cuts_of(scene, light, triangle);
     const double whole = triangle_area(scene, triangle);
     const double cell_area = whole / (static_cast<double>(n) * n);
     triangles_.push_back({n, bright.size(), cell_area});
     area += whole;
-    for (std::size_t i = 0; i < std::size_t{n} * n; ++i) {
-      const glm::dvec3 mean = mean_radiance(scene, light, triangle, Cell::at(i, n), n);
+    means.resize(std::size_t{n} * n);
+    tbb::parallel_for(std::size_t{0}, means.size(), [&](std::size_t i) {
+      means[i] = mean_radiance(scene, light, triangle, Cell::at(i, n), n);
+    });
+    for (const glm::dvec3& mean : means) {
       bright.push_back(luminance(mean));
       integral_ += cell_area * mean;
     }
@@ -113,12 +119,12 @@ EmissionCells::EmissionCells(const Scene& scene, const Light& light) : light_(&l
     }
   }
   const std::size_t fractions = std::bit_ceil(weight_up_to_.size());
-  for (std::size_t fraction = 0; fraction < fractions; ++fraction) {
-    first_of_fraction_.push_back(
+  first_of_fraction_.resize(fractions + 1, static_cast<std::uint32_t>(weight_up_to_.size()));
+  tbb::parallel_for(std::size_t{0}, fractions, [&](std::size_t fraction) {
+    first_of_fraction_[fraction] =
         first_beyond(0, weight_up_to_.size(),
-                     static_cast<double>(fraction) / static_cast<double>(fractions) * sum));
-  }
-  first_of_fraction_.push_back(static_cast<std::uint32_t>(weight_up_to_.size()));
+                     static_cast<double>(fraction) / static_cast<double>(fractions) * sum);
+  });
 }
 
 std::uint32_t EmissionCells::first_beyond(std::size_t first, std::size_t last,

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/touched_memory.hpp"
 #include "photile/device/surface.h"
 
 namespace photile::surface {
@@ -160,9 +161,8 @@ CoplanarRegions find_coplanar_regions(const SurfaceMesh& mesh, double radius,
     for (const std::uint32_t t : members) regions.of_triangle[t] = members.front();
     borders[i] = std::move(own);
   });
-  for (const std::vector<BorderEdge>& own : borders) {
-    regions.borders.insert(regions.borders.end(), own.begin(), own.end());
-  }
+  regions.borders = joined(
+      borders.size(), [&](std::size_t i) -> const auto& { return borders[i]; });
   return regions;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "common/touched_memory.hpp"
 #include "geometry/disjoint_sets.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "surface/boundary_edges.hpp"
@@ -14,17 +15,13 @@ namespace photile::surface {
 
 namespace {
 
-/// The parts of several tasks, one after the other.
-template <class Value>
-void append_all(const std::vector<std::vector<Value>>& parts, std::vector<Value>& all) {
-  for (const std::vector<Value>& part : parts) all.insert(all.end(), part.begin(), part.end());
-}
-
 void join_along_edges(const SurfaceMesh& mesh, const BoundaryEdges& edges, double cos_angle,
-                      std::vector<Connection>& connections) {
+                      std::vector<std::vector<Connection>>& connected) {
   constexpr std::size_t edges_per_task = 1024;
-  std::vector<std::vector<Connection>> found((edges.size() + edges_per_task - 1) / edges_per_task);
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
+  const std::size_t tasks = (edges.size() + edges_per_task - 1) / edges_per_task;
+  connected.resize(connected.size() + tasks);
+  const std::span found = std::span(connected).last(tasks);
+  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     const auto connect = [&](const BoundaryEdge& edge, const BoundaryEdge& other) {
       const std::uint32_t a = edge.triangle, b = other.triangle;
       if (mesh.stores(a) != mesh.stores(b)) return;
@@ -37,7 +34,6 @@ void join_along_edges(const SurfaceMesh& mesh, const BoundaryEdges& edges, doubl
     for (std::size_t i = task * edges_per_task; i < last; ++i)
       edges.visit_along(static_cast<std::uint32_t>(i), connect);
   });
-  append_all(found, connections);
 }
 
 /// Edges that more triangles share are those of fans: not all pairs are looked at.
@@ -114,12 +110,11 @@ std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
       }
     });
   });
-  std::vector<Connection> connections;
-  std::vector<BoundaryEdge> boundary;
-  append_all(connected, connections);
-  append_all(alone, boundary);
-  join_along_edges(mesh, BoundaryEdges(std::move(boundary), 1e-3 * radius), cos_angle, connections);
-  return connections;
+  std::vector<BoundaryEdge> boundary = joined(
+      alone.size(), [&](std::size_t i) -> const auto& { return alone[i]; });
+  join_along_edges(mesh, BoundaryEdges(std::move(boundary), 1e-3 * radius), cos_angle, connected);
+  return joined(
+      connected.size(), [&](std::size_t i) -> const auto& { return connected[i]; });
 }
 
 SmoothComponents join_components(const SurfaceMesh& mesh, std::span<const Connection> connections,

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <glm/gtc/constants.hpp>
 
+#include "common/touched_memory.hpp"
 #include "geometry/disjoint_sets.hpp"
 #include "photile/device/surface.h"
 #include "surface/smooth_components.hpp"
@@ -211,8 +212,8 @@ std::vector<DarkPart> find_unlit_regions(const SurfaceMesh& mesh, const Photons&
     const bool answers = !photons.of_all || photons.of_all->own[s] != 0;
     if (answers && shared[s] == 0 && dark[s] == 0) finder.find_on(s, of_side[s]);
   });
-  std::vector<DarkPart> parts;
-  for (const auto& more : of_side) parts.insert(parts.end(), more.begin(), more.end());
+  std::vector<DarkPart> parts = joined(
+      sides, [&](std::size_t side) -> const auto& { return of_side[side]; });
   if (photons.of_all) parts = photons.of_all->processes->gather_values<DarkPart>(parts);
   if (!photons.of_all && hidden.empty()) return parts;
   parts.insert(parts.end(), hidden.begin(), hidden.end());

@@ -1,11 +1,14 @@
 #include "trace/hemisphere_rays.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
 #include <optional>
 
+#include "common/touched_memory.hpp"
 #include "photile/defaults.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/hot_spots.hpp"
@@ -321,39 +324,29 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
 
 HemisphereRays join(std::vector<TaskHits> tasks) {
   HemisphereRays all;
-  all.first.push_back(0);
-  all.first_emission.push_back(0);
-  all.first_direct.push_back(0);
-  std::vector<std::size_t> first_of;
-  const auto extend = [](std::vector<std::size_t>& first, const std::vector<std::size_t>& counts) {
-    for (const std::size_t count : counts) first.push_back(first.back() + count);
+  const auto of_tasks = [&](auto TaskHits::*array) {
+    return joined(
+        tasks.size(), [&](std::size_t i) -> const auto& { return tasks[i].*array; });
   };
-  for (const TaskHits& task : tasks) {
-    first_of.push_back(all.first.back());
-    extend(all.first, task.count);
-    extend(all.first_emission, task.emission_count);
-    extend(all.first_direct, task.direct_count);
-    const auto append = [](auto& to, const auto& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.ray_hits.emission, task.ray_hits.emission);
-    append(all.ray_hits.direct, task.ray_hits.direct);
-    append(all.inverse_distances, task.inverse_distances);
-    append(all.direction, task.direction);
-    all.ray_hits.rays += task.ray_hits.rays;
-  }
-  all.ray_hits.hits.resize(all.first.back());
-  const bool glossy = std::any_of(tasks.begin(), tasks.end(), [](const TaskHits& task) {
-    return !task.ray_hits.glossy.empty();
-  });
-  if (glossy) all.ray_hits.glossy.resize(all.first.back());
-  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t task) {
-    const EyeRecord& ray_hits = tasks[task].ray_hits;
-    const auto at = static_cast<std::ptrdiff_t>(first_of[task]);
-    std::copy(ray_hits.hits.begin(), ray_hits.hits.end(), all.ray_hits.hits.begin() + at);
-    if (glossy)
-      std::copy(ray_hits.glossy.begin(), ray_hits.glossy.end(), all.ray_hits.glossy.begin() + at);
-  });
+  const auto join_hits = [&](auto EyeRecord::*array) {
+    all.ray_hits.*array = joined(
+        tasks.size(), [&](std::size_t i) -> const auto& { return tasks[i].ray_hits.*array; });
+  };
+  const auto first_of = [&](std::vector<std::size_t> TaskHits::*counts) {
+    std::vector<std::size_t> first = of_tasks(counts);
+    first.push_back(0);
+    std::exclusive_scan(first.begin(), first.end(), first.begin(), std::size_t{0});
+    return first;
+  };
+  tbb::parallel_invoke([&] { join_hits(&EyeRecord::hits); }, [&] { join_hits(&EyeRecord::glossy); },
+                       [&] { join_hits(&EyeRecord::direct); },
+                       [&] { join_hits(&EyeRecord::emission); },
+                       [&] { all.direction = of_tasks(&TaskHits::direction); },
+                       [&] { all.inverse_distances = of_tasks(&TaskHits::inverse_distances); });
+  all.first = first_of(&TaskHits::count);
+  all.first_emission = first_of(&TaskHits::emission_count);
+  all.first_direct = first_of(&TaskHits::direct_count);
+  for (const TaskHits& task : tasks) all.ray_hits.rays += task.ray_hits.rays;
   return all;
 }
 

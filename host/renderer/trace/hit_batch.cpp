@@ -3,8 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 
+#include "common/touched_memory.hpp"
 #include "geometry/radix_sort.hpp"
 #include "photile/light_layers.hpp"
 
@@ -70,9 +72,13 @@ std::vector<HitIndex> sorted_indices(std::span<const EyeRecord> records, const g
 PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitIndex> indices) {
   const bool glossy = std::any_of(records.begin(), records.end(),
                                   [](const EyeRecord& record) { return !record.glossy.empty(); });
-  const bool split = std::any_of(records.begin(), records.end(), [](const EyeRecord& record) {
-    return std::any_of(record.hits.begin(), record.hits.end(),
-                       [](const EyeHit& hit) { return hit.fraction != 1.0f; });
+  std::atomic<bool> split = false;
+  tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
+    const std::vector<EyeHit>& of_record = records[i].hits;
+    if (std::any_of(of_record.begin(), of_record.end(),
+                    [](const EyeHit& hit) { return hit.fraction != 1.0f; })) {
+      split = true;
+    }
   });
   PrimaryHits hits;
   hits.position.resize(indices.size());
@@ -105,16 +111,14 @@ PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
                          std::span<const std::uint32_t> map_of) {
   PrimaryHitBatch batch;
   const std::vector<std::uint32_t> layer_of = light_groups_of(rays.scene()).group_of;
-  for (const EyeRecord& row : rows) {
-    batch.rays += row.rays;
-    for (const VisibleEmission& seen : row.emission) {
-      batch.emission.push_back(seen);
-      batch.emission.back().light = layer_of[seen.light];
-    }
-  }
-  for (const EyeRecord& row : rows) {
-    batch.emission.insert(batch.emission.end(), row.direct.begin(), row.direct.end());
-  }
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t row) {
+    for (VisibleEmission& seen : rows[row].emission) seen.light = layer_of[seen.light];
+  });
+  for (const EyeRecord& row : rows) batch.rays += row.rays;
+  batch.emission = joined(
+      2 * rows.size(), [&](std::size_t i) -> const auto& {
+        return i < rows.size() ? rows[i].emission : rows[i - rows.size()].direct;
+      });
   // The scene's own box, not the batch's: the order of one pixel's hits, and so the sum the
   // renderer rounds, must not depend on how rows are split into batches.
   batch.hits = hits_at(rows, sorted_indices(rows, impl_of(rays).bounds, map_of));

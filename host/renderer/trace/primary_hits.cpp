@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "common/touched_memory.hpp"
 #include "common/value_range.hpp"
 #include "photile/errors.hpp"
 #include "photile/light_layers.hpp"
@@ -81,9 +82,10 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
 
   PrimaryHitBatch batch = trace::batch_of(ray_scene, std::move(rows), map_of);
   if (!lobe_rays) return batch;
-  for (const EyeRecord& row : reflected_rows) {
-    batch.lobes.insert(batch.lobes.end(), row.lobes.begin(), row.lobes.end());
-  }
+  batch.lobes = joined(
+      reflected_rows.size(), [&](std::size_t row) -> const auto& {
+        return reflected_rows[row].lobes;
+      });
   PrimaryHitBatch reflected = trace::batch_of(ray_scene, std::move(reflected_rows), map_of);
   batch.rays += reflected.rays;
   for (VisibleEmission& seen : reflected.emission) seen.illuminance = 0;  // of another surface
