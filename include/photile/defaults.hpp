@@ -156,6 +156,18 @@ inline constexpr float filter_shown_noise = 0.002f;
 /// Differences below this fraction of a pixel count as noise, even where none was measured.
 inline constexpr float filter_least_noise = 0.001f;
 
+// Edges
+/// Pixels that show an edge have this many samples, but at most so many times those of others: a
+/// sample at an edge errs by all that the surfaces differ.
+inline constexpr int edge_samples = 64, most_times_at_edges = 4;
+/// The first samples of a pixel, which tell whether it shows an edge; pixels of fewer samples are
+/// not asked.
+inline constexpr int edge_probes = 8;
+/// Two hits are of different surfaces where their normals differ by more than 10 degrees, where one
+/// lies above the plane of the other by more than this part of their distance, or where their
+/// colours differ by more than this part of the brighter one.
+inline constexpr float edge_cosine = 0.985f, edge_slope = 0.2f, edge_contrast = 0.25f;
+
 // Glass
 /// Fraction of a pixel's sample from which on reflection and refraction are both followed. Glass
 /// seen from the front reflects 0.04.

@@ -54,7 +54,8 @@ struct PrimaryHits {
   std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy
-  std::vector<float> fraction;  ///< of its sample, for its illuminance; empty where all are whole
+  /// Per hit: its part of a sample, for its illuminance; empty where all are whole.
+  std::vector<float> fraction;
   /// Whether a coarse estimate suffices, because its noise will not show
   /// (host/renderer/cache/reflection_noise.cpp); empty where it suffices for no hit.
   std::vector<std::uint8_t> coarse;
@@ -75,6 +76,9 @@ struct PrimaryHitParameters {
   int width = defaults::image_width;
   int height = defaults::image_height;
   int samples_per_pixel = defaults::samples_per_pixel;
+  /// Pixels that show an edge have this many times as many samples, each of which counts as a part
+  /// of one.
+  int times_at_edges = 1;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;
   /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.

@@ -245,6 +245,56 @@ TEST_CASE("A surface that is partly there parts rays, where it is not left to ch
   }
 }
 
+TEST_CASE("Pixels that show an edge have more samples, which count as much together") {
+  // The borders of a plate cross pixels; a border of two materials lies in the plane of the floor.
+  SceneBuilder builder;
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t other = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({-4, -4, 0}, {8, 0, 0}, {0, 4.8f, 0}, 3, grey);
+  builder.grid({-4, 0.8f, 0}, {8, 0, 0}, {0, 3.2f, 0}, 3, other);
+  builder.grid({-0.31f, -0.33f, 0.5f}, {0.6f, 0, 0}, {0, 0.7f, 0}, 1, grey);
+  const RayScene rays(builder.build());
+  constexpr int side = 32, samples = 8, times = 4;
+  struct Pixel {
+    int hits = 0;
+    double light = 0, fraction = 0, raised = 0, of_other = 0;
+    bool shows_edge() const { return raised * (1 - raised) > 0 || of_other * (1 - of_other) > 0; }
+  };
+  const auto pixels_of = [&](const PrimaryHitParameters& film) {
+    const PrimaryHits hits = trace_primary_hits(rays, camera_above(), film, 0, side).hits;
+    std::vector<Pixel> pixels(side * side);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      Pixel& pixel = pixels[hits.pixel[i]];
+      const double light = double{hits.throughput[i].x};
+      ++pixel.hits;
+      pixel.light += light;
+      pixel.fraction += hits.fraction.empty() ? 1.0 : double{hits.fraction[i]};
+      pixel.raised += hits.position[i].z > 0.25f ? light : 0.0;
+      pixel.of_other += hits.position[i].z < 0.25f && hits.position[i].y > 0.8f ? light : 0.0;
+    }
+    return pixels;
+  };
+  PrimaryHitParameters film{.width = side, .height = side, .samples_per_pixel = samples};
+  const std::vector<Pixel> usual = pixels_of(film);
+  film.times_at_edges = times;
+  const std::vector<Pixel> pixels = pixels_of(film);
+  film = {.width = side, .height = side, .samples_per_pixel = 1024};
+  const std::vector<Pixel> truth = pixels_of(film);
+  int edges = 0;
+  double error = 0, usual_error = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    CHECK(pixels[i].light == Approx(1).epsilon(1e-6));
+    CHECK(pixels[i].fraction == Approx(samples).epsilon(1e-6));
+    CHECK(pixels[i].hits == (usual[i].shows_edge() ? times * samples : samples));
+    if (!usual[i].shows_edge()) continue;
+    ++edges;
+    error += std::pow(pixels[i].raised - truth[i].raised, 2);
+    usual_error += std::pow(usual[i].raised - truth[i].raised, 2);
+  }
+  CHECK(edges > side);
+  CHECK(error < usual_error / times);
+}
+
 TEST_CASE("A lamp under water is seen from above by its radiance over the squared index") {
   const bool closed = GENERATE(false, true);  // the lamp is in the glass, or below it
   SceneBuilder builder;

@@ -227,6 +227,11 @@ PrimaryHitParameters RenderPlan::hits(const Film& film, int passes) const {
   PrimaryHitParameters hits = eye_rays(parameters);
   hits.samples_per_pixel = passes * ((film.samples_per_pixel - 1) / passes + 1);
   hits.passes = passes;
+  // Where light is read between nodes, a sample takes little time.
+  if (reads_light_maps() && hits.samples_per_pixel >= defaults::edge_probes) {
+    hits.times_at_edges = std::clamp(defaults::edge_samples / hits.samples_per_pixel, 1,
+                                     defaults::most_times_at_edges);
+  }
   hits.direct_rays = used_.direct_rays;  // as the photons are traced
   hits.lobe_rays = used_.gloss != GlossMode::photons;
   hits.split_at_glass = true;

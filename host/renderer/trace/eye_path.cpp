@@ -113,6 +113,24 @@ std::optional<SurfacePoint> meet(const RayScene::Impl& rays, EyeRay& ray,
   return std::nullopt;
 }
 
+/// Whether two rays met the same surface, which has about the same colour at both hits.
+bool is_one_surface(const Scene& scene, const EyeRecord& a, const EyeRecord& b) {
+  if (a.hits.empty() || b.hits.empty()) return a.hits.empty() && b.hits.empty();
+  const EyeHit &one = a.hits.front(), &other = b.hits.front();
+  const std::uint32_t triangle = triangle_of(one.oriented_face),
+                      beside = triangle_of(other.oriented_face);
+  if (scene.triangle_material[triangle] != scene.triangle_material[beside]) return false;
+  const glm::vec3 darker = glm::min(one.diffuse_albedo, other.diffuse_albedo),
+                  brighter = glm::max(one.diffuse_albedo, other.diffuse_albedo);
+  if (largest(brighter - darker) > defaults::edge_contrast * largest(brighter)) return false;
+  if (triangle == beside) return true;
+  const glm::vec3 normal(face_normal(scene, one.oriented_face)),
+      apart = other.position - one.position;
+  return glm::dot(normal, glm::vec3(face_normal(scene, other.oriented_face))) >
+             defaults::edge_cosine &&
+         std::abs(glm::dot(normal, apart)) <= defaults::edge_slope * glm::length(apart);
+}
+
 /// Makes `ray` the one that leaves a mirror or glass with this fraction of its light.
 void go_on(const Scene& scene, const SurfacePoint& point, const Scattered& scattered,
            float fraction, EyeRay& ray) {
@@ -223,24 +241,45 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
   }
 }
 
-void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record,
+namespace {
+
+/// A sample of a pixel of the film, and its ray from the eye.
+struct FilmSample {
+  std::uint32_t pixel, index;
+  std::uint64_t path;
+  RandomStream random, of_pixel;  ///< all samples of a pixel share the sequences of the latter
+  RandomBlock scramble;
+  EyeRay ray;  ///< its direction is 0 beyond the circle of a fisheye
+
+  FilmSample(const EyeSetup& setup, int x, int y, int sample, int times)
+      : pixel(static_cast<std::uint32_t>(y) * setup.parameters->width + x),
+        index(static_cast<std::uint32_t>(sample)),
+        path(std::uint64_t{pixel} * setup.parameters->samples_per_pixel *
+                 setup.parameters->times_at_edges +
+             index),
+        random(setup.parameters->seed, path, 0),
+        of_pixel(setup.parameters->seed, pixel, 0),
+        scramble(of_pixel.block(Purpose::film_position, 0)) {
+    const PrimaryHitParameters& film = *setup.parameters;
+    const glm::dvec2 at = glm::dvec2(x, y) + sobol_point(index, scramble);
+    // Samples beyond the usual ones go to the same runs, so that each run has its part of them.
+    const int run = sample % film.samples_per_pixel * film.runs / film.samples_per_pixel;
+    ray.origin = setup.eye + glm::vec3(setup.film->offset(at.x, at.y));
+    ray.direction = glm::vec3((*setup.film)(at.x, at.y));
+    ray.fraction = 1.0f / static_cast<float>(times);
+    ray.throughput = glm::vec3(ray.fraction / static_cast<float>(film.samples_per_pixel));
+    ray.pixel = pixel * static_cast<std::uint32_t>(film.runs) + static_cast<std::uint32_t>(run);
+  }
+};
+
+}  // namespace
+
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, int times, EyeRecord& record,
                     EyeRecord& reflected) {
   const PrimaryHitParameters& film = *setup.parameters;
-  const auto pixel = static_cast<std::uint32_t>(y) * film.width + x;
-  const std::uint64_t path = std::uint64_t{pixel} * film.samples_per_pixel + sample;
-  const RandomStream random(film.seed, path, 0);
-  // All samples of a pixel share their sequences.
-  const RandomStream of_pixel(film.seed, pixel, 0);
-  const auto index = static_cast<std::uint32_t>(sample);
-  const RandomBlock scramble = of_pixel.block(Purpose::film_position, 0);
-  const glm::dvec2 offset = sobol_point(index, scramble);
-  const auto sequence_position =
-      static_cast<std::uint32_t>(sample * film.runs / film.samples_per_pixel) +
-      pixel * static_cast<std::uint32_t>(film.runs);
-  const glm::vec3 direction((*setup.film)(x + offset.x, y + offset.y));
-  if (direction == glm::vec3(0.0f)) return;  // beyond the circle of a fisheye
-  EyeRay ray{setup.eye + glm::vec3(setup.film->offset(x + offset.x, y + offset.y)), direction,
-             glm::vec3(1.0f / static_cast<float>(film.samples_per_pixel)), sequence_position};
+  auto [pixel, index, path, random, of_pixel, scramble, ray] =
+      FilmSample(setup, x, y, sample, times);
+  if (ray.direction == glm::vec3(0.0f)) return;
   std::optional<LightSampleNumbers> light_samples;
   if (setup.direct) {
     light_samples.emplace(of_pixel, index * static_cast<std::uint32_t>(setup.direct->count));
@@ -266,6 +305,28 @@ void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& 
     ray = split->back();
     split->pop_back();
   }
+}
+
+bool shows_edge(const EyeSetup& setup, int x, int y, EyeRecord& record) {
+  EyeSetup surfaces_alone = setup;
+  surfaces_alone.emitted_radiance = nullptr;
+  surfaces_alone.direct = nullptr;
+  surfaces_alone.lobes = nullptr;
+  surfaces_alone.hot_spots = nullptr;
+  const Scene& scene = *setup.rays->scene;
+  EyeRecord first, other;
+  for (int sample = 0; sample < defaults::edge_probes; ++sample) {
+    const FilmSample probe(setup, x, y, sample, 1);
+    EyeRecord& own = sample == 0 ? first : other;
+    own.hits.clear();
+    own.glossy.clear();
+    if (probe.ray.direction != glm::vec3(0.0f)) {
+      follow_eye_ray(surfaces_alone, probe.ray, probe.random, own);
+    }
+    record.rays += std::exchange(own.rays, 0);
+    if (sample > 0 && !is_one_surface(scene, first, other)) return true;
+  }
+  return false;
 }
 
 namespace {

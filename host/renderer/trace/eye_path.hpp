@@ -93,7 +93,7 @@ struct EyeRay {
   int depth = 0;               ///< mirrors and glass so far
   bool unscattered = true;     ///< except by panes of thin glass, which light samples pass
   std::uint32_t cutouts = 0;   ///< that were looked at so far
-  float fraction = 1.0f;       ///< of its sample, where glass split it
+  float fraction = 1.0f;       ///< of a sample, where glass split it or its pixel has more of them
   const BesideHotSpots* beside = nullptr;  ///< null where no rays are aimed
 
   /// The factor from radiance that the ray meets to its start.
@@ -155,11 +155,17 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
                                      const LightSampleNumbers* light_samples = nullptr,
                                      std::vector<EyeRay>* split = nullptr);
 
-/// Traces sample `sample` of pixel (x, y) and appends what it sees.
+/// Traces sample `sample` of pixel (x, y), which has `times` times as many as others, and appends
+/// what it sees.
 ///   record      of the surface that the pixel sees
 ///   reflected   of those which lobes reflect
-void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, EyeRecord& record,
+void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, int times, EyeRecord& record,
                     EyeRecord& reflected);
+
+/// Whether a pixel shows an edge, or a border of a texture: whether what its first samples meet,
+/// over mirrors and through glass, is not one surface of about one colour. Adds the rays to
+/// `record`.
+bool shows_edge(const EyeSetup& setup, int x, int y, EyeRecord& record);
 
 /// Where a sample of a pixel has its random numbers from.
 struct PixelSample {

@@ -74,10 +74,14 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
     const trace::FlushDenormals flush_denormals;
     EyeRecord& row = rows[static_cast<std::size_t>(y - first_row)];
     EyeRecord& reflected = reflected_rows[static_cast<std::size_t>(y - first_row)];
-    for (int x = 0; x < parameters.width; ++x)
-      for (int sample = parameters.pass; sample < parameters.samples_per_pixel;
-           sample += parameters.passes)
-        trace::trace_eye_path(setup, x, y, sample, row, reflected);
+    for (int x = 0; x < parameters.width; ++x) {
+      const bool edge = parameters.times_at_edges > 1 && trace::shows_edge(setup, x, y, row);
+      const int times = edge ? parameters.times_at_edges : 1;
+      for (int sample = parameters.pass; sample < times * parameters.samples_per_pixel;
+           sample += parameters.passes) {
+        trace::trace_eye_path(setup, x, y, sample, times, row, reflected);
+      }
+    }
   });
 
   PrimaryHitBatch batch = trace::batch_of(ray_scene, std::move(rows), map_of);
