@@ -9,6 +9,7 @@
 #include "garbage.hpp"
 #include "instanced_scenes.hpp"
 #include "loading/scene_files.hpp"
+#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "pictures.hpp"
@@ -155,7 +156,9 @@ Scene gltf_room(const glm::dvec3& offset) {
 /// one weighs less than the 1e-3 by which pixels count as apart.
 LightLayers picture_of(const Scene& scene, const glm::dvec3& offset, LightMapMode light_maps) {
   RenderParameters parameters = one_pass_picture();
-  parameters.film.samples_per_pixel = 8;  // rounding moves single samples across edges
+  // Rounding moves single samples across edges. With fewer than defaults::edge_probes of them none
+  // decides how many more the pixel has.
+  parameters.film.samples_per_pixel = defaults::edge_probes - 1;
   parameters.light_maps = light_maps;
   if (light_maps == LightMapMode::on) {
     parameters.photons.emitted_photons *= 8;

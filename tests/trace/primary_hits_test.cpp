@@ -295,6 +295,27 @@ TEST_CASE("Pixels that show an edge have more samples, which count as much toget
   CHECK(error < usual_error / times);
 }
 
+TEST_CASE("Glass parts the rays of pixels with an edge as it parts those of others") {
+  SceneBuilder builder;
+  builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(glass(1.5f, true)));
+  builder.grid({-2, -2, 0}, {2, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({0, -2, 0}, {2, 0, 0}, {0, 4, 0}, 1, grey);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
+  PrimaryHitParameters film{.width = 1, .height = 1, .samples_per_pixel = 16};
+  film.times_at_edges = 4;
+  film.split_at_glass = true;
+  Camera camera = camera_above();
+  camera.vertical_field_of_view = 0.01;  // normal incidence
+  const PrimaryHits hits = trace_primary_hits(RayScene(builder.build()), camera, film, 0, 1).hits;
+  REQUIRE(hits.size() == 2 * 4 * 16);  // each sample sees the floor, and the ceiling in the pane
+  double reflected = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits.position[i].z > 2) reflected += double{hits.fraction[i]};
+  }
+  CHECK(reflected / 16 == Approx(2 * 0.04 / 1.04).epsilon(1e-3));
+}
+
 TEST_CASE("A lamp under water is seen from above by its radiance over the squared index") {
   const bool closed = GENERATE(false, true);  // the lamp is in the glass, or below it
   SceneBuilder builder;

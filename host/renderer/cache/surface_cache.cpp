@@ -110,9 +110,7 @@ class PointSums {
 
 }  // namespace
 
-double ErrorSum::mean() const {
-  return hits == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(hits));
-}
+double ErrorSum::mean() const { return weight > 0 ? std::sqrt(squares / weight) : 0.0; }
 
 SurfaceCache::SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
                            light::LightAtPoints& elsewhere, NodeSource& source, LightMaps* ends)
@@ -224,7 +222,7 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
   coarse_nodes = ends_ ? around(coarse, *ends_, LightMaps::all_levels).nodes
                        : around(coarse, maps_, coarsest_level).nodes;
   fill_time_ += stopwatch.taken();
-  if (!ends_) count_errors(coarse_nodes);
+  if (!ends_) count_errors(points, coarse, coarse_nodes);
   // Where photons value nodes they would say no more at a point which no node sees, and may have
   // to be traced first.
   if (ends_) {
@@ -241,16 +239,20 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
     fine_nodes.resize(kept);
     std::sort(alone.begin(), alone.end());
   }
-  count_errors(fine_nodes);
+  count_errors(points, fine, fine_nodes);
   return reading;
 }
 
-void SurfaceCache::count_errors(std::span<const BilinearWeights> nodes) {
+void SurfaceCache::count_errors(const PrimaryHits& points, std::span<const std::uint32_t> part,
+                                std::span<const BilinearWeights> nodes) {
   std::vector<double> errors(nodes.size());
   tbb::parallel_for(std::size_t{0}, nodes.size(),
                     [&](std::size_t i) { errors[i] = maps_.relative_error(nodes[i]); });
-  for (const double error : errors) errors_read_.squares += error * error;
-  errors_read_.hits += nodes.size();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double weight = points.fraction.empty() ? 1.0 : double{points.fraction[part[i]]};
+    errors_read_.squares += weight * errors[i] * errors[i];
+    errors_read_.weight += weight;
+  }
 }
 
 PhotonNoise SurfaceCache::photon_noise() const {

@@ -33,12 +33,11 @@ struct PhotonNoise {
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
                                         int runs, const PhotonNoise& noise);
 
-/// A sum of squared relative standard errors.
+/// A sum of squared relative standard errors, each times its weight.
 struct ErrorSum {
-  double squares = 0;
-  std::uint64_t hits = 0;
+  double squares = 0, weight = 0;
 
-  /// The root mean square; 0 where there are no hits.
+  /// The root mean square; 0 where there are none.
   double mean() const;
 };
 
@@ -93,7 +92,9 @@ class SurfaceCache : public light::LightAtPoints {
   enum class Coarse { between_nodes, found };
   LightTable rows(const Reading& reading, const LightTable& of_alone, const LightTable& of_nodes,
                   const LightTable& of_coarse, Coarse coarse_rows) const;
-  void count_errors(std::span<const BilinearWeights> nodes);
+  /// Of some of the points, between these nodes; each counts as the part of a sample that it is.
+  void count_errors(const PrimaryHits& points, std::span<const std::uint32_t> part,
+                    std::span<const BilinearWeights> nodes);
 
   const Scene& scene_;
   const SceneNeeds needs_;

@@ -230,7 +230,7 @@ void add_processes(Communicator& all, RenderCosts& costs) {
                        traffic.bytes,
                        memory,
                        std::bit_cast<std::uint64_t>(costs.light_map_errors.squares),
-                       costs.light_map_errors.hits};
+                       std::bit_cast<std::uint64_t>(costs.light_map_errors.weight)};
   using Counts = std::array<std::uint64_t, own.size()>;
   const auto of_ranks = all.gather_values<Counts>(std::span<const Counts>(&own, 1));
   Counts sum{}, most{};
@@ -243,9 +243,11 @@ void add_processes(Communicator& all, RenderCosts& costs) {
   costs.references = sum[0], costs.maps = sum[1], costs.normal_filtered_maps = sum[2],
   costs.largest_map = most[3];
   costs.rays = sum[4], costs.hit_count = sum[5];
-  costs.light_map_errors = {0, sum[14]};
-  for (const auto& rank : of_ranks)
+  costs.light_map_errors = {};
+  for (const auto& rank : of_ranks) {
     costs.light_map_errors.squares += std::bit_cast<double>(rank[13]);
+    costs.light_map_errors.weight += std::bit_cast<double>(rank[14]);
+  }
   const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
   const auto ratio = [](std::uint64_t a, std::uint64_t b) {
     return static_cast<double>(a) / static_cast<double>(std::max<std::uint64_t>(1, b));

@@ -137,7 +137,9 @@ std::vector<Setting> picture_rows() {
                                    "of the picture", not_kept, "", "pixels"),
       by_quality(row<&P::film, &Film::samples_per_pixel>(
                      "samples_per_pixel", hits, WholeNumbers{1, limits::max_samples_per_pixel},
-                     "primary rays per pixel, over all passes; at least one in each", not_kept),
+                     "primary rays per pixel, over all passes, at least one in each; from 8 on, "
+                     "pixels with edges have up to four times as many, 64 at most",
+                     not_kept),
                  8, 16, 64),
       row<&P::seed>("seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),

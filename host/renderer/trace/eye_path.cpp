@@ -23,7 +23,7 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
   found.clear();
   find_direct_light(setup.direct->rays, setup.direct->light_sampler, point, ray.direction, part,
                     setup.direct->count, samples, found);
-  const float weight = ray.fraction / static_cast<float>(setup.parameters->samples_per_pixel);
+  const float weight = ray.share() / static_cast<float>(setup.parameters->samples_per_pixel);
   for (const ReceivedLight& light : found) {
     record.direct.push_back({ray.pixel, light.layer, ray.radiance_weight() * light.radiance,
                              weight * static_cast<float>(luminance(light.irradiance))});
@@ -33,7 +33,7 @@ void add_direct_light(const EyeSetup& setup, const SurfacePoint& point, const Ey
 /// The light of hot spots at the hit that was appended last, as it reflects there.
 void add_hot_spots(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
                    ReflectedPart part, EyeRecord& record) {
-  const float weight = ray.fraction / static_cast<float>(setup.parameters->samples_per_pixel);
+  const float weight = ray.share() / static_cast<float>(setup.parameters->samples_per_pixel);
   for_each_hot_light(
       *setup.rays, *setup.hot_spots, point,
       [&](const LightSample& light, const glm::vec3& arrives) {
@@ -71,7 +71,7 @@ void drop_lobe(const glm::vec3& base, EyeRecord& record) {
 void append_lobe(const EyeSetup& setup, const EyeEnd& end, const OpaqueBsdf& bsdf,
                  EyeRecord& record) {
   const Scene& scene = *setup.rays->scene;
-  const float weight = end.ray.fraction / static_cast<float>(setup.parameters->samples_per_pixel);
+  const float weight = end.ray.share() / static_cast<float>(setup.parameters->samples_per_pixel);
   const PixelLobes seen{end.ray.pixel,
                         weight,
                         weight * end.point.position,
@@ -150,7 +150,7 @@ void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const Eye
                 EyeRecord& record) {
   const scene::Reflectance surface = reflectance(*rays.scene, point);
   record.hits.push_back({point.position, face_of_photons(*rays.scene, point), ray.pixel,
-                         ray.radiance_weight(), surface.albedo, ray.fraction});
+                         ray.radiance_weight(), surface.albedo, ray.share()});
   if (!rays.needs.glossy) return;
   const ShadingNormals normals = shading_normals(*rays.scene, point, ray.direction);
   record.glossy.push_back(
@@ -266,8 +266,8 @@ struct FilmSample {
     const int run = sample % film.samples_per_pixel * film.runs / film.samples_per_pixel;
     ray.origin = setup.eye + glm::vec3(setup.film->offset(at.x, at.y));
     ray.direction = glm::vec3((*setup.film)(at.x, at.y));
-    ray.fraction = 1.0f / static_cast<float>(times);
-    ray.throughput = glm::vec3(ray.fraction / static_cast<float>(film.samples_per_pixel));
+    ray.sample_share = 1.0f / static_cast<float>(times);
+    ray.throughput = glm::vec3(ray.sample_share / static_cast<float>(film.samples_per_pixel));
     ray.pixel = pixel * static_cast<std::uint32_t>(film.runs) + static_cast<std::uint32_t>(run);
   }
 };
@@ -315,13 +315,15 @@ bool shows_edge(const EyeSetup& setup, int x, int y, EyeRecord& record) {
   surfaces_alone.hot_spots = nullptr;
   const Scene& scene = *setup.rays->scene;
   EyeRecord first, other;
+  std::vector<EyeRay> lesser_parts;  // of rays that glass splits: left out
   for (int sample = 0; sample < defaults::edge_probes; ++sample) {
     const FilmSample probe(setup, x, y, sample, 1);
     EyeRecord& own = sample == 0 ? first : other;
     own.hits.clear();
     own.glossy.clear();
     if (probe.ray.direction != glm::vec3(0.0f)) {
-      follow_eye_ray(surfaces_alone, probe.ray, probe.random, own);
+      lesser_parts.clear();
+      follow_eye_ray(surfaces_alone, probe.ray, probe.random, own, nullptr, nullptr, &lesser_parts);
     }
     record.rays += std::exchange(own.rays, 0);
     if (sample > 0 && !is_one_surface(scene, first, other)) return true;
@@ -385,8 +387,9 @@ void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, 
     if (!(light_sample.direction.uniform(choice_word) < survival)) return;
     weight /= survival;
     left *= weight;
-    const EyeRay ray{end.point.origin_towards(*direction), *direction, end.ray.throughput * weight,
-                     end.ray.pixel, end.ray.radiance_factor};
+    EyeRay ray{end.point.origin_towards(*direction), *direction, end.ray.throughput * weight,
+               end.ray.pixel, end.ray.radiance_factor};
+    ray.sample_share = end.ray.sample_share;
     const LightTechnique other{setup.lobes->light_sampler, density};
     const LightSampleNumbers light_samples(sample.of_pixel, sample.index * light_samples_per_hit,
                                            surface);

@@ -93,9 +93,12 @@ struct EyeRay {
   int depth = 0;               ///< mirrors and glass so far
   bool unscattered = true;     ///< except by panes of thin glass, which light samples pass
   std::uint32_t cutouts = 0;   ///< that were looked at so far
-  float fraction = 1.0f;       ///< of a sample, where glass split it or its pixel has more of them
+  float fraction = 1.0f;       ///< of its sample, where glass split it
+  float sample_share = 1.0f;   ///< of its sample in a usual one, of which its pixel has fewer
   const BesideHotSpots* beside = nullptr;  ///< null where no rays are aimed
 
+  /// The part of a usual sample that it is.
+  float share() const { return fraction * sample_share; }
   /// The factor from radiance that the ray meets to its start.
   glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
 };
