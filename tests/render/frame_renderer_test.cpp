@@ -76,6 +76,11 @@ bool same_pixels(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& 
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
 }
 
+/// The same light at all nodes.
+auto constant(float light) {
+  return [light](const glm::vec3&, std::uint32_t) { return light; };
+}
+
 }  // namespace
 
 TEST_CASE("Frames that value a few nodes at a time come to the bits of one that values all") {
@@ -130,9 +135,6 @@ TEST_CASE("Surface whose finer nodes are lacking shows coarser ones, and none is
 }
 
 TEST_CASE("Where there is no node yet, other light maps are shown, which are filled before") {
-  const auto constant = [](float light) {
-    return [light](const glm::vec3&, std::uint32_t) { return light; };
-  };
   DrawnRoom coarse(constant(1.0f)), fine(constant(2.0f));
   const Camera camera = in_the_room(0.5);
   const auto of_coarse = coarse.draw(camera, all);
@@ -158,9 +160,6 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
 }
 
 TEST_CASE("Pictures of one frame get better until nothing is lacking, chart by chart") {
-  const auto constant = [](float light) {
-    return [light](const glm::vec3&, std::uint32_t) { return light; };
-  };
   DrawnRoom coarse(constant(1.0f)), fine(constant(2.0f));
   const Camera camera = in_the_room(0.5);
   const auto of_coarse = coarse.draw(camera, all);
