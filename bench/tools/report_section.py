@@ -45,11 +45,11 @@ def replace_section(page, script, text, results=None, partly=False):
     begin = begin_of(script)
     before, rest = page.read_text().split(begin)
     page.write_text(before + begin + "\n" + text + "\n" + END + rest.split(END, 1)[1])
-    if page.parent != DOCS:
+    if DOCS not in page.parents:
         return
     file = DOCS / "blocks.json"
     blocks = json.loads(file.read_text())
-    name = f"{page.name}: {script}"
+    name = f"{page.relative_to(DOCS)}: {script}"
     when = measured.of_file(results) if results else measured.now()
     if partly and name in blocks:
         when = {key: blocks[name][key] for key in when}

@@ -100,11 +100,15 @@ def check_age(source, what, figure, remedy, wrong):
         wrong.append(f"{what} is {behind} commits older than what it measures; {remedy} measures it anew")
 
 
+def pages(source):
+    return sorted((source / "docs").rglob("*.md"))
+
+
 def check_blocks(source, wrong):
     """What scripts have written into the pages is what they recorded, and none of it is old."""
     file = source / "docs/blocks.json"
     records = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    blocks = {f"{page.name}: {script}": text.strip("\n") for page in sorted((source / "docs").glob("*.md"))
+    blocks = {f"{page.relative_to(source / 'docs')}: {script}": text.strip("\n") for page in pages(source)
               for script, text in BLOCK.findall(page.read_text(encoding="utf-8"))}
     for name in sorted(blocks.keys() | records.keys()):
         if name not in records:
@@ -125,19 +129,20 @@ def check_tables(page, text, wrong):
         cells = [cell.strip() for row in table[0].splitlines()[2:] for cell in row.split("|")[1:-1]]
         numbers_in = sum(MEASURED_CELL.fullmatch(cell) is not None for cell in cells)
         if 2 * numbers_in > len(cells) and not by_hand[:table.start()].endswith("<!-- not measured -->\n\n"):
-            wrong.append(f"docs/{page}: the table {table[0].splitlines()[0]} is of numbers, and no script wrote it")
+            wrong.append(f"{page}: the table {table[0].splitlines()[0]} is of numbers, and no script wrote it")
 
 
 def check(source):
     """What is wrong, in a line each."""
     figures = json.loads((source / "docs/figures.json").read_text(encoding="utf-8"))
     wrong = []
-    for page in [source / "README.md", *sorted((source / "docs").glob("*.md"))]:
+    for page in [source / "README.md", *pages(source)]:
         text = page.read_text(encoding="utf-8")
+        name = str(page.relative_to(source))
         for paragraph in re.split(r"\n\s*\n|\n(?=- )", text):
-            check_text(page.name, " ".join(paragraph.split()), figures, wrong)
+            check_text(name, " ".join(paragraph.split()), figures, wrong)
         if page.name not in LEFT_OUT:
-            check_tables(page.name, text, wrong)
+            check_tables(name, text, wrong)
     for title, paragraph in sections((source / "README.md").read_text(encoding="utf-8")):
         told = check_text("README.md", paragraph, figures, [])
         for end, number in numbers(MARKER.sub(lambda match: " " * len(match[0]), paragraph)):

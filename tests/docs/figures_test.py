@@ -46,7 +46,7 @@ class Figures(unittest.TestCase):
 
     def test_a_figure_that_is_not_there_is_refused(self):
         (self.source / "docs/page.md").write_text("It takes 3<!-- figure: other.s --> s.\n")
-        self.assertEqual(figures.check(self.source), ["page.md: there is no figure other.s"])
+        self.assertEqual(figures.check(self.source), ["docs/page.md: there is no figure other.s"])
 
     def test_an_old_figure_is_refused(self):
         self.commits(figures.OLDEST + 3)

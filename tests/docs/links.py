@@ -1,4 +1,5 @@
-"""Checks the documentation's links: files and headings that it names are there, and the index names each page.
+"""Checks the documentation's links: files and headings that it names are there, and the index of its folder names each
+page, as that of docs/ names each folder.
 
     links.py SOURCE-FOLDER
 """
@@ -30,24 +31,29 @@ def anchors(file):
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in shown}
 
 
+def index_of(page):
+    """The README.md that has to name a page: its folder's, or for that one the folder's above."""
+    return (page.parent.parent if page.name == "README.md" else page.parent) / "README.md"
+
+
 def faults(source):
-    pages = sorted((source / "docs").glob("*.md"))
-    linked = set()
+    pages = sorted((source / "docs").rglob("*.md"))
+    linked = {}
     for page in [source / "README.md", source / "CHANGELOG.md", source / "scenes/README.md", *pages]:
+        linked[page] = set()
         for target in LINK.findall("\n".join(prose(page))):
             if target.startswith(("http:", "https:")):
                 continue
             path, _, anchor = target.partition("#")
             file = (page.parent / path).resolve() if path else page
-            if page.parent.name == "docs" and page.name == "README.md":
-                linked.add(file)
+            linked[page].add(file)
             if not file.exists():
                 yield f"{page.relative_to(source)}: {target}: no such file"
             elif anchor and file.suffix == ".md" and anchor not in anchors(file):
                 yield f"{page.relative_to(source)}: {target}: no such heading"
     for page in pages:
-        if page.resolve() not in linked and page.name != "README.md":
-            yield f"docs/README.md: names no {page.name}"
+        if page.resolve() not in linked.get(index_of(page), ()):
+            yield f"{index_of(page).relative_to(source)}: names no {page.relative_to(source)}"
 
 
 def main():

@@ -100,7 +100,7 @@ def field_word(private):
 
 
 def faults(source):
-    files = [source / "README.md", *sorted((source / "docs").glob("*.md"))]
+    files = [source / "README.md", *sorted((source / "docs").rglob("*.md"))]
     files += sorted((source / "host").rglob("*.cpp"))
     for file in files:
         for number, line in sentences(file):
