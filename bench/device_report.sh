@@ -1,6 +1,6 @@
 #!/bin/bash
 # Tests and times photile on an OpenCL device: writes results/DEVICE-RUNTIME.json, of which
-# docs/devices.md has a row, and build/device-report/DEVICE-RUNTIME.md, a page to post. Ten minutes on
+# docs/measured/devices.md has a row, and build/device-report/DEVICE-RUNTIME.md, a page to post. Ten minutes on
 # a GPU, twenty on two cores. What fails is told, and the next part runs.
 #
 #   bench/device_report.sh [OPTION]...

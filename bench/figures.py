@@ -39,7 +39,7 @@ def read(file):
 
 def times_as_fast_as_nanoflann(workload):
     """Of a million photons, with k of 50 and 200."""
-    found = ratios(timed_rows(read("docs/benchmarks/knn.json")))
+    found = ratios(timed_rows(read("docs/measured/benchmarks/knn.json")))
 
     def of(k):
         structures = found[(workload, k)]
@@ -50,14 +50,14 @@ def times_as_fast_as_nanoflann(workload):
 
 def times_of_grid():
     """As fast as the kd-tree in the plane with the same selection: the least and the most of a million photons."""
-    found = ratios(timed_rows(read("docs/benchmarks/knn.json")))
+    found = ratios(timed_rows(read("docs/measured/benchmarks/knn.json")))
     values = [min(structures[tree][max(structures[tree])] for tree in TREES)
               for structures in found.values() if all(tree in structures for tree in TREES)]
     return [min(values), max(values)]
 
 
 def build_over_one_tree(photons):
-    rows = read("docs/benchmarks/build.json")["results"]
+    rows = read("docs/measured/benchmarks/build.json")["results"]
     row = min((row for row in rows if row["workload"] == "living-room" and row["maps of"] == "auto"),
               key=lambda row: abs(row["photons"] - photons))
     return [(row["groups"]["median"] + row["uniform-grid"]["median"]) / row["nanoflann"]["median"]]
@@ -65,7 +65,7 @@ def build_over_one_tree(photons):
 
 def pictures(tool, setting, key):
     """The least and the most of the two interiors' smaller pictures."""
-    rows = [row for row in read("docs/quality/quality.json")["results"]
+    rows = [row for row in read("docs/measured/quality/quality.json")["results"]
             if row["tool"] == tool and row["setting"] == setting and row["view"].endswith("256x192")]
     values = [row["first"]["processor"] if key == "processor" else row[key] for row in rows]
     return [min(values), max(values)]
@@ -79,7 +79,7 @@ def too_dark():
 
 
 def readings_within():
-    rows = read("docs/accuracy/validation.json")["readings"]
+    rows = read("docs/measured/accuracy/validation.json")["readings"]
     good = [row for row in rows if row["photon_map"]["verdict"] == row["path"]["verdict"] == "ok"]
     return [len(good), len(rows)]
 
@@ -109,23 +109,23 @@ def living_room(photile):
 
 # Name: what finds the values, where or with which command, and what is measured.
 FOUND = {
-    "validation.readings": (readings_within, "docs/accuracy/validation.json", ["host/apps/validation"]),
-    "search.plane": (lambda: times_as_fast_as_nanoflann("plane"), "docs/benchmarks/knn.json", SEARCH),
-    "search.living_room": (lambda: times_as_fast_as_nanoflann("living-room"), "docs/benchmarks/knn.json", SEARCH),
-    "search.classroom": (lambda: times_as_fast_as_nanoflann("classroom"), "docs/benchmarks/knn.json", SEARCH),
-    "search.grid": (times_of_grid, "docs/benchmarks/knn.json", SEARCH),
+    "validation.readings": (readings_within, "docs/measured/accuracy/validation.json", ["host/apps/validation"]),
+    "search.plane": (lambda: times_as_fast_as_nanoflann("plane"), "docs/measured/benchmarks/knn.json", SEARCH),
+    "search.living_room": (lambda: times_as_fast_as_nanoflann("living-room"), "docs/measured/benchmarks/knn.json", SEARCH),
+    "search.classroom": (lambda: times_as_fast_as_nanoflann("classroom"), "docs/measured/benchmarks/knn.json", SEARCH),
+    "search.grid": (times_of_grid, "docs/measured/benchmarks/knn.json", SEARCH),
     "search.h100": (lambda: [on_gpu(50), on_gpu(200)], "results/cuda/nvidia-h100-photile.json", SEARCH),
-    "build.hundred_thousand": (lambda: build_over_one_tree(100_000), "docs/benchmarks/build.json", BUILD),
-    "build.million": (lambda: build_over_one_tree(1_000_000), "docs/benchmarks/build.json", BUILD),
+    "build.hundred_thousand": (lambda: build_over_one_tree(100_000), "docs/measured/benchmarks/build.json", BUILD),
+    "build.million": (lambda: build_over_one_tree(1_000_000), "docs/measured/benchmarks/build.json", BUILD),
     "pictures.good_relmse": (lambda: pictures("photile", "`--quality good`", "rel_mse"),
-                                "docs/quality/quality.json", PICTURE),
+                                "docs/measured/quality/quality.json", PICTURE),
     "pictures.good_processor_s": (lambda: pictures("photile", "`--quality good`", "processor"),
-                                     "docs/quality/quality.json", PICTURE),
-    "pictures.too_dark_percent": (too_dark, "docs/quality/quality.json", PICTURE),
+                                     "docs/measured/quality/quality.json", PICTURE),
+    "pictures.too_dark_percent": (too_dark, "docs/measured/quality/quality.json", PICTURE),
     "pictures.denoised_relmse": (lambda: pictures("photile, paths denoised", "4 spp", "rel_mse"),
-                                 "docs/quality/quality.json", PICTURE),
+                                 "docs/measured/quality/quality.json", PICTURE),
     "pictures.denoised_processor_s": (lambda: pictures("photile, paths denoised", "4 spp", "processor"),
-                                      "docs/quality/quality.json", PICTURE),
+                                      "docs/measured/quality/quality.json", PICTURE),
 }
 MEASURED = {
     "living_room.processor_s": (living_room, "photile render scenes/living-room/living-room.gltf", PICTURE),

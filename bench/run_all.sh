@@ -6,7 +6,7 @@
 #   --full                  scale up to 4 million triangles and 100 million photons (24 GB)
 #   --results FOLDER        where JSON files and plots go, and the page beside it as FOLDER.md;
 #                           default: build/benchmarks
-#   --docs                  rewrites docs/benchmarks.md and what belongs to it
+#   --docs                  rewrites docs/measured/benchmarks.md and what belongs to it
 #   --benches FOLDER        where the benches are; nothing is built then
 #   --repeats N, --seconds-per-case S   as for each bench that repeats its cases
 #   PHOTILE_DEVICE          the OpenCL device, as for photile --device
@@ -20,7 +20,7 @@ while (($#)); do
     --quick) options+=("$1") profile_options+=("$1") ;;
     --full) scale_options+=("$1") ;;
     --results) results=$2 && shift ;;
-    --docs) results=docs/benchmarks ;;
+    --docs) results=docs/measured/benchmarks ;;
     --benches) benches=$2 && shift ;;
     --repeats | --seconds-per-case) repeats+=("$1" "$2") && shift ;;
     *) echo "bench/run_all.sh: error: unknown option '$1'; see the head of the file" >&2 && exit 2 ;;
@@ -55,7 +55,7 @@ else
   echo "bench/run_all.sh: lists by Python's libraries are left out: install scipy, pykdtree and open3d, and build photile's module" >&2
 fi
 bench/kernels/profile.py --benches "$benches" --output "$results/profile.json" "${profile_options[@]}"
-if [[ $results == docs/benchmarks ]]; then
+if [[ $results == docs/measured/benchmarks ]]; then
   for section in borders area angle; do bench/kernels/report_$section.py; done
 fi
 exec /usr/bin/python3 bench/kernels/report.py --results "$results" --page "$results.md"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the table of registers, local memory and occupancy in docs/kernels.md: what compilers for GPUs
+"""Writes the table of registers, local memory and occupancy in docs/measured/registers.md: what compilers for GPUs
 make of the kernels, without a GPU.
 
     bench/kernels/kernel_registers.py --libclc /usr/lib/clc --ptxas PTXAS [--write]
@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
-PAGE = ROOT / "docs/kernels.md"
+PAGE = ROOT / "docs/measured/registers.md"
 
 # The work-items of a group, of kernels that ask for no number of their own (maps/map_store.hpp).
 GROUP = 64
@@ -162,7 +162,7 @@ def main():
     parser.add_argument("--clang", default="clang-15")
     parser.add_argument("--libclc", default="/usr/lib/clc", help="folder of its .bc files")
     parser.add_argument("--ptxas", default="ptxas")
-    parser.add_argument("--write", action="store_true", help="into docs/kernels.md")
+    parser.add_argument("--write", action="store_true", help="into docs/measured/registers.md")
     arguments = parser.parse_args()
     compiler = Compiler(arguments.clang, arguments.libclc)
     processors = {"H200 (sm_90)": Nvidia(compiler, arguments.ptxas, "sm_90"),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes docs/benchmarks.md and its plots from docs/benchmarks/*.json. Runs nothing.
+"""Writes docs/measured/benchmarks.md and its plots from docs/measured/benchmarks/*.json. Runs nothing.
 
     bench/kernels/report.py [--results FOLDER] [--page FILE]
 
@@ -24,9 +24,9 @@ BUSY_LOAD = 0.5  # load average at which other programs count as running
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/benchmarks",
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/measured/benchmarks",
                         help="folder of the JSON files; plots go there too")
-    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/measured/benchmarks.md")
     return parser.parse_args()
 
 
@@ -101,9 +101,9 @@ def structure_and_selection(knn):
 def page(results, plots, ratio_plots, notes):
     sections = [
         "# Benchmarks",
-        "After this page you know how fast the estimate is, beside other ways to find the same photons, and can measure "
-        "your own machine: `bench/run_all.sh --docs` runs everything and writes this page. "
-        "Times are medians, with the least and the largest in brackets.",
+        "The search and the estimate beside other libraries and structures that find the same photons, the build of the "
+        "maps, relighting and starts. `bench/run_all.sh --docs` measures all of it and writes this page. Times are "
+        "medians, with the least and the largest in brackets.",
         machine_section(results),
         "On a GPU: `PHOTILE_DEVICE=gpu bench/run_all.sh --docs`.",
         "## Targets", report_targets.write_table(results, bool(doubts(results))),
@@ -131,8 +131,8 @@ def page(results, plots, ratio_plots, notes):
         "## Starting", report_kernels.startup(results["startup"]),
         notes,
         "## See also",
-        "[Neighbour groups](neighbour-groups.md); the data behind this page in "
-        "[benchmarks/](benchmarks/).",
+        "[Neighbour groups](groups.md), [density](density.md), [devices](devices.md). The records that the tables are "
+        "made from are the JSON files in [benchmarks/](benchmarks/).",
     ]
     return "\n\n".join(section.strip() for section in sections) + "\n"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Writes the table of darkening and bleeding in docs/neighbour-groups.md from
-docs/benchmarks/angle.json, which `photile_bench_angle --output docs/benchmarks/angle.json` makes."""
+"""Writes the table of darkening and bleeding in docs/measured/groups.md from
+docs/measured/benchmarks/angle.json, which `photile_bench_angle --output docs/measured/benchmarks/angle.json` makes."""
 
 import json
 import pathlib
@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
-RESULTS = ROOT / "docs/benchmarks/angle.json"
+RESULTS = ROOT / "docs/measured/benchmarks/angle.json"
 
 ANGLES = range(0, 91, 15)
 
@@ -30,7 +30,7 @@ def main():
     record = json.loads(RESULTS.read_text())
     results = record["results"]
     shapes = list(dict.fromkeys(result["shape"] for result in results))
-    replace_section(ROOT / "docs/neighbour-groups.md", "kernels/report_angle.py",
+    replace_section(ROOT / "docs/measured/groups.md", "kernels/report_angle.py",
                     "| | " + " | ".join(f"{angle} degrees" for angle in ANGLES) + " |\n|---|"
                     + "--:|" * len(ANGLES) + "\n"
                     + "\n".join(row(shape, results) for shape in shapes) + "\n", RESULTS)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Writes the table of what areas and kernels cost in docs/density.md from docs/benchmarks/area.json,
-which `photile_bench_area --output docs/benchmarks/area.json` makes."""
+"""Writes the table of what areas and kernels cost in docs/measured/density.md from docs/measured/benchmarks/area.json,
+which `photile_bench_area --output docs/measured/benchmarks/area.json` makes."""
 
 import json
 import pathlib
@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
-RESULTS = ROOT / "docs/benchmarks/area.json"
+RESULTS = ROOT / "docs/measured/benchmarks/area.json"
 CASES = (("disc", "constant"), ("clipped", "constant"), ("clipped", "cone"))
 
 
@@ -28,7 +28,7 @@ def main():
     places = list(dict.fromkeys(result["place"] for result in results))
     rows = "\n".join(row(place, results) for place in places)
     machine = record["machine"]
-    replace_section(ROOT / "docs/density.md", "kernels/report_area.py",
+    replace_section(ROOT / "docs/measured/density.md", "kernels/report_area.py",
                     "| | whole disc, ns a hit | clipped over whole | clipped, cone, over whole |\n"
                     f"|---|--:|--:|--:|\n{rows}\n\n"
                     f"{machine['processor']}, {machine['hardware threads']} hardware threads; load "

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Writes the table of readings near borders in docs/density.md from docs/benchmarks/borders.json,
-which `photile_bench_borders --output docs/benchmarks/borders.json` makes."""
+"""Writes the table of readings near borders in docs/measured/density.md from docs/measured/benchmarks/borders.json,
+which `photile_bench_borders --output docs/measured/benchmarks/borders.json` makes."""
 
 import json
 import pathlib
@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
-RESULTS = ROOT / "docs/benchmarks/borders.json"
+RESULTS = ROOT / "docs/measured/benchmarks/borders.json"
 
 
 def row(result):
@@ -25,7 +25,7 @@ def row(result):
 def main():
     record = json.loads(RESULTS.read_text())
     rows = "\n".join(row(result) for result in record["results"])
-    replace_section(ROOT / "docs/density.md", "kernels/report_borders.py",
+    replace_section(ROOT / "docs/measured/density.md", "kernels/report_borders.py",
                     "| place | distance | expected, lux | disc | clipped |\n"
                     f"|---|--:|--:|--:|--:|\n{rows}\n", RESULTS)
 

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """What bench/device_report.sh has found, as a file of results/ and as a page to post; and the table of
-docs/devices.md, of all files.
+docs/measured/devices.md, of all files.
 
     bench/kernels/report_device.py FOLDER [--name NAME] [--results FOLDER] [--quick]
-    bench/kernels/report_device.py --docs     # writes the table of docs/devices.md
+    bench/kernels/report_device.py --docs     # writes the table of docs/measured/devices.md
     bench/kernels/report_device.py --check    # exits with 1 where it is another one
 """
 
@@ -21,7 +21,7 @@ from kernels.report_tables import table
 from tools.report_section import read_section, replace_section
 
 RESULTS = ROOT / "results"
-PAGE = ROOT / "docs/devices.md"
+PAGE = ROOT / "docs/measured/devices.md"
 SCRIPT = "kernels/report_device.py"
 # Variables by which a runtime works in another way.
 SETTINGS = re.compile(r"(POCL_WORK_GROUP_METHOD|POCL_VECTORIZER\w*|CL_CONFIG_\w+|RUSTICL_ENABLE)=")
@@ -226,7 +226,7 @@ def main():
     arguments = parser.parse_args()
     if arguments.check:
         if read_section(PAGE, SCRIPT) != docs_table():
-            sys.exit("docs/devices.md: its table is not that of results/; write it by bench/kernels/report_device.py "
+            sys.exit("docs/measured/devices.md: its table is not that of results/; write it by bench/kernels/report_device.py "
                      "--docs")
         return
     if arguments.docs:

@@ -1,4 +1,4 @@
-"""Tables of docs/benchmarks.md about kernels: specialisations, the device's limits, starts, and
+"""Tables of docs/measured/benchmarks.md about kernels: specialisations, the device's limits, starts, and
 where the time of an estimate goes."""
 
 import math
@@ -96,7 +96,7 @@ def roofline(result):
     text = (f"Limits of the device, measured in the same run: {copy / 1e9:.1f} GB/s copied in memory, "
             f"{cache / 1e9:.0f} GB/s read from the first-level cache, {operations / 1e9:.0f} billion "
             "additions and multiplications a second, not fused, as the kernels'. What a hit must "
-            "read from cache and compute is the sum of [kernels](kernels.md#what-a-hit-must-cost), "
+            "read from cache and compute is a sum over the steps of the kernel "
             "for photons spread evenly; of the living room, whose photons are not, it is less than "
             "what is needed. Nanoseconds.")
     header = ["estimate", "bytes a hit", "operations", "for the bytes", "for the operations", "taken",

@@ -1,4 +1,4 @@
-"""Plots of docs/benchmarks.md about searches."""
+"""Plots of docs/measured/benchmarks.md about searches."""
 
 from kernels import report_ratios
 from kernels.report_tables import LISTS, timed, time_name

@@ -2,7 +2,7 @@
 """Prints how many times as long each structure takes as the uniform grid: figure 6 of Graglia et al. 2012
 as ratios, over photons and k, from what photile_bench_knn wrote.
 
-    bench/kernels/report_ratios.py docs/benchmarks/knn.json
+    bench/kernels/report_ratios.py docs/measured/benchmarks/knn.json
 """
 
 import argparse
@@ -79,7 +79,7 @@ Figure 6 of the paper has the grid 2 times as fast as a kd-tree in the plane, an
   with whole vectors and does not branch on what it finds. The paper, which has no such selection, cannot show it; most of
   the ratios to other libraries on this page are this.
 - **The 3 to 5 times of a tree in space** are not reproduced: here both trees split the longest side of the photons' box,
-  so that on a surface they are the same tree ([why](kernels.md#why-kdtree-2d-is-no-faster-than-kdtree-3d)).""")
+  so that on a surface they are the same tree.""")
 
 
 def text(rows):

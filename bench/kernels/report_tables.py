@@ -1,4 +1,4 @@
-"""Tables of docs/benchmarks.md."""
+"""Tables of docs/measured/benchmarks.md."""
 
 import statistics
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A year of daylight in three rooms by photile and by Radiance's two-phase method; writes docs/daylight.md.
+"""A year of daylight in three rooms by photile and by Radiance's two-phase method; writes docs/measured/daylight.md.
 
     bench/lighting/daylight.py --radiance FOLDER [--photile COMMAND] [--only ROOM] [--quick]
 
@@ -238,7 +238,7 @@ def main():
     parser.add_argument("--only", choices=[room.name for room in ROOMS])
     parser.add_argument("--quick", action="store_true", help="few rays, writes nothing: a smoke test")
     given = parser.parse_args()
-    record = ROOT / "docs/daylight.json"
+    record = ROOT / "docs/measured/daylight.json"
     results = {row["room"]: row for row in json.loads(record.read_text())} if record.is_file() else {}
     for room in ROOMS:
         if given.only not in (None, room.name):
@@ -250,7 +250,7 @@ def main():
         return
     rows = [results[room.name] for room in ROOMS if room.name in results]
     record.write_text(json.dumps(rows, indent=1) + "\n")
-    replace_section(ROOT / "docs/daylight.md", "lighting/daylight.py", section(rows),
+    replace_section(ROOT / "docs/measured/daylight.md", "lighting/daylight.py", section(rows),
                     partly=given.only is not None)
 
 

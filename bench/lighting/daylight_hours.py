@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Hours of a year beside the same hours with a sun and a sky of their own; writes docs/daylight.md.
+"""Hours of a year beside the same hours with a sun and a sky of their own; writes docs/measured/daylight.md.
 
     bench/lighting/daylight_hours.py [--photile COMMAND] [--quick]
 
@@ -69,7 +69,7 @@ def main():
                 lines.append(f"| {room.name} | {label} | {rms[0]:.1%} | {worst:+.1%} | {rms[1]:.1%} |")
     print("\n".join(lines))
     if not given.quick:
-        replace_section(ROOT / "docs/daylight.md", "lighting/daylight_hours.py", "\n".join(lines))
+        replace_section(ROOT / "docs/measured/daylight.md", "lighting/daylight_hours.py", "\n".join(lines))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ with what they print and the pictures that they leave. worked_example.py and wor
 import argparse
 import dataclasses
 import hashlib
+import os
 import pathlib
 import re
 import shlex
@@ -122,6 +123,6 @@ def run_page(page, script, steps, room, prefix, options, prepare=lambda folder: 
                 file = picture_in(folder, picture)
                 if not options.quick:
                     shutil.copy(file, PICTURES / f"{prefix}-{picture}")
-                text += [f"![{caption}](pictures/{prefix}-{picture})", ""]
+                text += [f"![{caption}]({os.path.relpath(PICTURES, page.parent)}/{prefix}-{picture})", ""]
     if not options.quick:
         replace_section(page, script, "\n".join(text).strip("\n"))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Holds `photile glare` against evalglare on the same fisheye pictures, and UGR tables against
-another program's; puts the tables into docs/glare.md.
+another program's; puts the tables into docs/measured/glare.md.
 
     bench/lighting/glare.py [--photile FILE] [--evalglare FILE] [--write]
 
@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
-PAGE = ROOT / "docs/glare.md"
+PAGE = ROOT / "docs/measured/glare.md"
 LIVING = ROOT / "scenes/living-room/living-room.gltf"
 
 # What is looked at: name, scene, eyes and directions, options.
@@ -40,7 +40,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--photile", default=ROOT / "build/release/photile", type=pathlib.Path)
     parser.add_argument("--evalglare", type=pathlib.Path)
-    parser.add_argument("--write", action="store_true", help="put the tables into docs/glare.md")
+    parser.add_argument("--write", action="store_true", help="put the tables into docs/measured/glare.md")
     return parser.parse_args()
 
 

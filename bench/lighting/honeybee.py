@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Has Honeybee read a year of photile's, with blinds, and compares the figures; writes docs/daylight.md.
+"""Has Honeybee read a year of photile's, with blinds, and compares the figures; writes docs/measured/daylight.md.
 
     bench/lighting/honeybee.py --tools FOLDER [--photile COMMAND] [--quick]
 
@@ -77,7 +77,7 @@ def main():
     lines += [f"| {label} | {theirs:.2f} | {own:.2f} |" for label, theirs, own in rows]
     print("\n".join(lines))
     if not given.quick:
-        replace_section(ROOT / "docs/daylight.md", "lighting/honeybee.py", "\n".join(lines))
+        replace_section(ROOT / "docs/measured/daylight.md", "lighting/honeybee.py", "\n".join(lines))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs the project of docs/project.md as it is written there: puts the commands with what they print into the
+"""Runs the project of docs/guide/project.md as it is written there: puts the commands with what they print into the
 page and their pictures into docs/pictures.
 
     bench/lighting/worked_project.py [--photile FILE] [--quick]
@@ -114,5 +114,5 @@ def add_weather(folder):
 
 
 if __name__ == "__main__":
-    run_page(ROOT / "docs/project.md", "lighting/worked_project.py", STEPS, ROOT / "scenes/office", "project",
+    run_page(ROOT / "docs/guide/project.md", "lighting/worked_project.py", STEPS, ROOT / "scenes/office", "project",
              arguments(__doc__), add_weather)

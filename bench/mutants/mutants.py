@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Builds faults into photile, one at a time, and says which tests notice: docs/testing.md.
+"""Builds faults into photile, one at a time, and says which tests notice: docs/measured/mutants.md.
 
     bench/mutants/mutants.py [NAME...] [--redraw] [--build FOLDER]
     bench/mutants/mutants.py --draw COUNT [--seed N] [--only kernels|host] [--folders NAME...] [--list]
 
 Without --draw they are those of chosen.py beside this file, or those whose names hold one of NAME. Results
-stay in docs/testing/mutants.json, from which --redraw makes the table again. With --draw they are drawn at
+stay in docs/measured/mutants.json, from which --redraw makes the table again. With --draw they are drawn at
 random: each changes one operator, bound, constant or truth value of a line of kernels/ or of folders of the
 parts of host/. Those are not kept: survivors need a look.
 
@@ -36,7 +36,7 @@ sys.path.insert(0, str(ROOT / "bench"))
 from mutants.chosen import MUTANTS
 from tools.report_section import replace_section
 
-RESULTS = ROOT / "docs/testing/mutants.json"
+RESULTS = ROOT / "docs/measured/mutants.json"
 LIMIT = 600  # seconds of the processor that tests may take; one that takes longer counts as a crash
 STILL_SECONDS = 60  # without work for the processor: threads that wait for each other for good
 
@@ -392,7 +392,7 @@ def main():
     chosen = [mutant for mutant in MUTANTS
               if not options.names or any(name in mutant.name for name in options.names)]
     results = {} if options.redraw else run(options, chosen)
-    replace_section(ROOT / "docs/testing.md", "mutants/mutants.py", table(stored_results()),
+    replace_section(ROOT / "docs/measured/mutants.md", "mutants/mutants.py", table(stored_results()),
                     partly=len(results) < len(MUTANTS))
     if not options.redraw and (len(results) < len(chosen) or not all(results.values())):
         sys.exit("mutants.py: error: some mutants survive or could not be run")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs `photile validate` and writes its readings into docs/accuracy.md.
+"""Runs `photile validate` and writes its readings into docs/measured/accuracy.md.
 
     bench/pictures/accuracy.py [--photile COMMAND] [--redraw]
 
@@ -16,13 +16,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "bench"))
 from tools.report_section import replace_section
 
-READINGS = ROOT / "docs/accuracy/validation.json"
+READINGS = ROOT / "docs/measured/accuracy/validation.json"
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--photile", type=pathlib.Path, default=ROOT / "build/release/photile")
-    parser.add_argument("--redraw", action="store_true", help="use the results in docs/accuracy instead of measuring")
+    parser.add_argument("--redraw", action="store_true", help="use the results in docs/measured/accuracy instead of measuring")
     return parser.parse_args()
 
 
@@ -92,7 +92,7 @@ def main():
     options = arguments()
     if not options.redraw:
         validation(options.photile, READINGS)
-    replace_section(ROOT / "docs/accuracy.md", "pictures/accuracy.py", section(json.loads(READINGS.read_text())), READINGS)
+    replace_section(ROOT / "docs/measured/accuracy.md", "pictures/accuracy.py", section(json.loads(READINGS.read_text())), READINGS)
 
 
 if __name__ == "__main__":

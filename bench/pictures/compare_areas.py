@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Compares areas and kernels of the density estimate by their error against path-traced references,
-and writes the table of docs/density.md.
+and writes the table of docs/measured/density.md.
 
     bench/pictures/compare_areas.py [SCENES]
 
@@ -51,7 +51,7 @@ def main():
         for name in ("classroom", "kitchen"):
             text += rows(given, name, folder)
     print(text)
-    replace_section(scene_arguments.ROOT / "docs/density.md", "pictures/compare_areas.py", text)
+    replace_section(scene_arguments.ROOT / "docs/measured/density.md", "pictures/compare_areas.py", text)
 
 
 if __name__ == "__main__":

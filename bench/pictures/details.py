@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Details of pictures as a person sees them: before, now, and by paths; the strips in docs/quality.md.
+"""Details of pictures as a person sees them: by photile and by paths; the strips of docs/measured/details.md.
 
     bench/pictures/details.py [FOLDER] [--photile COMMAND] [--before COMMAND] [--kitchen FILE.gltf]
                               [--denoiser LIBRARY] [--only DETAIL ...]

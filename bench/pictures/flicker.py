@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How much the frames of a slow turn flicker: the table in docs/quality.md.
+"""How much the frames of a slow turn flicker: as docs/measured/quality.md states it.
 
     bench/pictures/flicker.py [SCENES] [--only NAME] [--frames N] [--photile COMMAND]
 

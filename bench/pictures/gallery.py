@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Renders the scenes of scenes/gallery by the default and by paths and writes docs/gallery.md.
+"""Renders the scenes of scenes/gallery by the default and by paths and writes docs/measured/gallery.md.
 
     bench/pictures/gallery.py [--photile COMMAND] [--only SCENE] [--references FOLDER] [--quick --results FOLDER]
 
@@ -103,7 +103,7 @@ def section(results):
         options = " ".join(["photile render", f"{subject.name}.gltf", *subject.lights,
                             "--size", SIZE])
         text += (f"## {subject.name.replace('-', ' ').capitalize()}\n\n{subject.caption}\n\n"
-                 f"![By the default, and by paths](pictures/gallery/{subject.name}.png)\n\n"
+                 f"![By the default, and by paths](../pictures/gallery/{subject.name}.png)\n\n"
                  f"Mean ratio {row['mean ratio']:.3f}, relMSE {row['relMSE']:.4f}, of which the noise of the "
                  f"reference is {row['noise of the reference']:.4f}; without the worst 5% of the pixels "
                  f"{row['relMSE without the worst 5%']:.4f}, after "
@@ -126,7 +126,7 @@ def main():
                 print(json.dumps(results[subject.name]))
     record.write_text(json.dumps(list(results.values()), indent=1) + "\n")
     if not given.quick:
-        replace_section(ROOT / "docs/gallery.md", "pictures/gallery.py", section(results),
+        replace_section(ROOT / "docs/measured/gallery.md", "pictures/gallery.py", section(results),
                         partly=given.only is not None)
 
 

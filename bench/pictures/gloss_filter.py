@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the filter of gloss gains, and writes it into docs/gloss.md.
+"""What the filter of gloss gains, and writes it into docs/measured/gloss.md.
 
     bench/pictures/gloss_filter.py [--size 288x192] [--photile COMMAND]
 
@@ -51,7 +51,7 @@ def main():
                 rows.append(f"| {scene.split('/')[1]} | {way} | {figures['rel_mse']:.5f} "
                             f"({figures['rel_mse_without_worst']:.5f}) | {figures['mean_ratio']:.4f} |")
                 print(rows[-1], flush=True)
-    replace_section(ROOT / "docs/gloss.md", "pictures/gloss_filter.py", "\n".join(rows))
+    replace_section(ROOT / "docs/measured/gloss.md", "pictures/gloss_filter.py", "\n".join(rows))
 
 
 if __name__ == "__main__":

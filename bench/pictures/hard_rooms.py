@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Rooms whose light few photons find or many thin things part, and the noise and bias of their pictures: the
-tables in docs/accuracy.md.
+tables in docs/measured/accuracy.md.
 
     bench/pictures/hard_rooms.py [FOLDER] [--photile COMMAND] [--only ROOM ...] [--seeds N] [--options "..."]
 

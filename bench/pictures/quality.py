@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Error against time of photile beside what a user would pick instead; writes docs/quality.md.
+"""Error against time of photile beside what a user would pick instead; writes docs/measured/quality.md.
 
     bench/pictures/quality.py [SCENES] [--only VIEW] [--tool TOOL] [--redraw] [--quick] [--results FOLDER]
 
@@ -59,7 +59,7 @@ def arguments():
                         help="use the results in the folder instead of measuring")
     parser.add_argument("--quick", action="store_true",
                         help="few photons and paths in the bundled Cornell box: a smoke test")
-    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/quality",
+    parser.add_argument("--results", type=pathlib.Path, default=ROOT / "docs/measured/quality",
                         help="where JSON and plots go; default: %(default)s")
     return parser.parse_args()
 
@@ -320,7 +320,7 @@ def main():
                                for package in PACKAGES}, "results": rows}
         file.write_text(json.dumps(record, indent=1) + "\n")
     quality_report.write(json.loads(file.read_text()), options.results,
-                         None if options.quick else ROOT / "docs/quality.md",
+                         None if options.quick else ROOT / "docs/measured/quality.md",
                          partly=options.redraw or set(options.only) != set(VIEWS) or set(options.tool) != set(TOOLS))
 
 

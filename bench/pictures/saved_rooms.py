@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What it takes to open a room whose photons and light maps were saved; writes the table of docs/light-maps.md.
+"""What it takes to open a room whose photons and light maps were saved; writes the table of docs/measured/saved-rooms.md.
 
     bench/pictures/saved_rooms.py [SCENES] [--photile COMMAND]
 
@@ -97,7 +97,7 @@ def main():
         for name, options in ROWS:
             lines.append(row(given, name, options, pathlib.Path(folder)))
             print(lines[-1], flush=True)
-    replace_section(scene_arguments.ROOT / "docs/light-maps.md", "pictures/saved_rooms.py", "\n".join(lines))
+    replace_section(scene_arguments.ROOT / "docs/measured/saved-rooms.md", "pictures/saved_rooms.py", "\n".join(lines))
 
 
 if __name__ == "__main__":

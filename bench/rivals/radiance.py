@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Lux at points by photile beside Radiance: error against processor seconds; writes docs/beside-radiance.md.
+"""Lux at points by photile beside Radiance: error against processor seconds; writes docs/measured/beside-radiance.md.
 
     bench/rivals/radiance.py [--radiance FOLDER] [--photile COMMAND] [--again] [--redraw] [--quick]
 
-Measures what is missing in docs/benchmarks/radiance.json, a row at a time, so that it can be stopped and
+Measures what is missing in docs/measured/benchmarks/radiance.json, a row at a time, so that it can be stopped and
 started again. FOLDER holds Radiance's rtrace, oconv and mkpmap, such as bin/ of the package pyradiance; what
 is not there becomes a line that says so. Needs the built command and the Debian packages python3-numpy and
 python3-matplotlib.
@@ -27,9 +27,9 @@ from tools import measured, plots, processes
 from tools.report_section import replace_page
 from rivals.radiance_scene import write_plain_gltf, write_radiance_scene
 
-RESULTS = ROOT / "docs/benchmarks/radiance.json"
-PLOT = ROOT / "docs/benchmarks/radiance.svg"
-PAGE = ROOT / "docs/beside-radiance.md"
+RESULTS = ROOT / "docs/measured/benchmarks/radiance.json"
+PLOT = ROOT / "docs/measured/benchmarks/radiance.svg"
+PAGE = ROOT / "docs/measured/beside-radiance.md"
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # Rec.709
 SEEDS = (1, 2, 3)  # photile's errors are root mean squares over these
 
@@ -286,8 +286,8 @@ def page(record):
     sections = "\n\n".join(scene_section(name, scene) for name, scene in record["scenes"].items())
     return f"""# Beside Radiance
 
-After this page you can choose settings for lux at points, and compare photile with Radiance: error against processor
-seconds. `bench/rivals/radiance.py` writes this page.
+Error of lux at points against processor seconds, by photile and by Radiance. `bench/rivals/radiance.py` writes this
+page.
 
 - **Scenes**: the bundled living room and Cornell box, diffuse and without textures, lit by their lamps with an area:
   copies that both programs read. Neither has a sky, and both programs have no ground below the horizon (`ground=0`).
@@ -312,7 +312,7 @@ seconds. `bench/rivals/radiance.py` writes this page.
 
 ## See also
 
-[Measuring](measuring.md), [accuracy](accuracy.md), [quality](quality.md).
+[Accuracy](accuracy.md), [quality](quality.md).
 """
 
 

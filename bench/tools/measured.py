@@ -33,7 +33,7 @@ def of_file(file):
     if git("status", "--porcelain", "--", file):
         brought = now()
     else:
-        commit, date = git("log", "-1", "--format=%h %cs", "--", file).split()
+        commit, date = git("log", "-1", "--follow", "--diff-filter=AM", "--format=%h %cs", "--", file).split()
         brought = {"machine": "unknown", "commit": commit, "date": date}
     return {"machine": machine or brought["machine"],
             "commit": record.get("commit", brought["commit"]).removesuffix("-dirty"),

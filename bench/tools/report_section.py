@@ -4,11 +4,13 @@ old. tests/docs/figures.py refuses a part that is not the one recorded, and one 
 
 import hashlib
 import json
+import re
 
 from tools import measured
 
 DOCS = measured.ROOT / "docs"
 END = "<!-- end -->\n"
+RECORD = re.compile(r"\A\n\*Measured by `bench/[^*]*\*\n")  # below a block of docs/measured
 ALL = ["host", "kernels"]
 MEASURES = {
     "kernels/kernel_registers.py": ["kernels"],
@@ -33,6 +35,12 @@ def begin_of(script):
     return f"<!-- begin: bench/{script} -->\n"
 
 
+def record_line(script, record):
+    """What stands below a block of docs/measured: how, where, of which commit and when it was measured."""
+    return (f"\n*Measured by `bench/{script}`, machine: {record['machine']}, commit {record['commit']}, "
+            f"{record['date']}.*\n")
+
+
 def read_section(page, script):
     """What stands between the comments of `script` in the file `page`."""
     return page.read_text().split(begin_of(script))[1].split(END, 1)[0].strip("\n")
@@ -41,7 +49,7 @@ def read_section(page, script):
 def replace_section(page, script, text, results=None, partly=False):
     """Puts `text` between `<!-- begin: bench/SCRIPT -->` and `<!-- end -->` of the file `page`. It was measured now, or
     when the file `results` was, from which it is drawn; where only part of it is new, it stays as old as it was. Pages
-    outside of docs/ have no records."""
+    outside of docs/ have no records, and those of docs/measured state theirs."""
     begin = begin_of(script)
     before, rest = page.read_text().split(begin)
     page.write_text(before + begin + "\n" + text + "\n" + END + rest.split(END, 1)[1])
@@ -56,6 +64,10 @@ def replace_section(page, script, text, results=None, partly=False):
     blocks[name] = {"sha256": hashlib.sha256(read_section(page, script).encode()).hexdigest(), **when,
                     "measures": MEASURES.get(script, ALL)}
     file.write_text(json.dumps(dict(sorted(blocks.items())), indent=1) + "\n")
+    if page.parent == DOCS / "measured":
+        before, rest = page.read_text().split(begin)
+        block, rest = rest.split(END, 1)
+        page.write_text(before + begin + block + END + record_line(script, blocks[name]) + RECORD.sub("", rest))
 
 
 def replace_page(page, script, text, results=None):

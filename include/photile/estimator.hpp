@@ -57,7 +57,7 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
 
 /// The weight of a photon at distance d, where the k-th lies at r (Silverman, "Density Estimation
 /// for Statistics and Data Analysis", 1986; Jensen, "Global Illumination using Photon Maps", 1996).
-/// The estimate divides by the integral of the kernel over the area; see docs/density.md.
+/// The estimate divides by the integral of the kernel over the area; see docs/method/density.md.
 enum class DensityKernel {
   constant,  ///< 1: less noise
   cone       ///< 1 - d / r: less blur
@@ -144,7 +144,7 @@ struct NeighbourLists {
 /// estimate is sum of the flux of the k - 1 nearest over the area of the disc through the k-th
 /// (unbiased under constant density); with fewer, all of them over the disc of the full radius.
 /// With a kernel each photon is weighted, and the area is the integral of the kernel over the disc.
-/// Clipped areas: see docs/density.md.
+/// Clipped areas: see docs/method/density.md.
 class Estimator {
  public:
   /// Errors: UsageError when k, the radius or the tuning is out of range.

@@ -119,9 +119,9 @@ struct RenderParameters {
   bool counts_hidden_photons = false;
   double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = by the photons
   double light_map_detail = 0;   ///< metres between the finest nodes, at most; 0 = by the photons
-  /// Processes that share the rendering (docs/clusters.md), all with the same arguments: paths,
-  /// photon maps and rows of the film are split between them, and rank 0 has the result. Null: this
-  /// process has all. Kept as a reference.
+  /// Processes that share the rendering (docs/method/clusters.md), all with the same arguments:
+  /// paths, photon maps and rows of the film are split between them, and rank 0 has the result.
+  /// Null: this process has all. Kept as a reference.
   Communicator* processes = nullptr;
 };
 

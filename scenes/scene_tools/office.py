@@ -1,5 +1,5 @@
 """An office of 6 m x 5 m x 2.8 m with two windows to the south, empty and furnished, without lamps, and the
-photometric file of a panel for its ceiling; docs/project.md lights it."""
+photometric file of a panel for its ceiling; docs/guide/project.md lights it."""
 
 import math
 

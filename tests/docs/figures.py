@@ -8,7 +8,7 @@ Usage: figures.py SOURCE_FOLDER
 - In the sections of README.md that tell what is fast, accurate or not, every number has one.
 - A table of which more than half is numbers stands in such a block, or has a comment <!-- not measured --> before it.
 - Between <!-- begin: bench/SCRIPT --> and <!-- end --> is the text that was recorded; each such block has a record, and
-  each record a block.
+  each record a block. In docs/measured the line below the block states the record.
 - No figure or block is older than what it measures by more than 200 commits. A commit that the history does not have is
   looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What
   was measured on a card that not every machine has may be older: whoever cites it says the date beside it.
@@ -20,6 +20,9 @@ import pathlib
 import re
 import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
+from tools.report_section import record_line  # noqa: E402
 
 OLDEST = 200  # commits
 # Their tables are compared with what the command prints by tests/command.
@@ -108,8 +111,13 @@ def check_blocks(source, wrong):
     """What scripts have written into the pages is what they recorded, and none of it is old."""
     file = source / "docs/blocks.json"
     records = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    blocks = {f"{page.relative_to(source / 'docs')}: {script}": text.strip("\n") for page in pages(source)
-              for script, text in BLOCK.findall(page.read_text(encoding="utf-8"))}
+    blocks, stated = {}, {}
+    for page in pages(source):
+        text = page.read_text(encoding="utf-8")
+        for block in BLOCK.finditer(text):
+            name = f"{page.relative_to(source / 'docs')}: {block[1]}"
+            blocks[name] = block[2].strip("\n")
+            stated[name] = text[block.end() + 1:]
     for name in sorted(blocks.keys() | records.keys()):
         if name not in records:
             wrong.append(f"docs/{name} has written a block that docs/blocks.json does not record")
@@ -119,6 +127,9 @@ def check_blocks(source, wrong):
             if hashlib.sha256(blocks[name].encode()).hexdigest() != records[name]["sha256"]:
                 wrong.append(f"docs/{name} has written another block than the one that is there; change the script, "
                              "not the block")
+            line = record_line(name.split()[1], records[name])
+            if name.startswith("measured/") and not stated[name].startswith(line):
+                wrong.append(f"docs/{name}: the line below the block is not that of its record:{line}")
             check_age(source, f"docs/{name}", records[name], f"bench/{name.split()[1]}", wrong)
 
 

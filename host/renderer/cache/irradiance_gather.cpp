@@ -32,7 +32,7 @@ constexpr std::size_t rays_at_a_time = std::size_t{1} << 18;
 int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 
 /// Of an estimate by k photons by chance: a cone has 1.5 times the variance of a count
-/// (docs/density.md).
+/// (docs/method/density.md).
 double caustic_relative_variance(int neighbours) { return 1.5 / neighbours; }
 
 std::vector<std::byte> bytes_of(const GatheredParts& parts) {

@@ -36,7 +36,7 @@ constexpr int positions = 24;
 constexpr float most_kept = 0.25f;
 /// The same where photons lie behind the surface.
 constexpr float most_kept_before = 0.9f;
-/// Photons farther from the hit's plane do not count (docs/density.md).
+/// Photons farther from the hit's plane do not count (docs/method/density.md).
 constexpr float flat = 0.2f;
 /// Of the angle between the normals of surfaces that share light.
 constexpr float least_cosine = 0.5f;
