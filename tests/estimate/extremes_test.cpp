@@ -1,5 +1,4 @@
-// Extremes of size, shape, number and power against the double-precision oracle
-// (docs/reference/limits.md).
+// Extremes of size, shape, number and power against the double-precision oracle (docs/extremes.md).
 #include <bit>
 #include <cmath>
 
