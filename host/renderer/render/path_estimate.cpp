@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "light/light_at_points.hpp"
+#include "light/row_sum.hpp"
 #include "photile/renderer.hpp"
 #include "render/film.hpp"
 #include "render/hit_source.hpp"
