@@ -96,10 +96,10 @@ struct RenderParameters {
   Film film = {};
   int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
   PhotonPaths photons = {};
-  /// Photon passes, see docs/memory.md: each traces its share of the photons, and the picture is
-  /// their mean. 0 = as many as the host's memory asks for. With light maps `on` whose nodes
-  /// gather: the number of parts into which all rays, photons and samples are divided, which are
-  /// done in rounds (docs/light-maps.md).
+  /// Photon passes, see docs/reference/memory.md: each traces its part of the photons, and the
+  /// picture is their mean. 0 = as many as the memory of the host requires. With light maps `on`
+  /// whose nodes gather: the number of parts into which all rays, photons and samples are divided,
+  /// which are done in rounds (docs/light-maps.md).
   int passes = 0;
   MapMode maps = MapMode::automatic;
   double radius = 0;  ///< metres; 0 = automatic_radius

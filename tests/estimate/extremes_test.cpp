@@ -1,4 +1,5 @@
-// Extremes of size, shape, number and power against the double-precision oracle (docs/extremes.md).
+// Extremes of size, shape, number and power against the double-precision oracle
+// (docs/reference/limits.md).
 #include <bit>
 #include <cmath>
 

@@ -275,7 +275,7 @@ TEST_CASE("worldToNDC puts the picture's corners on the unit square, (0,0) upper
   }
 }
 
-// Powers of 1e-12 to 1e12 through mixing, the EXR file and relighting (docs/extremes.md).
+// Powers of 1e-12 to 1e12 through mixing, the EXR file and relighting (docs/reference/limits.md).
 
 const std::vector<std::string> light_names{"star", "lamp", "glow", "speck"};
 const std::vector<double> powers{1e12, 1e3, 1e-3, 1e-12};

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-// Whole pictures at extremes of size and place (docs/extremes.md).
+// Whole pictures at extremes of size and place (docs/reference/limits.md).
 
 RenderParameters one_pass_picture() {
   RenderParameters parameters = small_picture(40'000, 64, 48);
