@@ -11,7 +11,7 @@ bench does not know, such as --repeats where nothing is repeated, is an error; w
 a kernel that does not compile, all are written and the exit code is 1. `run NAME --help` lists its
 options. `pairs` runs a bench twice in turns, so that both see the same load, with the programs of FOLDER first (those of
 another commit) or with the options after -- the second time, writes what `compare` reads and compares.
-docs/bench-points.md says what the files hold, docs/experiments.md what to do with them.
+docs/kernels/points.md says what the files hold, docs/kernels/bench.md what to do with them.
 """
 
 import argparse

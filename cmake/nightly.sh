@@ -89,7 +89,7 @@ step "sanitizers" ctest --preset sanitizers --no-tests=error -R "$sanitized_test
 step "build threads" cmake/build.sh threads \
   photile_tests_{view,render,cache,trace,groups,daylight} photile_command
 # On one processor, where oneTBB has no threads of its own, and without the test that asks for them:
-# docs/testing.md.
+# docs/reference/testing.md.
 step "threads" taskset -c 0 ctest --preset threads --no-tests=error -E reproducib \
   -R "^((view|cache|trace|groups|daylight)/|render/(several|shared_rendering|load_balance))"
 step "build fuzzers" cmake/build.sh fuzzers photile_fuzz

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Prints the size of the code beside the bounds that the project keeps (docs/architecture.md), and beside what it
-# aims at where that is less. Exits with 1 where a bound is exceeded. A bound follows the code down, to the next hundred.
+# Prints the size of the code beside the bounds that the project keeps (docs/reference/architecture.md), and beside what
+# it aims at where that is less. Exits with 1 where a bound is exceeded. A bound follows the code down, to the next hundred.
 # Usage: cmake/size.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -5,7 +5,8 @@
 //
 // Slow cases answer fewer queries, so that a case keeps to --seconds-per-case.
 //
-// With --points and --queries the photons and the queries are those of files: docs/bench-points.md.
+// With --points and --queries the photons and the queries are those of files:
+// docs/kernels/points.md.
 #include <fmt/format.h>
 
 #include <algorithm>

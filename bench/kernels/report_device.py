@@ -201,7 +201,7 @@ def docs_table():
         if result["quick"] or "compile" not in grid:
             cells += [""] * 6
         else:
-            # A runtime that times no kernels (docs/runtimes.md) has no limits either.
+            # A runtime that times no kernels (docs/kernels/runtimes.md) has no limits either.
             timed = grid["estimate"]["kernels"] > 1e-3 * grid["estimate"]["all"]
             copied, operations = (f"{result['limits'][name] / 1e9:.0f}" if timed else ""
                                   for name in ("copied bytes per second", "operations per second"))

@@ -39,7 +39,7 @@ def specialisations(result):
 
 
 def estimate_cost(k):
-    """(bytes read from cache, operations) a hit, by the sum in docs/kernels.md."""
+    """(bytes read from cache, operations) a hit, by the sum in docs/kernels/cost.md."""
     # In units in which a photon has one unit of area: cells are 1 wide and 4 high.
     reach = math.sqrt(k / math.pi) * (1 + 0.7 / math.sqrt(k))
     candidates = (2 * reach + 1) * (2 * reach + 4)
@@ -49,7 +49,7 @@ def estimate_cost(k):
 
 
 # Least bytes that a kernel of the build moves, per photon, reference, cell and map
-# (docs/kernels.md), for the records of a diffuse scene with one light. A shape serves two maps.
+# (docs/kernels/data.md), for the records of a diffuse scene with one light. A shape serves two maps.
 BUILD_BYTES = {
     "find_insertions": (24, 0, 0, 0),   # position, triangle, list; bits
     "count_photons": (12, 4, 0, 0),  # triangle, list, bits

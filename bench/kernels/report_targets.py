@@ -16,7 +16,7 @@ def speedup(results, workload, k, rival, lists=False):
 
 
 def speedup_at_the_limits(results, workload, k, rival, lists=False):
-    """What the speedup would be if a hit took what the sum in docs/kernels.md takes at the limits of
+    """What the speedup would be if a hit took what the sum in docs/kernels/cost.md takes at the limits of
     the device, all cores busy; None where nothing was measured."""
     if results["knn"]["device"]["type"] != "cpu":
         return None

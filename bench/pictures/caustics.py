@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Errors of caustics beside references that know no photons: the table of docs/irradiance-gathering.md, and its pool.
+"""Errors of caustics beside references that know no photons (docs/method/caustics.md), and a pool.
 
     bench/pictures/caustics.py [--references FOLDER] [--mitsuba PYTHON] [--quality good final] [--photile COMMAND]
     bench/pictures/caustics.py --picture docs/pictures/gallery/pool.png

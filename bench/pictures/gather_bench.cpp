@@ -1,5 +1,5 @@
 // Irradiance at points that a camera sees: gathered by rays beside the k nearest photons, in
-// processor seconds a point and in error against paths. docs/irradiance-gathering.md has the table.
+// processor seconds a point and in error against paths. See docs/method/gathering.md.
 #include <algorithm>
 #include <cmath>
 #include <ctime>

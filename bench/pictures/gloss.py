@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Pictures of glossy scenes beside converged paths, the bundled office by day among them: the table in
-docs/gloss.md.
+"""Pictures of glossy scenes beside converged paths, the bundled office by day among them
+(docs/method/gloss.md).
 
     bench/pictures/gloss.py SCENE.gltf... --references FOLDER [--paths N] [--photile COMMAND]
                    [--options "--quality good"]

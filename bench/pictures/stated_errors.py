@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Errors that photile states, and is asked for, beside those measured: the tables of docs/light-maps.md.
+"""Errors that photile states, and is asked for, beside those measured (docs/method/rounds.md).
 
     bench/pictures/stated_errors.py SCENES [--photile FILE] [--only NAME] [--seeds N] [--size WxH]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Shows a baked room in Blender, beside photile's own picture of it: the table in docs/light-maps.md.
+"""Shows a baked room in Blender, beside photile's own picture of it.
 
     bench/rivals/baked_blender.py [SCENES] [--photile COMMAND] [--pictures FOLDER]
 

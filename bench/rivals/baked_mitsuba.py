@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""Shows a baked room in Mitsuba 3, beside photile's own picture of it: the table in
-docs/light-maps.md.
+"""Shows a baked room in Mitsuba 3, beside photile's own picture of it.
 
     bench/rivals/baked_mitsuba.py [SCENES] [--photile COMMAND] [--pictures FOLDER]
 

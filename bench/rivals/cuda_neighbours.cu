@@ -9,13 +9,13 @@
 //   ./cuda_neighbours --points photons.npy --queries hits.npy -k 50,200,1000 --seconds 120
 //
 // --plane makes the points of the workload "plane" of photile_bench_knn; files are arrays of n x 3
-// or n x 6 floats of 4 bytes (docs/bench-points.md), of which normals are not looked at. --radius
+// or n x 6 floats of 4 bytes (docs/kernels/points.md), of which normals are not looked at. --radius
 // bounds the distance, for every k one number; without it R is twice the median distance to the
 // k-th point, as automatic_radius has it, here by brute force over 256 points. --host runs those
 // structures that the libraries build on the host too, to test this program where no GPU is; g++
 // takes cudaKDTree's lists there with -fpermissive only.
 //
-// Each line of the output is a row (docs/bench-points.md), seconds of the queries' kernel by CUDA
+// Each line of the output is a row (docs/kernels/points.md), seconds of the queries' kernel by CUDA
 // events and of one build, the second, by the host's clock. "wrong" counts those of 256 queries
 // where the squared distance to the k-th point or the sum of the squared distances differs from
 // brute force in double precision by more than rounding. Photons count into photile's sums with

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""photile's path tracer beside Mitsuba 3's on glossy surfaces: the figures in docs/gloss.md.
+"""photile's path tracer beside Mitsuba 3's on glossy surfaces (docs/method/gloss.md).
 
     bench/rivals/gloss_mitsuba.py SCENE.gltf... --references FOLDER [--paths N] [--photile COMMAND]
 

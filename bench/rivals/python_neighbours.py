@@ -6,7 +6,7 @@
 A million uniform points on a plane, as photile_bench_knn has them, and as many queries as it asks; both in
 Morton order, and of every library the fastest of several sizes of leaf. Rivals are those of scipy, pykdtree
 and open3d that can be imported: install them with pip. Rows are as those of photile_bench_knn
-(docs/bench-points.md); distances are compared with scipy's, and where one differs the exit code is 1.
+(docs/kernels/points.md); distances are compared with scipy's, and where one differs the exit code is 1.
 """
 
 import argparse

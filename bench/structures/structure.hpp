@@ -1,5 +1,5 @@
 // What the uniform grid is compared with, each by its name: other ways to find the k nearest
-// photons. docs/experiments.md says how to add one.
+// photons. docs/kernels/structures.md says how to add one.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@
 
 namespace photile::bench {
 
-/// The version of the JSON files (docs/bench-points.md) is raised when a name changes its meaning
+/// The version of the JSON files (docs/kernels/points.md) is raised when a name changes its meaning
 /// or goes, not when one comes.
 inline constexpr int schema_version = 2;
 

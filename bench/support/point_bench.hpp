@@ -26,8 +26,8 @@ struct PointBenchSettings {
 
 /// Times the structures that are requested, but for those of a map each, on every device of
 /// options.device ("" = all), and nanoflann and Embree on the host. What the rows hold:
-/// docs/bench-points.md. Returns false where a radius or an irradiance is not the oracle's. Errors:
-/// those of read_points, of PhotonCloud and of the devices.
+/// docs/kernels/points.md. Returns false where a radius or an irradiance is not the oracle's.
+/// Errors: those of read_points, of PhotonCloud and of the devices.
 bool run_point_bench(const BenchOptions& options, const PointBenchSettings& settings);
 
 }  // namespace photile::bench

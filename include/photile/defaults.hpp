@@ -143,7 +143,7 @@ inline constexpr double node_inset = 0x1p-5;
 /// the radius.
 inline constexpr float photon_ray_offset = 0x1p-2f;
 
-// Filter of gloss (docs/gloss.md)
+// Filter of gloss (docs/method/gloss.md)
 /// A pixel is averaged with those of one row on each side for each `filter_rows` rows that the
 /// picture has, and with `filter_most_reach` at most: what is reflected grows with the picture.
 inline constexpr int filter_rows = 48, filter_most_reach = 8;

@@ -76,7 +76,7 @@ struct PhotonPaths {
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
 };
 
-/// What finds the light that a specular lobe reflects (docs/gloss.md).
+/// What finds the light that a specular lobe reflects (docs/method/gloss.md).
 enum class GlossMode {
   photons,   ///< the photons around a hit, weighed by the lobe: the method of the paper
   rays,      ///< a ray of each hit, along lobes that are narrow or faint; photons for others
@@ -99,7 +99,7 @@ struct RenderParameters {
   /// Photon passes, see docs/reference/memory.md: each traces its part of the photons, and the
   /// picture is their mean. 0 = as many as the memory of the host requires. With light maps `on`
   /// whose nodes gather: the number of parts into which all rays, photons and samples are divided,
-  /// which are done in rounds (docs/light-maps.md).
+  /// which are done in rounds (docs/method/rounds.md).
   int passes = 0;
   MapMode maps = MapMode::automatic;
   double radius = 0;  ///< metres; 0 = automatic_radius
@@ -111,11 +111,11 @@ struct RenderParameters {
   /// > 0: direct light is found by this many light samples at each hit. 0 = photons carry it.
   int direct_rays = 0;
   GlossMode gloss = GlossMode::automatic;
-  LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/light-maps.md
+  LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/method/light-maps.md
   /// > 0: each node of light maps gathers light by this many rays and as many light samples, fewer
-  /// at finer levels (docs/light-maps.md). 0 = the photon estimate values them.
+  /// at finer levels (docs/method/gathering.md). 0 = the photon estimate values them.
   int light_map_rays = 0;
-  /// Quicker, for first pictures: see docs/irradiance-gathering.md, photons behind walls.
+  /// Quicker, for first pictures: see docs/method/hidden-photons.md.
   bool counts_hidden_photons = false;
   double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = by the photons
   double light_map_detail = 0;   ///< metres between the finest nodes, at most; 0 = by the photons

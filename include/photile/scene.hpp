@@ -447,7 +447,7 @@ inline constexpr std::uint32_t max_dense_lights = 8;
 
 /// The features that later stages must support; those that are false cost nothing. From them follow
 /// the records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
-/// compiled with, and what shadow rays look at (docs/kernels.md, "Records").
+/// compiled with, and what shadow rays look at (docs/kernels/data.md, "Records").
 struct SceneNeeds {
   bool glossy = false;       ///< some opaque material has a specular lobe or a normal map
   bool normal_maps = false;  ///< some opaque material has a normal map

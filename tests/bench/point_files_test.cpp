@@ -94,7 +94,7 @@ TEST_CASE("files that hold no points are refused with what was found there") {
 }
 
 // The bench on photons of files: every structure answers as a search in double precision does, and
-// rows are as docs/bench-points.md says.
+// rows are as docs/kernels/points.md says.
 
 /// Points near a saddle, with or without a normal.
 void write_saddle(const std::filesystem::path& file, int count, unsigned seed, bool normals) {

@@ -30,7 +30,7 @@ SIZE = (320, 200)  # pixels of the page and of pictures
 
 # Limits. A picture's squared error relative to what is seen, as `photile compare` has it; the mean;
 # lux beside those of a picture, of every click, and beside measured ones, of nine clicks in ten, for
-# light maps blur light at the borders of shadows, in pictures, too (docs/light-maps.md); how many
+# light maps blur light at the borders of shadows, in pictures, too (docs/method/light-maps.md); how many
 # standard errors lux may differ more; main thread of a frame, ms.
 LARGEST_REL_MSE = 0.003
 LARGEST_MEAN = 0.005

@@ -164,7 +164,7 @@ namespace {
       "space (ulimit -v)\n");
 }
 
-/// Compilers of devices abort in states that they do not handle (docs/runtimes.md).
+/// Compilers of devices abort in states that they do not handle (docs/kernels/runtimes.md).
 void end_where_a_compiler_aborts() {
   device::handle_aborts_by([](int) {
     end_in_runtime(

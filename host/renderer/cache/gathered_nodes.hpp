@@ -36,7 +36,7 @@ struct GatheredPoints {
 };
 
 /// Gathers irradiance at nodes. The noise of rays is removed by rules that depend on the noise
-/// itself (docs/light-maps.md): nodes of the coarsest level are averaged with those around them,
+/// itself (docs/method/filter.md): nodes of the coarsest level are averaged with those around them,
 /// finer ones with those next to them, as far as differences may be noise and nothing stands
 /// between the nodes. Direct light and light of other surfaces are treated apart.
 class GatheredNodes : public NodeSource {

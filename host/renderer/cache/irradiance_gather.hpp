@@ -59,7 +59,7 @@ struct GatheredParts {
 };
 
 /// Gathers the light of each layer at points, in three parts that together are all light
-/// (docs/irradiance-gathering.md): directly from lights, by light samples and by the rays that meet
+/// (docs/method/gathering.md): directly from lights, by light samples and by the rays that meet
 /// them; over mirrors or through glass that bends it and nothing else, by the photons that brought
 /// it; all other, by rays with the density of the cosine that read the photons of all light where
 /// they end.

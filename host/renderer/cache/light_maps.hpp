@@ -72,7 +72,7 @@ struct LightMapStatistics {
 /// Irradiance of every light at the nodes of lattices in the planes of the surface, finer where it
 /// varies. Nodes are valued when points first need them. The positions and values of nodes, and
 /// which cells are split, depend on the scene, the parameters and the source alone, and not on
-/// earlier queries: see docs/light-maps.md.
+/// earlier queries: see docs/method/light-maps.md.
 ///
 /// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
 /// the light of their own position, which does not reach the visible surface beside them: nodes

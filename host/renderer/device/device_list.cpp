@@ -137,8 +137,8 @@ std::vector<cl_platform_id> platforms() {
 }
 
 /// Intel's runtime for CPUs would put several work-items into one vector, beside the vectors that
-/// kernels hold, and builds wrong photon maps that way (docs/runtimes.md). Call before the first
-/// OpenCL call. What the user set stays.
+/// kernels hold, and builds wrong photon maps that way (docs/kernels/runtimes.md). Call before the
+/// first OpenCL call. What the user set stays.
 void keep_intel_from_vectorizing() { ::setenv("CL_CONFIG_CPU_VECTORIZER_MODE", "1", 0); }
 
 /// PoCL aborts where it cannot start a thread, and where its number of threads is not a number.

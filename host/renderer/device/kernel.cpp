@@ -20,12 +20,12 @@ namespace {
 constexpr std::size_t max_work_items = std::size_t{1} << 31;
 
 /// For fewer work-items than this PoCL 3.1 compiles a separate version of the kernel for small
-/// grids, and another for larger ones (docs/runtimes.md): idle work-items cost microseconds, a
-/// version 60 ms.
+/// grids, and another for larger ones (docs/kernels/runtimes.md): idle work-items cost
+/// microseconds, a version 60 ms.
 constexpr std::size_t least_unspecialised = std::size_t{1} << 16;
 
 /// Held while PoCL compiles: two threads of a process that compile the same kernel at the same time
-/// crash PoCL 3.1 once in a while (docs/runtimes.md).
+/// crash PoCL 3.1 once in a while (docs/kernels/runtimes.md).
 std::unique_lock<std::mutex> lock_compilation(bool is_pocl) {
   static std::mutex mutex;
   return is_pocl ? std::unique_lock(mutex) : std::unique_lock<std::mutex>();

@@ -25,7 +25,7 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
   EstimateTuning tuning;
   tuning.strategy = strategy;
   if (strategy == EstimateStrategy::lanes) {
-    // Measured on one card: docs/kernels.md#defaults-of-each-kind-of-device.
+    // Measured on one card: docs/kernels/estimate.md.
     constexpr int usual_width = 32, width_of_shuffles = 16;
     const auto& widths = estimate::lane_widths;
     const auto in_step = static_cast<int>(device.lanes);

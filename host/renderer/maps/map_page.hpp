@@ -83,7 +83,7 @@ constexpr std::uint32_t record_stride(std::uint32_t records) {
 std::uint32_t bytes_per_light(const SceneNeeds& needs);
 
 /// Bytes of a record in all of its buffers, without the normals of normal-filtered maps:
-/// docs/kernels.md, "Records".
+/// docs/kernels/data.md, "Records".
 std::uint32_t bytes_per_record(const SceneNeeds& needs);
 
 /// LIGHT_BYTES and GLOSSY, each where the scene needs it.

@@ -62,8 +62,8 @@ struct RefinementSteps {
 /// Errors: those of `add`; Interrupted, when `progress` says so.
 double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress& progress);
 
-/// Whether these settings ask for parts (docs/light-maps.md): nodes of light maps gather, and there
-/// are several passes, each a part of the work.
+/// Whether these settings ask for parts (docs/method/rounds.md): nodes of light maps gather, and
+/// there are several passes, each a part of the work.
 bool in_parts(const RenderParameters& asked);
 /// The settings of this many parts together, which are `in_parts` where there are several.
 RenderParameters of_parts(const RenderParameters& part, int parts);
