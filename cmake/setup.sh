@@ -86,6 +86,7 @@ appstream              | the same
 python3-pytest         | tests of the Python module
 mypy                   | the same: its types
 python3-pandas         | the same: an example with tables
+mkdocs                 | tests: the documentation as a site
 END
 )
 fi
