@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs the worked example of docs/walkthrough.md, and the one measurement of docs/measuring.md, as they are
+"""Runs the worked example of docs/guide/living-room.md, and the measurement of docs/guide/measure.md, as they are
 written there: puts the commands with what they print into the pages and their pictures into docs/pictures.
 
     bench/lighting/worked_example.py [--photile FILE] [--quick]
@@ -50,7 +50,7 @@ MEASUREMENT = (Step("", "photile measure living-room.gltf --plane floor+0.75 --m
 
 
 if __name__ == "__main__":
-    run_page(ROOT / "docs/measuring.md", "lighting/worked_example.py", MEASUREMENT, ROOT / "scenes/living-room",
+    run_page(ROOT / "docs/guide/measure.md", "lighting/worked_example.py", MEASUREMENT, ROOT / "scenes/living-room",
              "example", arguments(__doc__))
-    run_page(ROOT / "docs/walkthrough.md", "lighting/worked_example.py", STEPS, ROOT / "scenes/living-room",
+    run_page(ROOT / "docs/guide/living-room.md", "lighting/worked_example.py", STEPS, ROOT / "scenes/living-room",
              "example", arguments(__doc__))

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""A film of what the window shows from its start on, and how far that is from the finished picture: the
-table of docs/walkthrough.md.
+"""A film of what the window shows from its start on, and how far that is from the finished picture.
 
     bench/pictures/window_film.py [SCENES] [--only NAME] [--seconds N] [--size WxH] [--film FOLDER] [--slide]
 

@@ -43,7 +43,7 @@ PictureHeader read_header(const std::filesystem::path& file);
 
 /// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs), a PNG,
 /// JPEG, TIFF, WebP, BMP, GIF, Targa, PNM or Radiance picture: upright and in linear Rec.709, as
-/// docs/scene-files.md has it, integers up to 1. Checks limits.hpp before decoding.
+/// docs/reference/scene-files.md has it, integers up to 1. Checks limits.hpp before decoding.
 /// Errors: InputError naming the file.
 Image read_image(const std::filesystem::path& file);
 

@@ -143,7 +143,7 @@ struct SceneLoadOptions {
   bool may_be_dark = false;  ///< no error where there is no light
   SkySituation situation = {};
   std::filesystem::path luminaires =
-      {};  ///< luminaires to place, JSON (docs/luminaires.md); "" = none
+      {};  ///< luminaires to place, JSON (docs/guide/luminaires.md); "" = none
   /// Text that replaces the content of that file while it is edited, "" = the file; a scene without
   /// any light then gets one.
   std::string luminaires_text = {};

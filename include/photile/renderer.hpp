@@ -89,8 +89,8 @@ std::string_view name_of(GlossMode mode);
 inline constexpr std::array all_gloss_modes = {GlossMode::photons, GlossMode::rays,
                                                GlossMode::filtered, GlossMode::automatic};
 
-/// The settings of a rendering, each once. docs/settings.md states what follows from them, which
-/// stage reads which, and their ranges.
+/// The settings of a rendering, each once. docs/reference/settings.md states what follows from
+/// them, which stage reads which, and their ranges.
 struct RenderParameters {
   std::uint64_t seed = defaults::seed;  ///< of all random numbers
   Film film = {};
@@ -189,7 +189,8 @@ constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t
 /// A description of its pictures.
 std::string_view description_of(Quality quality);
 
-/// Sets what the table of settings (docs/settings.md) has for the quality, and leaves all others.
+/// Sets what the table of settings (docs/reference/settings.md) has for the quality, and leaves all
+/// others.
 void set_quality(RenderParameters& parameters, Quality quality);
 
 /// Names of all settings, such as "photons_emitted", in the order of the table.

@@ -19,7 +19,7 @@ from .scenes import Camera, Scene
 __all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
 
 SETTINGS: tuple[str, ...] = tuple(_photile.setting_names())
-"""Names of the settings that `render` and `measure` take; docs/settings.md says what they are."""
+"""Names of the settings that `render` and `measure` take; docs/reference/settings.md says what they are."""
 
 Change = Union[float, str]
 Changes = Optional[Mapping[str, Change]]

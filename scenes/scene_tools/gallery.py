@@ -1,4 +1,4 @@
-"""Seven small scenes, each for one thing that light does; docs/gallery.md shows them."""
+"""Seven small scenes, each for one thing that light does; docs/measured/gallery.md shows them."""
 
 import itertools
 import math

@@ -62,8 +62,8 @@ TEST_CASE("the documentation holds the tables of settings as the command prints 
   const std::string all = tables.output.substr(0, blank), qualities = tables.output.substr(blank);
   REQUIRE(std::count(all.begin(), all.end(), '\n') > 10);
   REQUIRE(std::count(qualities.begin(), qualities.end(), '\n') > 5);
-  CHECK_THAT(bytes_of(source_folder() / "docs/settings.md"), Contains(all));
-  CHECK_THAT(bytes_of(source_folder() / "docs/command-line.md"), Contains(qualities));
+  CHECK_THAT(bytes_of(source_folder() / "docs/reference/settings.md"), Contains(all));
+  CHECK_THAT(bytes_of(source_folder() / "docs/reference/options.md"), Contains(qualities));
 }
 
 TEST_CASE("every setting is an option of render, or one that --set reaches") {

@@ -26,7 +26,7 @@ from tools.report_section import record_line  # noqa: E402
 
 OLDEST = 200  # commits
 # Their tables are compared with what the command prints by tests/command.
-LEFT_OUT = ("command-line.md", "settings.md")
+LEFT_OUT = ("options.md", "settings.md")
 SECTIONS = ("Three figures", "When not to use it")
 MARKER = re.compile(r"<!-- figure: ([\w.]+) -->")
 NUMBER = re.compile(r"(?<![\w.,])(\d[\d,]*(?:\.\d+)?)(?![\w]|[.,]\d)")

@@ -17,7 +17,7 @@
 namespace photile::test {
 namespace {
 
-/// The head as docs/saved-maps.md has it: 104 bytes.
+/// The head as docs/reference/saved-maps.md has it: 104 bytes.
 struct Head {
   std::array<char, 8> magic;
   std::uint32_t version, byte_order;

@@ -28,7 +28,7 @@ for header in "$source"/include/photile/*.hpp; do
 done
 for program in "$source"/docs/examples/*.{cpp,c}; do
   python3 -c 'import sys; sys.exit(open(sys.argv[1]).read() not in open(sys.argv[2]).read())' \
-    "$program" "$source/docs/library.md" || fail "docs/library.md shows another $program"
+    "$program" "$source/docs/reference/library.md" || fail "docs/reference/library.md shows another $program"
 done
 # The programs are copied, so that no header of the source folder can be found by chance.
 cp -r "$source/docs/examples" "$scratch/out/examples"

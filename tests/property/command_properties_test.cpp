@@ -121,7 +121,7 @@ std::string problem_of(const fs::path& file) {
   if (ending == ".csv" || ending == ".svg" || ending == ".html" || ending == ".ill" ||
       ending == ".res") {
     for (const char* none : {"nan", "inf"}) {
-      // Lines of points that are left out, as docs/measuring.md says.
+      // Lines of points that are left out, as docs/reference/measurements.md says.
       if (ending == ".res" && std::string_view(none) == "nan") continue;
       const std::size_t place = bytes.find(none);
       if (place != std::string::npos &&

@@ -636,7 +636,7 @@ def check_transform(browser, folder, stops):
 
 
 def automatic_exposure(light):
-    """The rule of docs/pictures.md."""
+    """The rule of docs/reference/pictures.md."""
     luminance = light @ [0.2126, 0.7152, 0.0722]
     luminance = luminance[luminance > 0]
     median = np.median(luminance)

@@ -134,7 +134,7 @@ TEST_CASE("The GGX lobe agrees with Walter's D and Smith's height-correlated G2 
 }
 
 TEST_CASE("A white metal reflects all that falls in, smooth or rough, from every side") {
-  // What is left is the error of the fit to its albedo: docs/materials.md.
+  // What is left is the error of the fit to its albedo: docs/reference/materials.md.
   for (const double alpha : {0.05, 0.1, 0.3, 0.6, 1.0})
     for (const double cosine : {0.1, 0.3, 0.6, 0.9, 1.0}) {
       CAPTURE(alpha, cosine);
@@ -143,7 +143,7 @@ TEST_CASE("A white metal reflects all that falls in, smooth or rough, from every
 }
 
 TEST_CASE("A white base under a coat reflects all that falls in, from every side") {
-  // What is left is the error of the fit to the coat's albedo: docs/materials.md.
+  // What is left is the error of the fit to the coat's albedo: docs/reference/materials.md.
   for (const double alpha : {0.05, 0.1, 0.3, 0.6, 1.0})
     for (const double cosine : {0.1, 0.3, 0.6, 0.9, 1.0}) {
       CAPTURE(alpha, cosine);

@@ -15,7 +15,7 @@ namespace photile::app {
 /// photile/errors.hpp.
 int run_command_line(int argument_count, const char* const* arguments);
 
-/// Documented in docs/command-line.md.
+/// Documented in docs/reference/commands.md.
 enum class ExitCode : int {
   success = 0,        ///< the output is complete
   failure = 1,        ///< unwritable output, disk full, internal error

@@ -152,7 +152,7 @@ void add_settings_command(CLI::App& photile) {
   CLI::App* command =
       photile.add_subcommand("settings", "List what --set sets, with defaults and ranges");
   auto markdown = std::make_shared<bool>(false);
-  command->add_flag("--markdown", *markdown, "as docs/settings.md holds it");
+  command->add_flag("--markdown", *markdown, "as docs/reference/settings.md holds it");
   command->callback(
       [markdown] { std::cout << (*markdown ? settings_markdown() : settings_text()); });
 }

@@ -79,7 +79,7 @@ std::string options_text(const RenderParameters& parameters,
 /// What `photile settings` prints: all that --set can set.
 std::string settings_text();
 
-/// The list as docs/settings.md holds it, in Markdown, and what qualities set.
+/// The list as docs/reference/settings.md holds it, in Markdown, and what qualities set.
 std::string settings_markdown();
 
 }  // namespace photile::app

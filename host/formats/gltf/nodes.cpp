@@ -201,7 +201,7 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
         !asked_for(node) && sounds_like_light(node.name)) {
       context.warnings.add("node", node_name(model, visit.node),
                            "no mesh, light, camera or child; Blender's exporter drops area lights "
-                           "like that: give it a luminous panel, see docs/lights.md");
+                           "like that: give it a luminous panel, see docs/guide/luminaires.md");
     }
   }
 }

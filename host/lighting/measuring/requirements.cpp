@@ -20,7 +20,7 @@ constexpr double background_share = 1.0 / 3;         // of the immediate surroun
 constexpr bool unconfirmed = false;
 
 /// Required values; the modified ones may be asked for by hand. Where they were confirmed:
-/// docs/measuring.md.
+/// docs/reference/targets.md.
 const std::array<Requirement, 17> rows{{
     {"corridor", "table 9", "circulation areas and corridors", 100, 0.40, 28, 40, 50, 50, 30},
     {"stairs", "table 9", "stairs, escalators and travelators", 100, 0.40, 25, 40, 50, 50, 30},

@@ -21,9 +21,9 @@
 // way out (Kelemen and Szirmay-Kalos, "A microfacet based coupled specular-matte BRDF model",
 // 2001). Means are over a diffusely lit hemisphere. So f is reciprocal, and a white metal, or a
 // white base under any coat, reflects all that falls in, except for the error of the approximation
-// of E1 and E (docs/materials.md). glTF's own formula, albedo (1 - F) and one facet, loses more
-// than half of the light on a rough white metal, and makes light on a smooth white dielectric at
-// grazing angles.
+// of E1 and E (docs/reference/materials.md). glTF's own formula, albedo (1 - F) and one facet,
+// loses more than half of the light on a rough white metal, and makes light on a smooth white
+// dielectric at grazing angles.
 #ifndef PHOTILE_DEVICE_BSDF_H
 #define PHOTILE_DEVICE_BSDF_H
 
