@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""The tables of options in docs/reference are what the program prints.
+"""The tables in docs/reference are what the program prints and its source holds, the programs those of docs/examples.
 
-    options.py PHOTILE SOURCE_FOLDER [--write]
+    reference.py PHOTILE SOURCE_FOLDER [--write]
 
 A page has the table of a command between <!-- begin: photile COMMAND --help --> and <!-- end -->. Without COMMAND it is
 the list of commands, with "render: common options" the table of the options that commands share; with --markdown in
-place of --help it is the table of settings, or "settings: qualities". Without --write a table that differs, and a command
-that has none, is a fault.
+place of --help it is the table of settings, or "settings: qualities". Between <!-- begin: docs/examples/FILE --> and
+<!-- end --> is that program, after <!-- begin: host/lighting/measuring/requirements.cpp --> its table. Without --write a part that differs, and a command that has none, is a fault.
 """
 
 import pathlib
@@ -16,6 +16,10 @@ import sys
 
 PAGES = "docs/reference"
 BLOCK = re.compile(r"(<!-- begin: photile (.*?) ?(--help|--markdown) -->\n)(.*?)(<!-- end -->\n)", re.DOTALL)
+TARGETS = "host/lighting/measuring/requirements.cpp"
+TARGET_ROW = re.compile(r'\{"([a-z-]+)", "table (\d+)", "([^"]+)",\s*([\d., \n]+?)(,\s*unconfirmed)?\}')
+TARGET_BLOCK = re.compile(rf"(<!-- begin: {re.escape(TARGETS)} -->\n).*?(<!-- end -->\n)", re.DOTALL)
+EXAMPLE = re.compile(r"(<!-- begin: (docs/examples/\S+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
 # Titles of photile render whose options other commands share; their table is that of `photile render`.
 COMMON = ("Picture", "Photons", "Estimate", "Settings", "Scene", "Lights", "Device", "Run")
 COLUMN = 30  # of the help, where what an option does begins
@@ -117,6 +121,16 @@ def block(photile, command, option):
     return "\n".join(["| command | what it does |", "|---|---|", *rows])
 
 
+def targets(source):
+    """Names of activities and what EN 12464-1 requires for them; * = not confirmed."""
+    lines = ["<!-- not measured -->", "", "| name | table | activity | Em | Uo | UGR | Ra | Ez | Ewall | Eceiling |", "|---|" + "--:|" * 9]
+    lines[-1] = lines[-1].replace("--:|--:|", "--:|---|", 1)
+    for name, table, activity, numbers, unconfirmed in TARGET_ROW.findall((source / TARGETS).read_text(encoding="utf-8")):
+        values = [number.strip() for number in numbers.split(",")]
+        lines.append("| " + " | ".join([f"`{name}`{'*' if unconfirmed else ''}", table, activity, *values]) + " |")
+    return "\n".join(lines)
+
+
 def main():
     photile, source = sys.argv[1], pathlib.Path(sys.argv[2])
     wrong, shown = [], set()
@@ -127,12 +141,17 @@ def main():
             shown.add(match[2])
             return f"{match[1]}\n{block(photile, match[2], match[3])}\n\n{match[5]}"
 
-        new = BLOCK.sub(of_program, text)
+        def example(match):
+            file = source / match[2]
+            return f"{match[1]}\n```{file.suffix[1:]}\n{file.read_text(encoding='utf-8')}```\n\n{match[3]}"
+
+        new = EXAMPLE.sub(example, BLOCK.sub(of_program, text))
+        new = TARGET_BLOCK.sub(lambda match: f"{match[1]}\n{targets(source)}\n\n{match[2]}", new)
         if new != text and "--write" in sys.argv:
             page.write_text(new, encoding="utf-8")
         elif new != text:
             wrong.append(f"{page.relative_to(source)}: a table is not what the program prints; write it by "
-                         f"bench/tools/options.py PHOTILE {source} --write")
+                         f"bench/tools/reference.py PHOTILE {source} --write")
     wrong += [f"{PAGES}: no page has the options of photile {name}" for name, _ in commands_of(photile)
               if name not in shown]
     print("\n".join(wrong) or "all options stand in the reference")
