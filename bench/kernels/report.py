@@ -36,8 +36,8 @@ def load(results):
     if average <= BUSY_LOAD:
         return ""
     return (f"other programs were running (load average {average:.1f} before the search was timed). Ratios of the search "
-            "are of runs in turns and of the processor's seconds; times that a caller waits are longer than on a "
-            "machine with nothing else to do")
+            "come from runs in turns and from processor time, which other programs change little. Waiting times are "
+            "longer than on an idle machine")
 
 
 def doubts(results):
@@ -101,9 +101,9 @@ def structure_and_selection(knn):
 def page(results, plots, ratio_plots, notes):
     sections = [
         "# Benchmarks",
-        "The search and the estimate beside other libraries and structures that find the same photons, the build of the "
-        "maps, relighting and starts. `bench/run_all.sh --docs` measures all of it and writes this page. Times are "
-        "medians, with the least and the largest in brackets.",
+        "The search for the k nearest photons beside other libraries and structures, the build of the maps, relighting and "
+        "starts. `bench/run_all.sh --docs` measures all of it and writes this page. Times are medians, with the "
+        "smallest and the largest in brackets.",
         machine_section(results),
         "On a GPU: `PHOTILE_DEVICE=gpu bench/run_all.sh --docs`.",
         "## Targets", report_targets.write_table(results, bool(doubts(results))),

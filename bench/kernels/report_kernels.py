@@ -28,10 +28,9 @@ def specialisations(result):
                 cells += [f"{row['bytes per reference']:.0f}",
                           times(row["seconds"], 1e6 / row["hits"])]
             lines.append(cells)
-    text = ("What a scene does not use costs nothing: the same photons and hits, "
-            f"k = {result['settings']['k']}, estimated by the kernel of each kind of scene. Bytes of "
-            "device memory a reference, with its share of grids and cells; microseconds a hit, of "
-            "the kernel alone. Seven layers cost more to write, and lobes to evaluate.")
+    text = ("Each kind of scene has a kernel of its own, which holds only what the scene needs. The same photons and hits, "
+            f"k = {result['settings']['k']}: bytes of device memory for each reference, with its part of grids and "
+            "cells, and microseconds of the kernel for each hit.")
     header = ["scene"]
     for workload in workloads:
         header += [f"{workload}: bytes", "microseconds a hit"]
@@ -95,10 +94,9 @@ def roofline(result):
                       times(row["seconds"], 1e9 / row["hits"]), f"{100 * floor / taken:.0f}%"])
     text = (f"Limits of the device, measured in the same run: {copy / 1e9:.1f} GB/s copied in memory, "
             f"{cache / 1e9:.0f} GB/s read from the first-level cache, {operations / 1e9:.0f} billion "
-            "additions and multiplications a second, not fused, as the kernels'. What a hit must "
-            "read from cache and compute is a sum over the steps of the kernel "
-            "for photons spread evenly; of the living room, whose photons are not, it is less than "
-            "what is needed. Nanoseconds.")
+            "unfused additions and multiplications a second. Bytes and operations of a hit are summed "
+            "over the steps of the kernel for evenly spread photons; the uneven photons of the living room need more. "
+            "Times in nanoseconds.")
     header = ["estimate", "bytes a hit", "operations", "for the bytes", "for the operations", "taken",
               "floor / taken"]
     return text + "\n\n" + table(header, lines)
@@ -128,9 +126,8 @@ def build_kernels(result):
     references = ", ".join(
         f"{workload} {next(r for r in rows if r['workload'] == workload)['references']:,}"
         for workload in workloads)
-    text = (f"The build, kernel by kernel, k = {k}: milliseconds, GB/s of what it must move at least, "
-            f"and that beside copying. References: {references}. Maps are those of `--set maps=auto`, the "
-            "default.")
+    text = (f"The kernels of the build, k = {k}: milliseconds, the bytes that each has to move over that time, and this rate "
+            f"over that of copying. References: {references}. Maps are those of `--set maps=auto`, the default.")
     header = ["kernel"]
     for workload in workloads:
         header += [f"{workload}: ms", "GB/s", "of copy"]
@@ -147,11 +144,10 @@ def startup(result):
         for name in dict.fromkeys(name for row in rows for name in row[kind]):
             lines.append([title.format(name)] + [times(row[kind][name]) if name in row[kind] else ""
                                                  for row, _ in columns])
-    text = ("Milliseconds until kernels can run, in a process of its own: compiled with an empty "
-            "cache, loaded with a full one. PoCL compiles each kernel at its first launch, "
-            "which is in the kernel's row. With a full cache most of the time is clang's preprocessor, "
-            "which PoCL runs over each program and OpenCL's built-in functions to find it in its cache. "
-            "Shared libraries are those of the whole of photile.")
+    text = ("Milliseconds until the kernels can run in a new process: compiled with an empty cache, loaded with a full one. PoCL "
+            "compiles a kernel at its first launch, which the row of the kernel includes. With a full cache most of the "
+            "time is the preprocessor of Clang, which PoCL runs over each program to find it in its cache. Shared "
+            "libraries are those of the whole program.")
     return text + "\n\n" + table([""] + [name for _, name in columns], lines)
 
 
@@ -165,6 +161,6 @@ def profile(result):
     order = sorted(stages, key=stages.get, reverse=True)
     lines = [[stage] + [f"{100 * row['shares'].get(stage, 0):.0f}%" for row in result["results"]]
              for stage in order]
-    text = ("Samples of all threads while `Estimator::estimate` runs again and again "
-            "(`bench/kernels/profile.py`; perf, cpu-clock).")
+    text = ("Samples of all threads while `Estimator::estimate` runs repeatedly (`bench/kernels/profile.py`, by perf with "
+            "cpu-clock).")
     return text + "\n\n" + table(["stage"] + [row["case"] for row in result["results"]], lines)

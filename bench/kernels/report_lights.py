@@ -27,11 +27,10 @@ def text(result):
     header = ["lights"] + [f"{name}, ms" for name in STAGES.values()] + [
         "layers, MB", "a plane each, MB", "EXR, MB"]
     return "\n\n".join([
-        f"A hall with equal lamps in rows under its ceiling, {settings['emitted photons']:,} emitted "
-        f"photons over all lamps, {settings['width']} x {settings['height']}, one sample a pixel, "
-        "k = 50. *relight* reads the file and sums the picture with one lamp changed. Up to 8 "
-        "lights have a plane each; above, layers hold the lights that reach a pixel, and above 64 "
-        "an EXR has a part for each light.",
+        f"A hall with equal lamps in rows below its ceiling, {settings['emitted photons']:,} photons from all "
+        f"lamps together, {settings['width']} x {settings['height']}, one sample a pixel, k = 50. *relight* reads the "
+        "file and sums the picture with one lamp changed. Up to 8 lights have a plane each. With more, a pixel holds "
+        "the lights that reach it, and with more than 64 an EXR has a part for each light.",
         "![Time against lights](benchmarks/lights.svg)",
         table(header, lines(rows)),
         f"From {rows[0]['lights']:,} to {rows[-1]['lights']:,} lights: "

@@ -64,22 +64,21 @@ def structure_and_selection(rows):
     def span(values):
         return f"{figure(min(values))} to {figure(max(values))}"
 
-    return ("Times as long as the grid with its own selection, by radix:\n\n"
+    return ("Time over that of the grid with its own selection, by radix:\n\n"
             + table(["a million photons", "kd-tree in the plane, radix", "grid, heap", "kd-tree in the plane, heap",
                      "kd-tree in space, heap"], lines)
             + f"""
 
 Figure 6 of the paper has the grid 2 times as fast as a kd-tree in the plane, and 3 to 5 times as fast as one in space.
 
-- **The structure alone**: with the selection by radix for both, the grid is {span(cells)} times as fast as the kd-tree in
-  the plane, with the heap for both {span(trees)} times: on the plane nearly the paper's 2. Rows of cells are found by
-  arithmetic where a tree is walked, and the more neighbours, the less that counts; in interiors maps hold several surfaces
-  whose cells are looked through together.
-- **The selection alone**: over the same cells the heap takes {span(selection)} times as long as the radix, which computes
-  with whole vectors and does not branch on what it finds. The paper, which has no such selection, cannot show it; most of
-  the ratios to other libraries on this page are this.
-- **The 3 to 5 times of a tree in space** are not reproduced: here both trees split the longest side of the photons' box,
-  so that on a surface they are the same tree.""")
+- **Structure**: with the selection by radix for both, the grid is {span(cells)} times as fast as the kd-tree in the plane;
+  with a heap for both, {span(trees)} times. Rows of cells are found by arithmetic and nodes by walking the tree, which
+  matters less with more neighbours. In interiors a map holds several surfaces, whose cells are searched together.
+- **Selection**: in the same cells the heap takes {span(selection)} times as long as the radix, which computes with whole
+  vectors and without branches. Most of the ratios to other libraries on this page are due to it. The paper does not
+  have it.
+- **A tree in space**: both trees split the longest side of the box of the photons here, so that they are the same tree on
+  a surface. The factor of 3 to 5 of the paper is not reproduced.""")
 
 
 def text(rows):

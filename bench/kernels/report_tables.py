@@ -58,30 +58,29 @@ def knn_text(result):
     versions = result["versions"]
     newer = versions.get("nanoflann, newer")
     given = (f"`nanoflann, newer` is {newer}" if newer else
-             "a newer nanoflann was not at hand: `-DPHOTILE_NANOFLANN=FOLDER` takes its header")
+             "without a newer one beside it (`-DPHOTILE_NANOFLANN=FOLDER`)")
     return f"""
-{time_name(result).capitalize().replace("seconds", "microseconds")} a query; all hardware threads, the same queries, in
-the order of the renderer: by oriented face, then along a Morton curve. All find the k nearest photons within R
-(`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sum the flux of k - 1
-over the disc, per light. Maps are those of `--set maps=auto`, the default.
+{time_name(result).capitalize().replace("seconds", "microseconds")} for each query. All programs use all hardware threads and
+answer the same queries in the order of the renderer: by oriented face, then along a Morton curve. They find the k nearest
+photons within R (`automatic_radius`, twice the median distance to the k-th) on surfaces whose normals agree, and sum the
+flux of k - 1 of them over the disc, for each light. Maps are those of `--set maps=auto`, the default.
 
-- **In turns**: all of a case run once, then all again, {result["settings"].get("repeats", "some")} times. A ratio is the median of those of the rounds, so
-  that other programs slow both sides of it; on a device that is the host's processor the seconds are those of the
-  processor, of all threads together.
-- **Rivals at their best**: photons and queries are in Morton order, normals are looked up only where they differ, code
-  is compiled with `-march=native`. Of nanoflann's 3D tree the fastest of leaves of 10, 20, 32 and 64, with its own set
-  of results or with a heap, is chosen for each case. `nanoflann` is Debian's {versions.get("nanoflann", "")}, {given}.
+- **Turns**: the programs of a case run in turns, {result["settings"].get("repeats", "some")} times each. A ratio is the median over the turns, so that
+  other load slows both sides. Where the device is the processor of the host, times are processor seconds of all threads.
+- **Rivals**: photons and queries are in Morton order, normals are read only where they differ, and code is compiled with
+  `-march=native`. For nanoflann the fastest of leaves of 10, 20, 32 and 64 photons, with its own result set or with a
+  heap, is chosen for each case. `nanoflann` is Debian's {versions.get("nanoflann", "")}, {given}.
   `embree` is rtcPointQuery with a heap.
-- Times on the device are those of `Estimator::estimate`: transfers in and out are in them.
-- `uniform-grid-heap` has the cells of the grid and a heap, `kdtree-2d-radix-N` a tree with leaves of N and the grid's
-  selection: [structure and selection](#structure-and-selection).
-- *plane*: two triangles, uniform photons, 524,288 queries. Interiors: traced photons, the primary
-  hits of the camera at 512 x 512, every surface diffuse. Slow cases answer every 2nd, 4th, ... block
-  of 256 queries.
-- Radius and irradiance are compared with a search in double precision at some hits, and where one differs the bench
-  fails.
+- **Device**: times are those of `Estimator::estimate`, with the transfers in both directions.
+- **Variants**: `uniform-grid-heap` searches the cells of the grid with a heap, `kdtree-2d-radix-N` searches a tree with
+  leaves of N photons by the selection of the grid ([structure and selection](#structure-and-selection)).
+- **Workloads**: *plane* has two triangles with uniform photons and 524,288 queries. Interiors have traced photons,
+  diffuse surfaces, and the primary hits of the camera at 512 x 512. Slow cases answer every 2nd, 4th, ... block of 256
+  queries.
+- **Check**: at some hits radius and irradiance are compared with a search in double precision. A difference fails the
+  bench.
 
-The ratio is the time of the best rival of the case over that of the row: more is better, below 1 is slower."""
+The ratio is the time of the fastest rival of the case over that of the row. Larger is faster."""
 
 
 PRODUCT_MAPS = "auto"  # of the setting maps; other rows show what it saves
@@ -133,17 +132,17 @@ def knn_table(rows, lists=False):
 
 def lists(result, python):
     """Tables of lists of neighbours; `python`: what bench/rivals/python_neighbours.py wrote, or None."""
-    parts = ["""The neighbours themselves: of the grid by `Estimator::nearest`. All lists stay in the order of the search;
-`PhotonCloud::nearest` sorts its own by distance on all threads."""]
+    parts = ["""Lists of the k neighbours, by `Estimator::nearest` for the grid. They stay in the order of the search;
+`PhotonCloud::nearest` sorts them by distance on all threads."""]
     for (workload, photons), rows in cases_of_a_million(result).items():
         chosen = [row for row in rows if LISTS in row["structure"]]
         if chosen:
             parts.append(f"**{workload}, {photons:,} photons**\n\n" + knn_table(chosen, True))
     if python:
         versions = ", ".join(f"{name} {version}" for name, version in python["versions"].items())
-        parts.append(f"""By libraries of Python and photile's module, in turns in one process, on the points of the plane;
-`bench/rivals/python_neighbours.py`; {versions}. Processor microseconds a query, and how many times as long as
-photile's lists, nearest first, and their squared distances.""")
+        parts.append(f"""Python libraries and photile's module, in turns in one process, on the points of the plane
+(`bench/rivals/python_neighbours.py`; {versions}). Processor microseconds for each query, and the ratio to photile, which
+lists the neighbours with their squared distances, nearest first.""")
         rows = [{**row, "time": row["processor seconds"]} for row in python["results"] if "seconds" in row]
         ks = sorted({row["k"] for row in rows})
         lines = []
@@ -170,9 +169,9 @@ def parts_of_time(result):
             lines.append([f"{workload}, {row['structure']}, k = {row['k']}",
                           *(f"{value:.0f}" for value in (part[""], part["kernel "], part[""] - part["kernel "],
                                                          part["processor "], part["system "]))])
-    return ("Nanoseconds a query of the grid: what a caller waits, of which kernels run, and host and transfers take the "
-            "rest; seconds of the processor, of which the operating system's are above all memory that is touched for the "
-            "first time.\n\n" + table(["case", "in all", "kernels", "the rest", "processor", "operating system"], lines))
+    return ("Nanoseconds for each query of the grid. *In all* is the time that a caller waits: kernels, and the rest, which "
+            "is the host and transfers. *Processor* is the time of all threads. *Operating system* is a part of it, mostly "
+            "for memory that is touched for the first time.\n\n" + table(["case", "in all", "kernels", "the rest", "processor", "operating system"], lines))
 
 
 def variants(result):
@@ -186,7 +185,7 @@ def variants(result):
                     one["variant"]: one["seconds"] / least for one in row["variants"]}
     names = sorted({name for column in columns.values() for name in column})
     lines = [[head, *(f"{column[name]:.2f}" for name in names)] for head, column in columns.items()]
-    return ("The variants of nanoflann, over the best of each case; the trial is on some of the queries.\n\n"
+    return ("Time of each variant of nanoflann over that of the fastest, on a part of the queries.\n\n"
             + table(["case, k", *names], lines))
 
 
@@ -204,12 +203,10 @@ def paper(result):
     text = (f"Table 1 of Graglia et al. 2012, in milliseconds, on a generated hall: "
             f"{settings['triangles']:,} triangles, {settings['photons']:,} photons, "
             f"{settings['hits']:,} hits. The paper does not state k; here k = {settings['k']}, "
-            f"R = {1000 * settings['radius']:.0f} mm. photile searches and sums in one kernel, so "
-            "*kNN* is another kernel, which only searches and writes out what it found, and "
-            "*integration* the difference, where there is one: only *total* is the paper's frame. "
-            "Maps of each triangle are the paper's; the other grids are those of the default, "
-            "`--set maps=auto`. "
-            "*With transfers* is what a caller waits for.")
+            f"R = {1000 * settings['radius']:.0f} mm. photile searches and sums in one kernel. *kNN* is "
+            "another kernel that searches and writes lists, *integration* the difference to the total. Compare *total* "
+            "with the paper. Maps of each triangle are those of the paper; the other grids are the default, `--set "
+            "maps=auto`. *With transfers* is the time that a caller waits.")
     header = ["", "kNN", "integration", "total", "with transfers", "build", "groups"]
     return text + "\n\n" + table(header, rows)
 
@@ -225,13 +222,12 @@ def build(result):
              times(row["groups"])] + [times(row[name]) if name in row else ""
                                       for name in BUILD_COLUMNS]
             for row in result["results"]]
-    text = (f"Milliseconds, R for k = {result['settings']['k']}. References are records of the "
-            "uniform grids a photon, duplicates in neighbouring maps included; groups, in which "
-            "finding and joining patches is counted, come before all maps but the structures over all photons. "
-            "Maps are those of `--set maps=auto`, the default, unless a row says otherwise. nanoflann "
-            "builds on one thread; uniform and hashed grids are built on the device, the trees of photile on "
-            "the host. naive tests each photon with all triangles, on all threads of the host, and is "
-            "scaled from a sample of the photons.")
+    text = (f"Milliseconds, with R for k = {result['settings']['k']}. *References* is the number of records in uniform grids for "
+            "each photon, with the copies in neighbouring maps. *Groups*, with the time of finding and joining patches, is "
+            "needed by all structures but those over all photons. Maps are those of `--set maps=auto`, the default, unless "
+            "a row says otherwise. Uniform and hashed grids are built on the device, the other structures on the host, "
+            "nanoflann on one thread. *naive* tests each photon with all triangles, on all threads, and is scaled from a "
+            "sample of the photons.")
     return text + "\n\n" + table(["workload, photons", "references", "MB", "groups",
                                   *BUILD_COLUMNS], rows)
 
@@ -244,7 +240,6 @@ def relight(result):
              for row in rows]
     settings = result["settings"]
     text = (f"{settings['width']} x {settings['height']}, {settings['lights']} lights. "
-            "`combine_layers` reads each layer once and writes the picture: the live path. "
-            "`mix_layers`, which makes the EXR's picture, also writes each layer and its illuminance "
-            "at the light's power into new memory, on one thread.")
+            "`combine_layers` reads each layer once and writes the picture, as the window does. `mix_layers`, which makes the "
+            "picture of the EXR, also writes each layer and its illuminance at the power of the light, on one thread.")
     return text + "\n\n" + table(["operation", "ms", "MB moved", "GB/s", "of copy"], lines)

@@ -192,6 +192,6 @@ def write_table(results, provisional):
                 for name, aim, value, verdict, limit, why in rows]
     return table(["", "aim", "result", "", "at the limits", "where the time goes"], rows) + """
 
-*At the limits*: the result if a hit took what the bytes and operations of one light must take where
-photons lie evenly, at the device's [limits](#beside-the-limits-of-the-device), and each kernel of the build moved its
-bytes as fast as memory is copied, beside groups as they are."""
+*At the limits*: the result if a hit of one light among evenly spread photons ran at the
+[limits](#beside-the-limits-of-the-device) of the device, and if each kernel of the build moved its bytes as fast as memory
+is copied. Groups keep their time."""
