@@ -75,8 +75,8 @@ def seeds(record):
 
 
 def section(record):
-    return f"""Seeds of {record['photons'] / 1e6:.3g}M photon paths with k = {record['neighbours']}, and of {record['paths'] / 1e3:.0f}k paths from
-the points, {seeds(record)} of them, as many as the noise of a case asks for.
+    return f"""Each reading is the mean over {seeds(record)} seeds, more where it is noisy: of {record['photons'] / 1e6:.3g}M photon paths with
+k = {record['neighbours']} by photon maps, of {record['paths'] / 1e3:.0f}k paths from the points by paths.
 
 Photon maps: {counts(record, 'photon_map')}.
 Paths: {counts(record, 'path')}.

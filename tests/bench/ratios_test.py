@@ -58,7 +58,7 @@ class RatiosTest(unittest.TestCase):
         text = report_ratios.structure_and_selection(rows)
         self.assertIn("| plane, k = 50 | 1.8 (leaves of 64) | 10 | 15 | 14 |", text)
         self.assertIn("the grid is 1.8 to 1.8 times as fast as the kd-tree", text)
-        self.assertIn("with the heap for both 1.5 to 1.5 times", text)
+        self.assertIn("with a heap for both, 1.5 to 1.5 times", text)
         self.assertIn("the heap takes 10 to 10 times as long", text)
         self.assertIsNone(report_ratios.structure_and_selection(rows[:3]))
 
