@@ -1,5 +1,5 @@
 """Checks the documentation's links: files and headings that it names are there, and the index of its folder names each
-page, as that of docs/ names each folder.
+page, as that of docs/ names each folder. The pages that sources name are there, too.
 
     links.py SOURCE-FOLDER
 """
@@ -10,6 +10,8 @@ import re
 import sys
 
 LINK = re.compile(r"\]\(\s*([^)\s]+)\s*\)")
+MENTION = re.compile(r"\bdocs/[\w/.-]*\.md\b")
+SOURCES = ("bench", "cmake", "host", "include", "kernels", "python", "scenes", "tests")
 HEADING = re.compile(r"#{1,6} (.*)")
 
 
@@ -56,8 +58,21 @@ def faults(source):
             yield f"{index_of(page).relative_to(source)}: names no {page.relative_to(source)}"
 
 
+def mentions(source):
+    """Pages that code names and that are not there: pages of tests/docs, and one that is written on demand, aside."""
+    for file in sorted(file for folder in SOURCES for file in (source / folder).rglob("*")
+                       if file.is_file() and file.suffix in (".cl", ".clh", ".cmake", ".cpp", ".cu", ".h", ".hpp", ".py",
+                                                             ".sh", ".txt", ".yml")):
+        if file.parent == source / "tests/docs" or "transcript" in file.parts or file.name == "radiance.py":
+            continue
+        for page in MENTION.findall(file.read_text(encoding="utf-8", errors="replace")):
+            if not (source / page).is_file():
+                yield f"{file.relative_to(source)}: {page}: no such page"
+
+
 def main():
-    found = list(faults(pathlib.Path(sys.argv[1]).resolve()))
+    source = pathlib.Path(sys.argv[1]).resolve()
+    found = [*faults(source), *mentions(source)]
     print("\n".join(found) or "all links lead somewhere")
     sys.exit(bool(found))
 
