@@ -3,10 +3,16 @@
 
     reference.py PHOTILE SOURCE_FOLDER [--write]
 
-A page has the table of a command between <!-- begin: photile COMMAND --help --> and <!-- end -->. Without COMMAND it is
-the list of commands, with "render: common options" the table of the options that commands share; with --markdown in
-place of --help it is the table of settings, or "settings: qualities". Between <!-- begin: docs/examples/FILE --> and
-<!-- end --> is that program, after <!-- begin: host/lighting/measuring/requirements.cpp --> its table. Without --write a part that differs, and a command that has none, is a fault.
+Between <!-- begin: NAME --> and <!-- end --> of a page stands, by NAME:
+
+    photile COMMAND --help              the options of a command; without COMMAND the list of commands
+    photile options --help              those that commands share with photile render
+    photile settings --markdown         what --set sets; photile qualities --markdown: what --quality sets
+    docs/examples/FILE                  that program
+    host/.../requirements.cpp           the targets of EN 12464-1
+    host/apps/command/command_line.hpp  the exit codes
+
+Without --write a part that differs, and a command that has none, is a fault.
 """
 
 import pathlib
@@ -15,15 +21,13 @@ import subprocess
 import sys
 
 PAGES = "docs/reference"
-BLOCK = re.compile(r"(<!-- begin: photile (.*?) ?(--help|--markdown) -->\n)(.*?)(<!-- end -->\n)", re.DOTALL)
-TARGETS = "host/lighting/measuring/requirements.cpp"
-TARGET_ROW = re.compile(r'\{"([a-z-]+)", "table (\d+)", "([^"]+)",\s*([\d., \n]+?)(,\s*unconfirmed)?\}')
-TARGET_BLOCK = re.compile(rf"(<!-- begin: {re.escape(TARGETS)} -->\n).*?(<!-- end -->\n)", re.DOTALL)
-EXAMPLE = re.compile(r"(<!-- begin: (docs/examples/\S+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
-# Titles of photile render whose options other commands share; their table is that of `photile render`.
+BLOCK = re.compile(r"(<!-- begin: (photile\b.*?|docs/examples/\S+|host/\S+) -->\n).*?(<!-- end -->\n)", re.DOTALL)
+# Titles of photile render whose options other commands share.
 COMMON = ("Picture", "Photons", "Estimate", "Settings", "Scene", "Lights", "Device", "Run")
 COLUMN = 30  # of the help, where what an option does begins
 DEFAULT = re.compile(r"=([a-z0-9.][^|=]*)$")
+TARGET = re.compile(r'\{"([a-z-]+)", "table (\d+)", "([^"]+)",\s*([\d., \n]+?)(,\s*unconfirmed)?\}')
+EXIT_CODE = re.compile(r"^  (\w+) = (\d+), +///< (.*)$", re.MULTILINE)
 
 
 def printed(photile, *words):
@@ -67,67 +71,58 @@ def cell(text):
     return text.replace("|", "\\|").replace("<grid>", "GRID")
 
 
-def row(names, default, does):
-    return f"| `{cell(names)}` | {cell(does)} | {cell(default)} |"
-
-
-def rows_of(options):
-    lines = ["| option | meaning | default |", "|---|---|---|"]
-    title = None
+def table(options):
+    lines, title = ["| option | meaning | default |", "|---|---|---|"], None
     for option in options:
         if option[0] != title:
             title = option[0]
             lines.append(f"| **{title}** | | |")
-        lines.append(row(*option[1:]))
-    return lines
+        lines.append(f"| `{cell(option[1])}` | {cell(option[3])} | {cell(option[2])} |")
+    return "\n".join(lines) if options else ""
 
 
-def table_of(photile, command):
-    """Of a command: its own options as a table, those that it shares with photile render as a line."""
+def options_text(photile, command):
+    """A command's own options as a table, those that it shares with photile render as a line."""
     options = options_of(photile, command)
     if command == "render":
-        own, shared = [option for option in options if option[0] not in COMMON], []
-    else:
-        common = {(names, does): default for title, names, default, does in options_of(photile, "render")
-                  if title in COMMON}
-        own = [option for option in options if (option[1], option[3]) not in common]
-        shared = [(names.split("`")[0].split()[0], "" if common[names, does] == default else default)
-                  for _, names, default, does in options if (names, does) in common]
-    lines = rows_of(own) if own else []
-    if shared:
-        listed = ", ".join(f"`{name}` ({default})" if default else f"`{name}`" for name, default in shared)
-        lines += ["", f"[Common options](options.md), in brackets the default where it is another: {listed}."]
-    return "\n".join(lines).strip("\n")
-
-
-def common_of(photile):
-    return "\n".join(rows_of([option for option in options_of(photile, "render") if option[0] in COMMON]))
+        return table([option for option in options if option[0] not in COMMON])
+    common = {(names, does): default for title, names, default, does in options_of(photile, "render") if title in COMMON}
+    own = [option for option in options if (option[1], option[3]) not in common]
+    shared = [(names.split("`")[0].split()[0], default if common[names, does] != default else "")
+              for _, names, default, does in options if (names, does) in common]
+    listed = ", ".join(f"`{name}` ({default})" if default else f"`{name}`" for name, default in shared)
+    line = f"[Common options](options.md), in brackets the default where it is another: {listed}." if shared else ""
+    return "\n\n".join(part for part in (table(own), line) if part)
 
 
 def commands_of(photile):
     return re.findall(r"^  ([a-z]+) +(\S.*)$", printed(photile, "--help").split("Subcommands:")[1], re.MULTILINE)
 
 
-def block(photile, command, option):
-    """What belongs between the comments of a page."""
-    if option == "--markdown":
-        settings, _, qualities = printed(photile, "settings", option).partition("\n\n")
-        return (qualities if command == "settings: qualities" else settings).strip("\n")
-    if command == "render: common options":
-        return common_of(photile)
-    if command:
-        return table_of(photile, command)
+def program_text(photile, words):
+    if words[-1] == "--markdown":
+        settings, _, qualities = printed(photile, "settings", "--markdown").partition("\n\n")
+        return (qualities if words[0] == "qualities" else settings).strip("\n")
+    if words[0] == "options":
+        return table([option for option in options_of(photile, "render") if option[0] in COMMON])
+    if words[0] != "--help":
+        return options_text(photile, words[0])
     rows = [f"| `{name}` | {cell(does)} |" for name, does in commands_of(photile)]
     return "\n".join(["| command | what it does |", "|---|---|", *rows])
 
 
-def targets(source):
-    """Names of activities and what EN 12464-1 requires for them; * = not confirmed."""
-    lines = ["<!-- not measured -->", "", "| name | table | activity | Em | Uo | UGR | Ra | Ez | Ewall | Eceiling |", "|---|" + "--:|" * 9]
-    lines[-1] = lines[-1].replace("--:|--:|", "--:|---|", 1)
-    for name, table, activity, numbers, unconfirmed in TARGET_ROW.findall((source / TARGETS).read_text(encoding="utf-8")):
-        values = [number.strip() for number in numbers.split(",")]
-        lines.append("| " + " | ".join([f"`{name}`{'*' if unconfirmed else ''}", table, activity, *values]) + " |")
+def source_text(file):
+    text = file.read_text(encoding="utf-8")
+    if file.parent.name == "examples":
+        return f"```{file.suffix[1:]}\n{text}```"
+    if file.name == "command_line.hpp":
+        rows = [f"| {code} | {name} | {meaning} |" for name, code, meaning in EXIT_CODE.findall(text)]
+        return "\n".join(["| code | name | meaning |", "|--:|---|---|", *rows])
+    lines = ["<!-- not measured -->", "", "| name | table | activity | Em | Uo | UGR | Ra | Ez | Ewall | Eceiling |",
+             "|---|--:|---|" + "--:|" * 7]
+    for name, of_standard, activity, numbers, unconfirmed in TARGET.findall(text):
+        values = " | ".join(number.strip() for number in numbers.split(","))
+        lines.append(f"| `{name}`{'*' if unconfirmed else ''} | {of_standard} | {activity} | {values} |")
     return "\n".join(lines)
 
 
@@ -138,23 +133,21 @@ def main():
         text = page.read_text(encoding="utf-8")
 
         def of_program(match):
-            shown.add(match[2])
-            return f"{match[1]}\n{block(photile, match[2], match[3])}\n\n{match[5]}"
+            words = match[2].split()
+            if words[0] == "photile":
+                shown.add(words[1])
+            part = program_text(photile, words[1:]) if words[0] == "photile" else source_text(source / match[2])
+            return f"{match[1]}\n{part}\n\n{match[3]}"
 
-        def example(match):
-            file = source / match[2]
-            return f"{match[1]}\n```{file.suffix[1:]}\n{file.read_text(encoding='utf-8')}```\n\n{match[3]}"
-
-        new = EXAMPLE.sub(example, BLOCK.sub(of_program, text))
-        new = TARGET_BLOCK.sub(lambda match: f"{match[1]}\n{targets(source)}\n\n{match[2]}", new)
+        new = BLOCK.sub(of_program, text)
         if new != text and "--write" in sys.argv:
             page.write_text(new, encoding="utf-8")
         elif new != text:
-            wrong.append(f"{page.relative_to(source)}: a table is not what the program prints; write it by "
+            wrong.append(f"{page.relative_to(source)}: a part is not what the program has; write it by "
                          f"bench/tools/reference.py PHOTILE {source} --write")
     wrong += [f"{PAGES}: no page has the options of photile {name}" for name, _ in commands_of(photile)
               if name not in shown]
-    print("\n".join(wrong) or "all options stand in the reference")
+    print("\n".join(wrong) or "the reference is what the program prints")
     sys.exit(bool(wrong))
 
 

@@ -18,7 +18,7 @@ int run_command_line(int argument_count, const char* const* arguments);
 /// Documented in docs/reference/commands.md.
 enum class ExitCode : int {
   success = 0,        ///< the output is complete
-  failure = 1,        ///< unwritable output, disk full, internal error
+  failure = 1,        ///< unwritable output, disk full, validation failed, internal error
   usage = 2,          ///< unknown option, value out of range, unknown light name
   input = 3,          ///< scene or image missing, unreadable, malformed, without lights or geometry
   device = 4,         ///< no OpenCL device, kernel build failure, device out of memory
