@@ -55,3 +55,8 @@ def on_page_markdown(markdown, page, config, files):
         return f"`{name}`" if match[2].strip("`/") in str(name) else f"{match[2]} (`{name}`)"
 
     return LINK.sub(shown, markdown)
+
+
+def on_page_content(html, page, config, files):
+    """Bars of code in tables, which GitHub has escaped."""
+    return re.sub(r"<td.*?</td>", lambda cell: cell[0].replace("\\|", "|"), html, flags=re.DOTALL)
