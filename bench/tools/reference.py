@@ -25,6 +25,7 @@ BLOCK = re.compile(r"(<!-- begin: (photile\b.*?|docs/examples/\S+|host/\S+) -->\
 # Titles of photile render whose options other commands share.
 COMMON = ("Picture", "Photons", "Estimate", "Settings", "Scene", "Lights", "Device", "Run")
 COLUMN = 30  # of the help, where what an option does begins
+WIDEST = 40  # of names that stay on one line
 DEFAULT = re.compile(r"=([a-z0-9.][^|=]*)$")
 TARGET = re.compile(r'\{"([a-z-]+)", "table (\d+)", "([^"]+)",\s*([\d., \n]+?)(,\s*unconfirmed)?\}')
 EXIT_CODE = re.compile(r"^  (\w+) = (\d+), +///< (.*)$", re.MULTILINE)
@@ -77,7 +78,8 @@ def table(options):
         if option[0] != title:
             title = option[0]
             lines.append(f"| **{title}** | | |")
-        lines.append(f"| `{cell(option[1])}` | {cell(option[3])} | {cell(option[2])} |")
+        names = option[1] if len(option[1]) <= WIDEST else option[1].replace("|", "` | `")  # where lines may break
+        lines.append(f"| `{cell(names)}` | {cell(option[3])} | {cell(option[2])} |")
     return "\n".join(lines) if options else ""
 
 
