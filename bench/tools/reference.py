@@ -93,7 +93,7 @@ def options_text(photile, command):
     shared = [(names.split("`")[0].split()[0], default if common[names, does] != default else "")
               for _, names, default, does in options if (names, does) in common]
     listed = ", ".join(f"`{name}` ({default})" if default else f"`{name}`" for name, default in shared)
-    line = f"[Common options](options.md), in brackets the default where it is another: {listed}." if shared else ""
+    line = f"[Common options](options.md), with the default where it differs: {listed}." if shared else ""
     return "\n\n".join(part for part in (table(own), line) if part)
 
 
