@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "trace/random_stream.hpp"
+#include "trace/ray_query.hpp"
 
 namespace photile::test {
 namespace {

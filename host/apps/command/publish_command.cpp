@@ -126,7 +126,8 @@ class LitRoom {
   /// As GatheredNodes::errors; none where photons value nodes.
   std::optional<LightTable> errors() {
     const cache::GatheredNodes* nodes = session_.light().gathered();
-    return nodes ? std::optional(nodes->errors()) : std::nullopt;
+    return nodes ? std::optional(nodes->errors(session_.light().cache()->maps().values()))
+                 : std::nullopt;
   }
 
  private:

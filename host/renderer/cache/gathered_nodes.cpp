@@ -138,13 +138,13 @@ NodeSource::Surroundings GatheredNodes::surroundings() const { return averaged; 
 
 std::uint64_t GatheredNodes::bytes() const {
   const std::size_t rows = former_.row_of.size() + raw_.row_of.size();
-  return former_.light.bytes() + raw_.light.bytes() + nodes_.bytes() + gather_.ends().bytes() +
-         rows * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
+  return former_.light.bytes() + raw_.light.bytes() + relative_errors_.size() * sizeof(float) +
+         gather_.ends().bytes() + rows * 2 * sizeof(std::pair<std::uint64_t, std::uint32_t>);
 }
 
 void GatheredNodes::forget() {
   raw_ = {};
-  nodes_ = {};
+  relative_errors_ = {};
   LightMaps& ends = gather_.ends();
   ends.forget(std::vector<std::uint8_t>(ends.statistics().nodes, 0));
 }
@@ -174,33 +174,33 @@ NodeValues GatheredNodes::value(const NodeBatch& batch, const Progress& progress
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
     row_of_node.push_back(batch.coarse[node] ? next_coarse++ : next_fine++);
   }
-  LightTable indirect = all.indirect.gathered(row_of_node);
-  LightTable direct = all.direct.gathered(row_of_node);
   NodeValues values;
-  values.light = sum_of(indirect, direct);
+  values.light = sum_of(all.indirect.gathered(row_of_node), all.direct.gathered(row_of_node));
+  all = {};
   values.error.resize(batch.nodes);
+  const std::size_t before = relative_errors_.size();
+  relative_errors_.resize(before + values.light.irradiance.size());
   tbb::parallel_for(std::size_t{0}, batch.nodes, [&](std::size_t node) {
     values.error[node] = static_cast<float>(values.light.total(node, layer_powers_).error);
+    values.light.for_each(node, [&](std::size_t, std::size_t entry) {
+      const double light = luminance(glm::dvec3(values.light.irradiance[entry]));
+      relative_errors_[before + entry] =
+          light > 0 ? static_cast<float>(values.light.error(entry) / light) : 0.0f;
+    });
   });
   values.light.drop_batches();
   for (std::uint32_t node = 0; node < batch.nodes; ++node) {
     values.distance.push_back(raw_.light.distance[rows[node]]);
   }
-  nodes_.indirect.append(std::move(indirect));
-  nodes_.direct.append(std::move(direct));
   return values;
 }
 
-LightTable GatheredNodes::errors() const {
-  LightTable errors = sum_of(nodes_.indirect, nodes_.direct);
-  for (std::size_t i = 0; i < errors.irradiance.size(); ++i) {
-    const double light = luminance(glm::dvec3(errors.irradiance[i]));
-    const float relative = light > 0 ? static_cast<float>(errors.error(i) / light) : 0.0f;
-    errors.irradiance[i] *= relative;
-    if (!errors.by_normal.empty()) errors.by_normal[i] *= relative;
+LightTable GatheredNodes::errors(LightTable light) const {
+  for (std::size_t i = 0; i < light.irradiance.size(); ++i) {
+    light.irradiance[i] *= relative_errors_[i];
+    if (!light.by_normal.empty()) light.by_normal[i] *= relative_errors_[i];
   }
-  errors.drop_batches();
-  return errors;
+  return light;
 }
 
 /// Gathers at points that have no rays yet, or fewer than they are to have.

@@ -57,9 +57,9 @@ class GatheredNodes : public NodeSource {
   /// Takes the points at which rays gathered so far.
   GatheredPoints take_points() { return std::move(raw_); }
 
-  /// Standard errors of all nodes that were valued, in their order, in the form of estimates: of
-  /// each light at power 1, in the colour of its light.
-  LightTable errors() const;
+  /// Standard errors of all nodes that were valued: of each light at power 1, in its colour.
+  ///   light   of these nodes, in the order in which they were valued
+  LightTable errors(LightTable light) const;
 
  private:
   void gather_new(const NodeBatch& batch, std::span<const std::uint32_t> points, NodeRays rays,
@@ -73,7 +73,7 @@ class GatheredNodes : public NodeSource {
   GatheredNodesParameters rays_;
   GatheredPoints former_;
   GatheredPoints raw_;
-  GatheredParts nodes_;  ///< valued so far, without their distances
+  std::vector<float> relative_errors_;  ///< of each light of each node that was valued
 };
 
 }  // namespace photile::cache

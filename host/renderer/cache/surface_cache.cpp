@@ -155,7 +155,7 @@ LightAndErrors SurfaceCache::with_errors(const PrimaryHits& points, const Gather
     for (glm::vec3& value : errors.radiance) value *= relative;
     return errors;
   };
-  LightTable errors = rows(reading, by_photons(reading.alone), nodes.errors(),
+  LightTable errors = rows(reading, by_photons(reading.alone), nodes.errors(maps_.values()),
                            by_photons(reading.coarse), Coarse::found);
   return {std::move(light), std::move(errors)};
 }

@@ -110,11 +110,9 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
   return passes;
 }
 
-void check_picture_memory(int width, int height, const Scene& scene, Progress& progress) {
+void check_picture_memory(int width, int height, std::size_t lights, double bytes,
+                          Progress& progress) {
   constexpr double worth_telling = 1e9;
-  const std::size_t lights = light_groups_of(scene).groups.size();
-  if (lights > max_dense_lights) return;  // each pixel has those that reach it
-  const double bytes = 16.0 * width * height * static_cast<double>(lights);
   if (bytes <= worth_telling) return;
   const std::string found =
       fmt::format("a picture of {} x {} pixels with {} light{} takes {:.1f} GB", width, height,
@@ -122,11 +120,18 @@ void check_picture_memory(int width, int height, const Scene& scene, Progress& p
   const auto installed = static_cast<double>(installed_host_bytes());
   if (bytes > installed) {
     throw UsageError(
-        fmt::format("{}, and this machine has {:.1f}; give a smaller size, or group "
-                    "lights",
+        fmt::format("{}, and this machine has {:.1f}; give a smaller size, or join lights by "
+                    "--light-group",
                     found, installed / 1e9));
   }
   progress.note(found + " of memory");
+}
+
+void check_picture_memory(int width, int height, const Scene& scene, Progress& progress) {
+  const std::size_t lights = light_groups_of(scene).groups.size();
+  if (lights > max_dense_lights) return;  // each pixel has those that reach it
+  check_picture_memory(width, height, lights, 16.0 * width * height * static_cast<double>(lights),
+                       progress);
 }
 
 }  // namespace photile

@@ -47,8 +47,11 @@ int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t byt
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
                      Progress& progress, std::uint64_t memory);
 
-/// Tells of a picture that takes more than a gigabyte, before anything is traced for it. Errors:
-/// UsageError for one that takes more than is installed.
+/// Tells of a picture that takes more than a gigabyte. Errors: UsageError for one that takes more
+/// than is installed.
+void check_picture_memory(int width, int height, std::size_t lights, double bytes,
+                          Progress& progress);
+/// The same before anything is traced for it, where each pixel has all lights of the scene.
 void check_picture_memory(int width, int height, const Scene& scene, Progress& progress);
 
 }  // namespace photile

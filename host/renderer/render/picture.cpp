@@ -7,15 +7,18 @@
 #include "light/light_at_points.hpp"
 #include "render/exchange.hpp"
 #include "render/film.hpp"
+#include "render/pass_count.hpp"
 
 namespace photile {
 namespace {
 
-/// Hits estimated at a time: enough to fill a device, little enough to stay in memory, and fewer
-/// where each takes longer, so that progress is shown and a request to stop takes effect soon.
-std::int64_t hits_per_batch(int neighbours) {
-  return (std::int64_t{1} << 20) * defaults::neighbours /
-         std::max(defaults::neighbours, neighbours);
+/// Hits estimated at a time: enough to fill a device, little enough to stay in memory with the
+/// light of every light at each, and fewer where each takes longer, so that progress is shown and a
+/// request to stop takes effect soon.
+std::int64_t hits_per_batch(int neighbours, std::size_t lights) {
+  constexpr std::int64_t most = 1 << 20, most_entries = 1 << 24;
+  return std::min(most * defaults::neighbours / std::max(defaults::neighbours, neighbours),
+                  most_entries / static_cast<std::int64_t>(std::max<std::size_t>(1, lights)));
 }
 
 /// What `runs` runs of a pixel's samples see becomes that of `less` runs.
@@ -28,9 +31,6 @@ void join_runs(PrimaryHitBatch& batch, int runs, int less) {
   for (std::uint32_t& pixel : batch.hits.pixel) join(pixel);
   for (VisibleEmission& seen : batch.emission) join(seen.pixel);
 }
-
-/// Least number of batches of a pooled picture: estimates of many lights wait for their mixdown.
-constexpr int pooled_batches = 16;
 
 }  // namespace
 
@@ -81,6 +81,12 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
     if (reflected.hits.size() > 0 || !reflected.emission.empty() ||
         (plan_.used().processes && film_.lobe_rays)) {
       add_hits(source, light, reflected, true, progress);
+    }
+    // Which lights reach a pixel is known now: the first rows forecast the memory of all.
+    if (done == 0 && layers_.sparse() && last > first) {
+      check_picture_memory(film_.width, film_.height, layers_.layers.size(),
+                           static_cast<double>(layers_.bytes()) * film_.height / (last - first),
+                           progress);
     }
     progress.advance(static_cast<std::uint64_t>(last - first));
   }
@@ -180,11 +186,10 @@ Shard Picture::own_rows() const {
 int Picture::rows_per_batch() const {
   const std::int64_t hits_per_row =
       std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
-  const int most = mixdown_ ? (film_.height - 1) / pooled_batches + 1 : film_.height;
   // Where light maps are read, only their nodes take long.
   const int neighbours = plan_.reads_light_maps() ? defaults::neighbours : plan_.used().neighbours;
-  return static_cast<int>(
-      std::clamp<std::int64_t>(hits_per_batch(neighbours) / hits_per_row, 1, most));
+  return static_cast<int>(std::clamp<std::int64_t>(
+      hits_per_batch(neighbours, rays_.needs().light_count) / hits_per_row, 1, film_.height));
 }
 
 PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& light, int first,
