@@ -46,7 +46,7 @@ constexpr SceneNeeds glossy_of(std::uint32_t lights) {
 }
 
 TEST_CASE("a diffuse scene of one light has the smallest records, others what they need more") {
-  // The table of docs/kernels/data.md, "Records".
+  // The bytes of docs/kernels/data.md, "Records".
   const auto [needs, bytes] = GENERATE(table<SceneNeeds, std::size_t>({
       {diffuse_of(1), 28},
       {diffuse_of(2), 29},
