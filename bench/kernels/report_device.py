@@ -209,9 +209,9 @@ def docs_table():
             cells += [f"{grid['compile']:.1f}", f"{1e3 * grid['build'][on]:.0f}",
                       f"{1e9 / grid['hits'] * grid['estimate']['kernels']:.0f}" if timed else "",
                       f"{1e9 / grid['hits'] * grid['estimate'][on]:.0f}", copied, operations]
-        lines.append(cells)
+        lines.append([*cells, result.get("date") or ""])
     return table(["runtime", "device", "right: maps / kinds / structures", "picture beside PoCL's", "compile, s", "build, ms",
-                  "a hit, ns: kernels", "all", "copies, GB/s", "1e9 operations/s"], lines)
+                  "a hit, ns: kernels", "all", "copies, GB/s", "1e9 operations/s", "date"], lines)
 
 
 def main():
@@ -232,7 +232,8 @@ def main():
     if arguments.docs:
         # The block is as old as its oldest row.
         dated = {file: load(file).get("date") for file in RESULTS.glob("*.json")}
-        replace_section(PAGE, SCRIPT, docs_table(), min((file for file in dated if dated[file]), key=dated.get))
+        replace_section(PAGE, SCRIPT, docs_table(), min((file for file in dated if dated[file]), key=dated.get),
+                        card="NVIDIA H100 and H200")
         return
     if not arguments.folder:
         parser.error("give the folder of a report, --docs or --check")

@@ -46,10 +46,11 @@ def read_section(page, script):
     return page.read_text().split(begin_of(script))[1].split(END, 1)[0].strip("\n")
 
 
-def replace_section(page, script, text, results=None, partly=False):
+def replace_section(page, script, text, results=None, partly=False, card=None):
     """Puts `text` between `<!-- begin: bench/SCRIPT -->` and `<!-- end -->` of the file `page`. It was measured now, or
-    when the file `results` was, from which it is drawn; where only part of it is new, it stays as old as it was. Pages
-    outside of docs/ have no records, and those of docs/measured state theirs."""
+    when the file `results` was, from which it is drawn; where only part of it is new, it stays as old as it was. `card`
+    names devices that not every machine has: each row of the text states its date, and the text does not become old.
+    Pages outside of docs/ have no records, and those of docs/measured state theirs."""
     begin = begin_of(script)
     before, rest = page.read_text().split(begin)
     page.write_text(before + begin + "\n" + text + "\n" + END + rest.split(END, 1)[1])
@@ -62,7 +63,7 @@ def replace_section(page, script, text, results=None, partly=False):
     if partly and name in blocks:
         when = {key: blocks[name][key] for key in when}
     blocks[name] = {"sha256": hashlib.sha256(read_section(page, script).encode()).hexdigest(), **when,
-                    "measures": MEASURES.get(script, ALL)}
+                    "measures": MEASURES.get(script, ALL), **({"card": card} if card else {})}
     file.write_text(json.dumps(dict(sorted(blocks.items())), indent=1) + "\n")
     if page.parent == DOCS / "measured":
         before, rest = page.read_text().split(begin)

@@ -12,7 +12,8 @@ Usage: figures.py SOURCE_FOLDER
 - No figure or block is older than what it measures by more than 200 commits. Commits that change comments alone do not
   count as the last change of what is measured. A commit that the history does not have is
   looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What
-  was measured on a card that not every machine has may be older: whoever cites it says the date beside it.
+  was measured on a card that not every machine has may be older: whoever cites it says the date beside it, and so does
+  each row of a block.
 """
 
 import hashlib
@@ -30,6 +31,7 @@ CODE_LINE = "^[[:space:]]*([^/[:space:]]|/[^/*])"  # that begins with no comment
 # Their tables are compared with what the command prints by tests/command.
 LEFT_OUT = ("options.md", "settings.md")
 SECTIONS = ("Three figures", "When not to use it")
+DATE = re.compile(r"\b\d{4}-\d\d-\d\d\b")
 MARKER = re.compile(r"<!-- figure: ([\w.]+) -->")
 NUMBER = re.compile(r"(?<![\w.,])(\d[\d,]*(?:\.\d+)?)(?![\w]|[.,]\d)")
 BLOCK = re.compile(r"^<!-- begin: bench/(\S+) -->\n(.*?)^<!-- end -->$", re.MULTILINE | re.DOTALL)
@@ -133,6 +135,10 @@ def check_blocks(source, wrong):
             line = record_line(name.split()[1], records[name])
             if name.startswith("measured/") and not stated[name].startswith(line):
                 wrong.append(f"docs/{name}: the line below the block is not that of its record:{line}")
+            if "card" in records[name]:
+                undated = [row for row in blocks[name].splitlines()[2:] if not DATE.search(row)]
+                wrong += [f"docs/{name}: measured on {records[name]['card']}, and no date in {row[:60]}" for row in undated]
+                continue
             check_age(source, f"docs/{name}", records[name], f"bench/{name.split()[1]}", wrong)
 
 

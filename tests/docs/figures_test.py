@@ -99,6 +99,14 @@ class Figures(unittest.TestCase):
         self.commits(figures.OLDEST + 3, "  // {}")
         self.assertEqual(figures.check(self.source), [])
 
+    def test_a_block_of_a_card_states_dates_and_does_not_become_old(self):
+        self.write({}, "nothing")
+        self.commits(figures.OLDEST + 3)
+        for date, wrong in ((" 2020-01-02 |", 0), ("", 1)):
+            text = f"| k | s |\n|---|--:|\n| 50 | 1 |{date}"
+            self.write_block(text, card="a card", sha256=hashlib.sha256(text.encode()).hexdigest())
+            self.assertEqual(len(figures.check(self.source)), wrong)
+
     def test_a_shallow_clone_says_nothing_of_ages(self):
         self.write_block("| 1 s |")
         self.commits(figures.OLDEST + 3)
