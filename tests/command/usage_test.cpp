@@ -31,7 +31,7 @@ TEST_CASE("columns are as wide as their widest text") {
 
 TEST_CASE("the version names photile and what it was built with") {
   const Outcome outcome = succeed({"--version"});
-  CHECK_THAT(outcome.output, Contains("photile 0.") && Contains("Embree          3.") &&
+  CHECK_THAT(outcome.output, Contains("photile 1.") && Contains("Embree          3.") &&
                                  Contains("OpenEXR         3.") && Contains("TBB") &&
                                  Contains("OpenCL headers"));
 }
