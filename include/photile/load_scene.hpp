@@ -98,12 +98,12 @@ struct LuminousPanel {
   static LuminousPanel parse(const std::string& text);
 };
 
-/// The reflectance of materials; parsed from MATERIAL=SHARE.
-struct ReflectanceChange {
+/// The part of light that materials reflect, or let through; parsed from MATERIAL=SHARE.
+struct MaterialShare {
   std::string glob;     ///< of material names: *, ? and [...] as in a shell
-  double fraction = 0;  ///< luminous, of light from all directions, 0 to 1
+  double fraction = 0;  ///< 0 to 1
   /// Splits at the last '='. SHARE is 0.5 or 50%. Errors: UsageError.
-  static ReflectanceChange parse(const std::string& text);
+  static MaterialShare parse(const std::string& text);
 };
 
 /// The colour of a light by its temperature; parsed from NAME=KELVIN.
@@ -138,7 +138,11 @@ struct SceneLoadOptions {
   /// Reflectance of even ground below the horizon, which the sun and the sky light; 0 = it is
   /// black.
   double ground = defaults::ground_reflectance;
-  std::vector<ReflectanceChange> reflectances = {};
+  /// Luminous reflectances, of light from all directions.
+  std::vector<MaterialShare> reflectances = {};
+  /// Materials that become clear glass, and what it lets through at normal incidence: both faces of
+  /// a pane that is modelled with two.
+  std::vector<MaterialShare> glasses = {};
   bool lambertian = false;   ///< dielectrics have no specular lobe
   bool may_be_dark = false;  ///< no error where there is no light
   SkySituation situation = {};

@@ -175,7 +175,7 @@ void parse_option(unsigned char option, const std::string& text) {
       check_lights(options);
       break;
     case 17:
-      options.reflectances.push_back(ReflectanceChange::parse(text));
+      options.reflectances.push_back(MaterialShare::parse(text));
       check_lights(options);
       break;
     case 18: {

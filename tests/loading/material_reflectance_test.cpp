@@ -69,7 +69,7 @@ TEST_CASE("glTF's specular adds to what the file enters, and lambertian takes it
 TEST_CASE("a material reflects the share that is asked for, and keeps its hue") {
   SceneLoadOptions options;
   const double share = GENERATE(0.1, 0.5);
-  options.reflectances = {ReflectanceChange::parse(fmt::format("*={}", share))};
+  options.reflectances = {MaterialShare::parse(fmt::format("*={}", share))};
   options.lambertian = GENERATE(false, true);
   const Scene scene = square_of(json::object(), options);
   CHECK(whole(scene) == Approx(share).epsilon(1e-4));
@@ -82,7 +82,7 @@ TEST_CASE("a metal reflects the share that is asked for, keeps its hue and stays
       {"pbrMetallicRoughness",
        {{"baseColorFactor", {0.8, 0.6, 0.4, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 1}}}};
   SceneLoadOptions options;
-  options.reflectances = {ReflectanceChange::parse("*=0.5")};
+  options.reflectances = {MaterialShare::parse("*=0.5")};
   const Scene scene = square_of(metal, options);
   const Material& material = scene.materials[scene.triangle_material[0]];
   CHECK(whole(scene) == Approx(0.5).epsilon(1e-4));
@@ -152,6 +152,31 @@ TEST_CASE("a black material becomes grey, and glass has no reflectance") {
   Scene silver = wide_plate(test::mirror(glm::vec3(0.9f)));
   REQUIRE(scene::set_reflectance(silver, silver.materials[0], 0.6));
   CHECK(silver.materials[0].specular.r == Approx(0.6f));
+}
+
+TEST_CASE("glass lets through what is asked for, of one sheet, of two, and of a body") {
+  const std::string corners = "v -50 {0} -50\nv 50 {0} -50\nv 50 {0} 50\nv -50 {0} 50\n";
+  const auto sheet = [&](double y) { return fmt::format(fmt::runtime(corners), y); };
+  const auto [of_the_file, faces] = GENERATE_COPY(table<std::string, std::string>(
+      {{sheet(1), "f 1 2 3 4\n"},
+       {sheet(1) + sheet(1.016), "f 4 3 2 1\nf 5 6 7 8\n"},
+       {sheet(1) + sheet(1.016), "f 1 2 3 4\nf 5 6 7 8\n"},
+       {sheet(1) + sheet(1.004),
+        "f 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"}}));
+  const double share = GENERATE(0.35, 0.78, 0.97);
+  CAPTURE(faces, share);
+  SceneLoadOptions options;
+  options.glasses = {MaterialShare::parse(fmt::format("pan*={}", share))};
+  options.sun = Sun::parse("0,90,1000,0");
+  options.ground = 0;
+  const Scene scene =
+      load_obj(of_the_file + "usemtl pane\n" + faces + sheet(0) + "usemtl floor\nf -1 -2 -3 -4\n",
+               "newmtl pane\nKd 0.3 0.4 0.5\nd 0.5\nNi 1.5\nnewmtl floor\nKd 0 0 0\n", options);
+  const Sensor below{{0, 0, 0}, {0, 1, 0}};
+  const auto layers = measure_by_paths(scene, std::span(&below, 1), 4, 1).layers.dense();
+  // Without what bounces between two sheets and goes on: a square of 0.04 at most.
+  CHECK(scene.lights[0].power * double{layers.layers[0].illuminance[0]} ==
+        Approx(1000 * share / defaults::lumen_per_watt).epsilon(0.002));
 }
 
 }  // namespace photile::test

@@ -199,6 +199,13 @@ Settings scene_settings(SceneLoadOptions& options) {
           "repeatable",
           "nothing is left out",
           [&options](std::string_view glob) { options.hidden.emplace_back(glob); }),
+      bound_word("glass", group, Text{"MATERIAL=SHARE"},
+                 "materials whose names match become clear glass that lets this fraction of light "
+                 "through, as Tvis of a data sheet; repeatable",
+                 "as the file says",
+                 [&options](std::string_view glass) {
+                   options.glasses.push_back(MaterialShare::parse(std::string(glass)));
+                 }),
       bound_word(
           "portals", group, Text{"auto, off or GLOB"},
           "windows that photons of suns and skies start through: auto finds them, off, or globs of "

@@ -4,6 +4,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -15,6 +16,7 @@
 #include "photometry/photometric_file.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
+#include "scene/panes.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile {
@@ -162,13 +164,28 @@ double nearest_reflectance(Scene& scene, Material& material, double fraction, do
   return possible;
 }
 
-void apply(Scene& scene, const ReflectanceChange& change) {
+/// Calls visit(number) for each material that the pattern matches. Errors: UsageError without any.
+///   what   is said of it
+template <class Visit>
+void for_each_match(const Scene& scene, const MaterialShare& change, const char* what,
+                    const Visit& visit) {
   bool found = false;
-  for (Material& material : scene.materials) {
-    if (::fnmatch(change.glob.c_str(), material.name.c_str(), 0) != 0) continue;
+  for (std::uint32_t i = 0; i < scene.materials.size(); ++i) {
+    if (::fnmatch(change.glob.c_str(), scene.materials[i].name.c_str(), 0) != 0) continue;
     found = true;
+    visit(i);
+  }
+  if (!found) {
+    throw UsageError(fmt::format("{} '{}': there is no such material; there are {}", what,
+                                 change.glob, material_names(scene)));
+  }
+}
+
+void apply(Scene& scene, const MaterialShare& change) {
+  for_each_match(scene, change, "reflectance of", [&](std::uint32_t number) {
+    Material& material = scene.materials[number];
     const auto before = scene::reflectance_of(scene, material);
-    if (scene::set_reflectance(scene, material, change.fraction)) continue;
+    if (scene::set_reflectance(scene, material, change.fraction)) return;
     const std::string what =
         fmt::format("reflectance of '{}': {:g} cannot be had", material.name, change.fraction);
     if (!before) {
@@ -184,17 +201,86 @@ void apply(Scene& scene, const ReflectanceChange& change) {
         "{}: its colour exceeds 1 in a channel then; at its brightest it reflects {:.3g}, give "
         "that or less",
         what, nearest));
+  });
+}
+
+/// Metres between the two faces of a pane of a window, double or triple glazing included.
+constexpr double thinnest_pane = 1e-4, thickest_pane = 0.1;
+/// Cosine of the angle within which faces count as parallel.
+constexpr double parallel_faces = 0.99;
+
+/// Whether a line along the normal of a triangle from its middle meets another face of the pane.
+bool has_other_face(const Scene& scene, std::uint32_t triangle,
+                    std::span<const std::uint32_t> others) {
+  const auto corners = scene.corners(triangle);
+  const glm::dvec3 normal = face_normal(scene, oriented(triangle, 0));
+  const glm::dvec3 middle =
+      (glm::dvec3(corners[0]) + glm::dvec3(corners[1]) + glm::dvec3(corners[2])) / 3.0;
+  return std::any_of(others.begin(), others.end(), [&](std::uint32_t other) {
+    const auto at = scene.corners(other);
+    const glm::dvec3 n = face_normal(scene, oriented(other, 0));
+    const double height = glm::dot(glm::dvec3(at[0]) - middle, normal);
+    if (std::abs(glm::dot(n, normal)) < parallel_faces || std::abs(height) < thinnest_pane ||
+        std::abs(height) > thickest_pane) {
+      return false;
+    }
+    const glm::dvec3 foot = middle + height * normal;
+    double side = 0;
+    for (int i = 0; i < 3; ++i) {
+      const glm::dvec3 from(at[i]), to(at[(i + 1) % 3]);
+      const double now = glm::dot(glm::cross(to - from, foot - from), n);
+      if (now * side < 0) return false;
+      side = now;
+    }
+    return true;
+  });
+}
+
+/// Whether panes of a material are bodies, or pairs of sheets: light passes two faces of it.
+bool has_two_faces(const Scene& scene, std::uint32_t material) {
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t i = 0; i < scene.triangle_count(); ++i) {
+    if (scene.triangle_material[i] == material) triangles.push_back(i);
   }
-  if (!found) {
-    throw UsageError(fmt::format("reflectance of '{}': there is no such material; there are {}",
-                                 change.glob, material_names(scene)));
+  constexpr std::size_t most_asked = 256;
+  const std::size_t step = (triangles.size() + most_asked - 1) / most_asked;
+  double all = 0, doubled = 0;
+  for (std::size_t i = 0; i < triangles.size(); i += step) {
+    const double area = triangle_area(scene, triangles[i]);
+    all += area;
+    if (has_other_face(scene, triangles[i], triangles)) doubled += area;
   }
+  return doubled > all / 2;
 }
 
 }  // namespace
 
-void apply_reflectances(Scene& scene, std::span<const ReflectanceChange> changes) {
-  for (const ReflectanceChange& change : changes) apply(scene, change);
+void apply_reflectances(Scene& scene, std::span<const MaterialShare> changes) {
+  for (const MaterialShare& change : changes) apply(scene, change);
+}
+
+void apply_glasses(Scene& scene, std::span<const MaterialShare> glasses) {
+  for (const MaterialShare& change : glasses) {
+    for_each_match(scene, change, "glass of", [&](std::uint32_t number) {
+      Material glass;
+      glass.name = scene.materials[number].name;
+      glass.interaction = Interaction::glass;
+      glass.thin = true;
+      // Coated glass lets more through than it could if it reflected as plain glass does.
+      double reflects = std::min(scene::glass_reflectance(glass), 1 - change.fraction),
+             passes = change.fraction;
+      if (has_two_faces(scene, number)) {
+        // Light bounces between two sheets of R and T as between the faces of one pane:
+        // R + T^2 R / (1 - R^2) without absorption, and T^2 / (1 - R^2).
+        reflects /= 2 - reflects;
+        passes = std::sqrt(passes * (1 - reflects * reflects));
+      }
+      glass.transmission = glm::vec3(0.0f);
+      scene::set_glass_reflectance(glass, reflects);
+      scene::set_transmittance(glass, passes);
+      scene.materials[number] = glass;
+    });
+  }
 }
 
 }  // namespace photile::loading

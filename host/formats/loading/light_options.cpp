@@ -42,15 +42,15 @@ std::optional<std::vector<double>> numbers_of(std::string_view text) {
 
 }  // namespace
 
-ReflectanceChange ReflectanceChange::parse(const std::string& text) {
+MaterialShare MaterialShare::parse(const std::string& text) {
   const auto [glob, value] =
-      sides(text, text.rfind('='), "use MATERIAL=REFLECTANCE, such as 'wall*=0.5' or wall=50%");
+      sides(text, text.rfind('='), "use MATERIAL=SHARE, such as 'wall*=0.5' or wall=50%");
   const bool percent = value.ends_with('%');
   const auto number = parse_signed(percent ? value.substr(0, value.size() - 1) : value);
   const double share = number.value_or(-1) / (percent ? 100 : 1);
   if (!(share >= 0 && share <= 1)) {
     throw UsageError(
-        fmt::format("'{}': a reflectance is a number from 0 to 1, or from 0% to 100%", text));
+        fmt::format("'{}': a share is a number from 0 to 1, or from 0% to 100%", text));
   }
   return {glob, share};
 }

@@ -181,6 +181,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
   scene::make_light_names_unique(scene.lights);
   loading::apply_profiles(scene, options.profiles, warnings);
   loading::apply_temperatures(scene, options.temperatures);
+  loading::apply_glasses(scene, options.glasses);
   loading::apply_reflectances(scene, options.reflectances);
   check_powers(scene, options.emissive_scale);
   loading::group_lights(scene, options.light_groups);
