@@ -5,6 +5,7 @@
 #include "photile/statistics.hpp"
 #include "render/film.hpp"
 #include "support/bench_record.hpp"
+#include "support/kernel_seconds.hpp"
 #include "support/workload.hpp"
 
 namespace {
@@ -18,12 +19,11 @@ struct FrameSize {
 
 /// Seconds of each stage, per repeat.
 struct FrameTiming {
-  Timing hits, estimate, film, total;
+  Timing hits, estimate, kernels, film, total;  ///< kernels: the part of the estimate that they run
 };
 
-FrameTiming measure_frames(const RayScene& rays, Estimator& estimator,
-                           std::span<const std::uint32_t> map_of, const FrameSize& size,
-                           const Repeats& repeats) {
+FrameTiming measure_frames(const RayScene& rays, const PhotonMaps& maps, Estimator& estimator,
+                           const FrameSize& size, const Repeats& repeats) {
   PrimaryHitParameters film;
   film.width = size.width;
   film.height = size.height;
@@ -32,9 +32,11 @@ FrameTiming measure_frames(const RayScene& rays, Estimator& estimator,
   timing.total = measure(repeats, [&] {
     const Stopwatch stopwatch;
     const PrimaryHitBatch batch =
-        trace_primary_hits(rays, rays.scene().cameras.front(), film, 0, film.height, map_of);
+        trace_primary_hits(rays, rays.scene().cameras.front(), film, 0, film.height, maps.map_of());
     const double hits_done = stopwatch.seconds();
-    const LightTable estimates = estimator.estimate(batch.hits);
+    LightTable estimates;
+    timing.kernels.seconds.push_back(
+        kernel_seconds_of(maps.device(), [&] { estimates = estimator.estimate(batch.hits); }));
     const double estimate_done = stopwatch.seconds();
     LightLayers layers(film.width, film.height, rays.scene());
     add_to_film(layers, batch, estimates, 1.0f);
@@ -42,7 +44,7 @@ FrameTiming measure_frames(const RayScene& rays, Estimator& estimator,
     timing.estimate.seconds.push_back(estimate_done - hits_done);
     timing.film.seconds.push_back(stopwatch.seconds() - estimate_done);
   });
-  for (Timing* stage : {&timing.hits, &timing.estimate, &timing.film}) {
+  for (Timing* stage : {&timing.hits, &timing.estimate, &timing.kernels, &timing.film}) {
     stage->seconds.erase(stage->seconds.begin());  // the warm-up
   }
   return timing;
@@ -56,7 +58,7 @@ bool run(BenchOptions& options) {
     paths.emitted_photons = 20'000;
   }
   BenchRecord record("frame", options);
-  Device device({.selector = options.device});
+  Device device({.selector = options.device, .profile = true});
   record.set_device(device.info());
   const Scene scene = living_room();
   const RayScene rays(scene);
@@ -71,13 +73,13 @@ bool run(BenchOptions& options) {
                           find_map_groups(scene, photons, mode.mode, {radius}), {.radius = radius});
     Estimator estimator(maps, scene, {});
     for (const FrameSize& size : sizes) {
-      const FrameTiming timing =
-          measure_frames(rays, estimator, maps.map_of(), size, options.repeats);
+      const FrameTiming timing = measure_frames(rays, maps, estimator, size, options.repeats);
       record.add({{"maps", mode.name},
                   {"width", size.width},
                   {"height", size.height},
                   {"primary hits", to_json(timing.hits)},
                   {"estimate", to_json(timing.estimate)},
+                  {"kernels", to_json(timing.kernels)},
                   {"film", to_json(timing.film)},
                   {"total", to_json(timing.total)}});
     }

@@ -117,8 +117,8 @@ void StructureQuery::run(device::Launch& launch, const estimate::PageHits& hits,
       .set("list_record", list_record_);
   PhotileQuery query = estimate::query_of(store_, hits, parameters_);
   const auto unit = static_cast<std::uint32_t>(hits_per_item);
-  pace_.run(hits.count, unit, [&](std::uint32_t first, std::uint32_t count) {
-    query.first_hit = hits.first + first;
+  pace_.run(hits.hits.count, unit, [&](std::uint32_t first, std::uint32_t count) {
+    query.first_hit = first;
     query.hit_count = count;
     launch.set("query", query);
     launch.run_no_more(std::min<std::size_t>((count + unit - 1) / unit, work_items_),

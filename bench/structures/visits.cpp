@@ -2,16 +2,12 @@
 
 #include <vector>
 
-#include "estimate/map_order.hpp"
 #include "structures/structure_query.hpp"
 
 namespace photile::structures {
 
 Visits count_visits(const PhotonMaps& maps, const PrimaryHits& hits, int k) {
   const maps::MapStore& store = maps::store_of(maps);
-  const auto order = estimate::order_by_map(store.maps_of(hits, 0, hits.size()), hits.position);
-  if (!order.empty()) return count_visits(maps, estimate::reordered(hits, 0, order), k);
-
   device::Context& context = device::context_of(*store.device);
   const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, 0, hits.size());
   const estimate::HitBuffers buffers =

@@ -131,7 +131,7 @@ PrimaryHits in_map_order(const PrimaryHits& hits, const NeighbourGroups& groups)
   }
   const auto order = estimate::order_by_map(maps, hits.position);
   if (order.empty()) return hits;
-  PrimaryHits ordered = estimate::reordered(hits, 0, order);
+  PrimaryHits ordered = estimate::reordered(hits, order);
   for (const std::uint32_t hit : order) {
     ordered.pixel.push_back(hits.pixel[hit]);
     ordered.throughput.push_back(hits.throughput[hit]);

@@ -152,8 +152,8 @@ class Estimator {
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
-  /// Radiance estimates; none depends on the other hits, in any bit. Hits in the order of their
-  /// maps (trace_primary_hits with PhotonMaps::map_of) need not be sorted.
+  /// Radiance estimates; none depends on the other hits, in any bit. Hits may have any order: the
+  /// kernels take them map by map.
   LightTable estimate(const PrimaryHits& hits);
 
   /// Estimates hits [first, first + count) alone.

@@ -44,8 +44,8 @@ struct HitLobe {
   glm::vec3 smooth_normal{0.0f};  ///< `normal` without a normal map; only in scenes that have one
 };
 
-/// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Sorted by
-/// photon map, then along a space-filling curve, so that neighbours in memory share a map.
+/// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Pixel by
+/// pixel; those of one by photon map, then along a space-filling curve: so their light is summed.
 struct PrimaryHits {
   std::vector<glm::vec3> position;  ///< metres
   std::vector<std::uint32_t> oriented_face;
@@ -124,8 +124,8 @@ struct PrimaryHitBatch {
 /// carries weight 1 / samples_per_pixel in `throughput` and `radiance`, so that summing gives pixel
 /// means. Depends on the scene, camera, parameters and seed only, not on how rows are split or on
 /// threads.
-///   map_of   map of each oriented face (PhotonMaps::map_of), for the order of hits; empty
-///            where an oriented face is the map itself
+///   map_of   map of each oriented face (PhotonMaps::map_of), for the order of a pixel's hits;
+///            empty where an oriented face is the map itself
 PrimaryHitBatch trace_primary_hits(const RayScene& scene, const Camera& camera,
                                    const PrimaryHitParameters& parameters, int first_row,
                                    int last_row, std::span<const std::uint32_t> map_of = {});

@@ -4,7 +4,7 @@
 
 #include "estimate/estimate_hit.clh"
 
-// One worker per HITS_PER_ITEM hits of one map page, each of which expects the radius of the one
+// One worker per HITS_PER_ITEM hits, each of which expects the radius of the one
 // before. Photon records lie in planes of query.record_stride; what no surface of the scene needs
 // is empty.
 //   hit_surfaces                   with CLIPPED or NORMALS
@@ -21,6 +21,7 @@
 // LIGHT_SLOTS slots in place of lights.
 __kernel WORKER_GROUP void estimate_by_selection(
     const PhotileQuery query, __global const PhotileHit* restrict hits,
+    __global const uint* restrict order,
     __global const PhotileHitSurface* restrict hit_surfaces,
     __global const PhotileHitLobe* restrict hit_lobes, __global const PhotileGrid* restrict grids,
     __global const uint* restrict cell_start, __global const uint* restrict record_photon,
@@ -41,7 +42,9 @@ __kernel WORKER_GROUP void estimate_by_selection(
   const uint end = query.first_hit + min(begin + HITS_PER_ITEM, query.hit_count);
   float expected = 0.0f;  // radius of the last hit's neighbourhood, if on the same map
   uint expected_map = 0xFFFFFFFFu;
-  for (uint index = query.first_hit + begin; index < end; ++index) {
+  for (uint i = query.first_hit + begin; i < end; ++i) {
+    const uint index = hit_at(i, order);
+    if (!is_on_page(&query, &hits[index])) continue;
     const uint map = hits[index].map;
     __global const PhotileGrid* grid = &grids[map - query.first_map];
     if (grid->columns == 0) continue;

@@ -9,6 +9,7 @@
 // followed by what was there; squared_radius[hit] is that of the estimate's disc.
 __kernel WORKER_GROUP void nearest_by_selection(
     const PhotileQuery query, __global const PhotileHit* restrict hits,
+    __global const uint* restrict order,
     __global const PhotileHitSurface* restrict hit_surfaces,
     __global const PhotileGrid* restrict grids, __global const uint* restrict cell_start,
     __global const uint* restrict record_photon, __global const float* restrict record_position,
@@ -18,7 +19,8 @@ __kernel WORKER_GROUP void nearest_by_selection(
   WORKER_MEMORY(uint, listed);
   const uint k = query.k;
   for (uint h = WORKER; h < query.hit_count; h += WORKERS) {
-    const uint index = query.first_hit + h;
+    const uint index = hit_at(query.first_hit + h, order);
+    if (!is_on_page(&query, &hits[index])) continue;
     __global const PhotileGrid* grid = &grids[hits[index].map - query.first_map];
     if (grid->columns == 0) continue;
 

@@ -108,6 +108,7 @@ static float predicted_within(float reach, uint records, const Block* block,
 //   rows   WORDS_PER_ITEM per work-item, for its block
 __kernel void estimate_by_radix(
     const PhotileQuery query, __global const PhotileHit* restrict hits,
+    __global const uint* restrict order,
     __global const PhotileHitSurface* restrict hit_surfaces,
     __global const PhotileHitLobe* restrict hit_lobes, uint record_count,
     __global const uint* restrict root, __global const PhotileGrid* restrict frames,
@@ -133,7 +134,9 @@ __kernel void estimate_by_radix(
     const uint end = query.first_hit + min(begin + HITS_PER_ITEM, query.hit_count);
     float expected = 0.0f;
     uint expected_map = 0xFFFFFFFFu;
-    for (uint index = query.first_hit + begin; index < end; ++index) {
+    for (uint i = query.first_hit + begin; i < end; ++i) {
+      const uint index = hit_at(i, order);
+      if (!is_on_page(&query, &hits[index])) continue;
       const uint map = hits[index].map;
       const uint tree = root[map - query.first_map];
       if (tree == 0xFFFFFFFFu) continue;

@@ -64,6 +64,17 @@ TEST_CASE("fill sets a range of millions and leaves the rest") {
   CHECK((back == expected));
 }
 
+TEST_CASE("an output is zero until it is written, and is read into the values it was made for") {
+  Context context({});
+  std::vector<int> values(1000);
+  auto buffer = context.share_output<int>(values, "values");
+  context.fill(buffer, 9, 2, 3);
+  context.read<int>(buffer, values);
+  std::vector<int> expected(1000);
+  std::fill_n(expected.begin() + 2, 3, 9);
+  CHECK(values == expected);
+}
+
 TEST_CASE("a shared buffer holds the host's values, and outlives its context") {
   const auto values = counted(1000);
   photile::device::Buffer<int> outliving;

@@ -81,7 +81,7 @@ TEST_CASE("Samples fall evenly over a pixel, and rays beside the plate hit nothi
       counts_agree(counts, std::vector<double>(64, static_cast<double>(batch.hits.size()) / 64)));
 }
 
-TEST_CASE("Hits are sorted by oriented face, then by Morton code") {
+TEST_CASE("Hits lie pixel by pixel, those of one by oriented face, then by Morton code") {
   const Scene scene = furnished_room(2);
   const RayScene rays(scene);
   Camera camera = camera_above();
@@ -92,7 +92,7 @@ TEST_CASE("Hits are sorted by oriented face, then by Morton code") {
   REQUIRE(hits.size() > 10'000);
   const trace::HitCells cells(impl_of(rays).bounds);
   const auto key = [&](std::size_t i) {
-    return std::pair{hits.oriented_face[i], cells.morton_code(hits.position[i])};
+    return std::tuple{hits.pixel[i], hits.oriented_face[i], cells.morton_code(hits.position[i])};
   };
   for (std::size_t i = 1; i < hits.size(); ++i) REQUIRE(key(i - 1) <= key(i));
 }
@@ -416,31 +416,30 @@ TEST_CASE("what lies behind a pane of thin glass is seen, and not reflected") {
   CHECK(trace::trace_reflected_hits(rays, camera_above(), film, 0, 8).hits.size() == 0);
 }
 
-// A sort by more bits than a number has is no sort: the map `none`, above all others, asked for it.
-TEST_CASE("Hits are sorted by map and cell, those on triangles without a map last") {
+TEST_CASE("The hits of a pixel's runs are sorted by map and cell, those without a map last") {
   const std::vector<std::uint32_t> map_of{5, none, 0, 2, none, 1'000'000, 5};
-  const geometry::Box box{glm::vec3(0.0f), glm::vec3(1.0f)};
-  const trace::HitCells cells(box);
+  const Scene scene = furnished_room(2);
+  const RayScene rays(scene);
+  const trace::HitCells cells(impl_of(rays).bounds);
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform;
   std::vector<trace::EyeRecord> records(50);
-  for (trace::EyeRecord& record : records) {
-    for (int i = 0; i < 40; ++i) {
+  for (std::uint32_t row = 0; row < 50; ++row) {
+    for (std::uint32_t i = 0; i < 40; ++i) {
       trace::EyeHit hit{};
       hit.position = {uniform(random), uniform(random), uniform(random)};
       hit.oriented_face = static_cast<std::uint32_t>(random() % map_of.size());
-      record.hits.push_back(hit);
+      hit.pixel = 2 * (2 * row + i / 20) + i % 2;  // two pixels a row, each of two runs
+      records[row].hits.push_back(hit);
     }
   }
-  const std::vector<trace::HitIndex> indices = trace::sorted_indices(records, box, map_of);
-  REQUIRE(indices.size() == 2'000);
-  const auto order_of = [&](const trace::HitIndex& place) {
-    const trace::EyeHit& hit = records[place.record].hits[place.index];
-    return std::tuple(map_of[hit.oriented_face], cells.morton_code(hit.position), place.record,
-                      place.index);
+  const PrimaryHits hits = trace::batch_of(rays, records, 2, map_of).hits;
+  REQUIRE(hits.size() == 2'000);
+  const auto order_of = [&](std::size_t i) {
+    return std::tuple(hits.pixel[i] / 2, map_of[hits.oriented_face[i]],
+                      cells.morton_code(hits.position[i]));
   };
-  CHECK(std::is_sorted(indices.begin(), indices.end(),
-                       [&](const auto& a, const auto& b) { return order_of(a) < order_of(b); }));
+  for (std::size_t i = 1; i < hits.size(); ++i) REQUIRE(order_of(i - 1) <= order_of(i));
 }
 
 }  // namespace photile::test

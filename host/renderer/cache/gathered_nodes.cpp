@@ -221,7 +221,7 @@ void GatheredNodes::gather_new(const NodeBatch& batch, std::span<const std::uint
     const std::vector<std::uint64_t> numbers = numbers_at(batch, chosen);
     GatheredParts light, known;
     if (more != NodeRays{}) {
-      light = gather_.gather(estimate::reordered(batch.points, 0, chosen), numbers, more.rays,
+      light = gather_.gather(estimate::reordered(batch.points, chosen), numbers, more.rays,
                              more.light_samples, progress, before);
     }
     if (before != NodeRays{}) {

@@ -122,7 +122,7 @@ GatheredParts IrradianceGather::gather(const PrimaryHits& points,
   std::iota(own.begin(), own.end(), static_cast<std::uint32_t>(begin));
   const std::size_t most = (points.size() + shard.count - 1) / shard.count;
   const GatheredParts part =
-      gather_own(estimate::reordered(points, 0, own), number.subspan(begin, own.size()), rays,
+      gather_own(estimate::reordered(points, own), number.subspan(begin, own.size()), rays,
                  light_samples, before, most, progress);
   GatheredParts all = none_yet();
   for (const auto& bytes : processes->gather(bytes_of(part))) append(bytes, all);

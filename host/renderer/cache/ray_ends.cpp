@@ -37,14 +37,12 @@ PrimaryHits hits_of(const trace::EyeRecord& ray_hits, std::span<const std::uint3
   trace::EyeRecord record;
   record.hits.resize(chosen.size());
   record.glossy.resize(ray_hits.glossy.empty() ? 0 : chosen.size());
-  std::vector<trace::HitIndex> indices(chosen.size());
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(chosen.size()),
                     [&](std::uint32_t i) {
                       record.hits[i] = ray_hits.hits[chosen[i]];
                       if (!record.glossy.empty()) record.glossy[i] = ray_hits.glossy[chosen[i]];
-                      indices[i] = {0, i};
                     });
-  return trace::hits_at({&record, 1}, indices);
+  return trace::hits_of({&record, 1});
 }
 
 }  // namespace

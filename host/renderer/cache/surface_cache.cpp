@@ -165,7 +165,7 @@ LightTable SurfaceCache::light_of(const Reading& reading, const Progress& progre
   const LightTable found =
       reading.alone.empty() && !maps_.processes()
           ? LightTable{}
-          : elsewhere_.at(estimate::reordered(reading.points, 0, reading.alone), progress);
+          : elsewhere_.at(estimate::reordered(reading.points, reading.alone), progress);
   const LightTable& of_coarse = ends_ ? ends_->values() : maps_.values();
   return rows(reading, found, maps_.values(), of_coarse, Coarse::between_nodes);
 }
@@ -214,7 +214,7 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
   const auto around = [&](std::span<const std::uint32_t> part, LightMaps& maps, int levels) {
     if (part.size() == points.size()) return maps.around(points, progress, levels);
     if (part.empty() && !maps.processes()) return LightMaps::Around{};
-    return maps.around(estimate::reordered(points, 0, part), progress, levels);
+    return maps.around(estimate::reordered(points, part), progress, levels);
   };
   const Stopwatch stopwatch;
   LightMaps::Around of_fine = around(fine, maps_, LightMaps::all_levels);

@@ -182,6 +182,9 @@ void Context::read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes,
                          std::size_t offset) {
   check_range(buffer, bytes, offset, "read");
   if (bytes == 0) return;
+  void* shared = nullptr;
+  clGetMemObjectInfo(memory_of(buffer), CL_MEM_HOST_PTR, sizeof shared, &shared, nullptr);
+  if (shared == data) return map_bytes(buffer, CL_MAP_READ, bytes, offset, [](void*) {});
   cl_event event = nullptr;
   const cl_int status = impl_->persevere([&] {
     return clEnqueueReadBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, offset, bytes, data,
@@ -201,8 +204,8 @@ RawBuffer Context::share_bytes(const void* data, std::size_t bytes, std::string_
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
     }
     cl_int created = CL_SUCCESS;
-    // The kernels that get it only read: the constness comes back in their arguments.
-    memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
+    // The kernels that get what is const only read: constness comes back in their arguments.
+    memory = clCreateBuffer(impl_->context.get(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes,
                             const_cast<void*>(data), &created);
     return created;
   });
@@ -230,16 +233,20 @@ void Context::write_by(const RawBuffer& buffer, std::size_t bytes, std::size_t f
     set(values.get());
     return write_bytes(buffer, values.get(), bytes, first);
   }
+  map_bytes(buffer, CL_MAP_WRITE_INVALIDATE_REGION, bytes, first, set);
+}
+
+void Context::map_bytes(const RawBuffer& buffer, std::uint64_t flags, std::size_t bytes,
+                        std::size_t first, const std::function<void(void*)>& use) {
   void* mapped = nullptr;
   const cl_int status = impl_->persevere([&] {
     cl_int done = CL_SUCCESS;
-    mapped = clEnqueueMapBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE,
-                                CL_MAP_WRITE_INVALIDATE_REGION, first, bytes, 0, nullptr, nullptr,
-                                &done);
+    mapped = clEnqueueMapBuffer(impl_->queue.get(), memory_of(buffer), CL_TRUE, flags, first, bytes,
+                                0, nullptr, nullptr, &done);
     return done;
   });
   impl_->check(status, "clEnqueueMapBuffer", fmt::format("{} bytes", bytes));
-  set(mapped);
+  use(mapped);
   impl_->check(
       clEnqueueUnmapMemObject(impl_->queue.get(), memory_of(buffer), mapped, 0, nullptr, nullptr),
       "clEnqueueUnmapMemObject", fmt::format("{} bytes", bytes));

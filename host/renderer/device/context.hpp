@@ -182,6 +182,16 @@ class Context {
     if (!shares_host_memory() || values.empty()) return upload(values, what);
     return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what, counts), values.size());
   }
+  /// A buffer of zeros, to be read into `values`, which are zeros and must not move during its
+  /// life: over the host's memory itself where the device is the host's processor, so that nothing
+  /// is cleared or moved.
+  template <class T>
+  Buffer<T> share_output(std::span<T> values, std::string_view what) {
+    if (shares_host_memory()) return share<T>(values, what, SharedMemory::counted);
+    auto buffer = allocate<T>(values.size(), what);
+    fill(buffer, T{});
+    return buffer;
+  }
   /// Allocates and has `set(values)` write all elements, into the memory of the device itself where
   /// that is the host's.
   template <class T, class Set>
@@ -259,6 +269,9 @@ class Context {
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
+  /// Calls use(memory) where the host has these bytes of the buffer at hand; `flags` of OpenCL.
+  void map_bytes(const RawBuffer& buffer, std::uint64_t flags, std::size_t bytes, std::size_t first,
+                 const std::function<void(void*)>& use);
   /// `set(memory)` writes these bytes.
   void write_by(const RawBuffer& buffer, std::size_t bytes, std::size_t first,
                 const std::function<void(void*)>& set);

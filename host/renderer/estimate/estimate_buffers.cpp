@@ -38,38 +38,43 @@ EstimateBytes LightSums::bytes_per_hit() const {
   return {largest, together};
 }
 
+namespace {
+
+std::span<float> floats_of(std::span<glm::vec3> values) {
+  return values.empty() ? std::span<float>() : std::span(&values.front().x, 3 * values.size());
+}
+
+}  // namespace
+
 EstimateBuffers::EstimateBuffers(device::Context& context, const LightSums& sums,
-                                 std::uint32_t hits)
-    : context_(context), sums_(sums), hits_(hits) {
+                                 LightTable& result, std::size_t first, std::uint32_t hits)
+    : context_(context), sums_(sums), result_(result), first_(first), hits_(hits) {
+  if (!sums.many_lights) {
+    irradiance = context.share_output(part(result.irradiance), "irradiance estimates");
+    radiance = context.share_output(part(result.radiance), "radiance estimates");
+    return;
+  }
   const std::size_t estimates = std::size_t{hits} * sums.per_hit;
   irradiance = context.allocate<float>(3 * estimates, "irradiance estimates");
   radiance = context.allocate<float>(sums.glossy ? 3 * estimates : 0, "radiance estimates");
-  if (sums.many_lights) {
-    slot_light = context.allocate<std::uint16_t>(estimates, "lights of estimates");
-    slots_taken = context.allocate<std::uint32_t>(std::size_t{hits} + 1, "lights per hit");
-    context.fill(slots_taken, 0u);
-  } else {
-    context.fill(irradiance, 0.0f);
-    context.fill(radiance, 0.0f);
-  }
+  slot_light = context.allocate<std::uint16_t>(estimates, "lights of estimates");
+  slots_taken = context.allocate<std::uint32_t>(std::size_t{hits} + 1, "lights per hit");
+  context.fill(slots_taken, 0u);
 }
 
-void EstimateBuffers::read(LightTable& result, std::size_t first) {
+std::span<float> EstimateBuffers::part(std::vector<glm::vec3>& column) const {
+  if (column.empty()) return {};
+  return floats_of(
+      std::span(column).subspan(first_ * sums_.per_hit, std::size_t{hits_} * sums_.per_hit));
+}
+
+void EstimateBuffers::read() {
   if (sums_.many_lights) {
-    result.append(read_slots());
+    result_.append(read_slots());
   } else {
-    const auto part = [&](std::vector<glm::vec3>& values) {
-      return std::span(values).subspan(first * sums_.per_hit, std::size_t{hits_} * sums_.per_hit);
-    };
-    read_vectors(irradiance, part(result.irradiance));
-    if (sums_.glossy) read_vectors(radiance, part(result.radiance));
+    context_.read(irradiance, part(result_.irradiance));
+    context_.read(radiance, part(result_.radiance));
   }
-}
-
-void EstimateBuffers::read_vectors(const device::Buffer<float>& buffer,
-                                   std::span<glm::vec3> values) {
-  if (values.empty()) return;
-  context_.read(buffer, std::span(&values.front().x, 3 * values.size()));
 }
 
 /// Takes the empty slots out on the device: it is fast there, and less is read.
@@ -84,10 +89,16 @@ LightTable EstimateBuffers::read_slots() {
   context_.read(first, std::span(offsets));
 
   const std::size_t total = offsets.back();
-  auto light = context_.allocate<std::uint16_t>(total, "lights of estimates");
-  auto packed_irradiance = context_.allocate<float>(3 * total, "irradiance estimates");
-  auto packed_radiance =
-      context_.allocate<float>(sums_.glossy ? 3 * total : 0, "radiance estimates");
+  LightTable estimates(sums_.lights, true);
+  estimates.first.assign(offsets.begin(), offsets.end());
+  estimates.light.resize(total);
+  estimates.irradiance.resize(total);
+  estimates.radiance.resize(sums_.glossy ? total : 0);
+  const auto light = context_.share_output(std::span(estimates.light), "lights of estimates");
+  const auto packed_irradiance =
+      context_.share_output(floats_of(estimates.irradiance), "irradiance estimates");
+  const auto packed_radiance =
+      context_.share_output(floats_of(estimates.radiance), "radiance estimates");
   device::Launch launch = kernels.launch("pack_estimates");
   launch.set("hit_count", hits_)
       .set("first", first)
@@ -99,16 +110,9 @@ LightTable EstimateBuffers::read_slots() {
       .set("radiance", packed_radiance);
   launch.run(hits_, maps::work_group_size);
 
-  LightTable estimates(sums_.lights, true);
-  estimates.first.assign(offsets.begin(), offsets.end());
-  estimates.light.resize(total);
-  if (total > 0) context_.read(light, std::span(estimates.light));
-  estimates.irradiance.resize(total);
-  read_vectors(packed_irradiance, estimates.irradiance);
-  if (sums_.glossy) {
-    estimates.radiance.resize(total);
-    read_vectors(packed_radiance, estimates.radiance);
-  }
+  context_.read(light, std::span(estimates.light));
+  context_.read(packed_irradiance, floats_of(estimates.irradiance));
+  context_.read(packed_radiance, floats_of(estimates.radiance));
   return estimates;
 }
 

@@ -47,12 +47,14 @@ struct LightSums {
 /// The estimates of a batch.
 class EstimateBuffers {
  public:
-  /// Those of this many hits, all zero, for kernels that are compiled with the symbols of `sums`.
-  EstimateBuffers(device::Context& context, const LightSums& sums, std::uint32_t hits);
+  /// Those of the hits [first, first + hits) of a table, all zero, for kernels that are compiled
+  /// with the symbols of `sums`. Dense tables have zeros there, and stay for its life.
+  EstimateBuffers(device::Context& context, const LightSums& sums, LightTable& result,
+                  std::size_t first, std::uint32_t hits);
 
-  /// What the kernels left becomes the estimates of the hits [first, first + hits) in `result`,
-  /// which has room for them; with many lights it is appended. Waits for the kernels.
-  void read(LightTable& result, std::size_t first);
+  /// What the kernels left becomes their estimates; with many lights it is appended. Waits for the
+  /// kernels.
+  void read();
 
   device::Buffer<float> irradiance, radiance;  ///< 3 per estimate; radiance in glossy scenes
   // With many lights:
@@ -61,10 +63,13 @@ class EstimateBuffers {
 
  private:
   LightTable read_slots();
-  void read_vectors(const device::Buffer<float>& buffer, std::span<glm::vec3> values);
+  /// Their part of a column.
+  std::span<float> part(std::vector<glm::vec3>& column) const;
 
   device::Context& context_;
   LightSums sums_;
+  LightTable& result_;
+  std::size_t first_;
   std::uint32_t hits_;
 };
 

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "common/ascii_text.hpp"
+#include "common/touched_memory.hpp"
 #include "common/value_range.hpp"
 #include "estimate/estimate_buffers.hpp"
 #include "estimate/hit_buffers.hpp"
-#include "estimate/map_order.hpp"
 #include "estimate/query.hpp"
 #include "estimate/specialisation.hpp"
 #include "geometry/radius_range.hpp"
@@ -86,11 +86,12 @@ struct Estimator::Impl {
     const std::vector<std::uint32_t> hit_maps = store.maps_of(hits, first, count);
     const HitBuffers buffers = estimate::upload_hits(context, hits, first, hit_maps, store.normals,
                                                      clipped_to(), store.needs);
-    estimate::EstimateBuffers estimates(context, query->sums(), static_cast<std::uint32_t>(count));
+    estimate::EstimateBuffers estimates(context, query->sums(), result, offset,
+                                        static_cast<std::uint32_t>(count));
     estimate::for_each_page(store, buffers, hit_maps, [&](const estimate::PageHits& page_hits) {
       query->estimate(page_hits, estimates);
     });
-    estimates.read(result, offset);
+    estimates.read();
   }
 
   /// The neighbours of hits [first, first + count).
@@ -139,18 +140,12 @@ Estimator::Estimator(Estimator&&) noexcept = default;
 LightTable Estimator::estimate(const PrimaryHits& hits) { return estimate(hits, 0, hits.size()); }
 
 LightTable Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::size_t hit_count) {
-  const auto order = estimate::order_by_map(impl_->store.maps_of(hits, begin, hit_count),
-                                            std::span(hits.position).subspan(begin, hit_count));
-  if (!order.empty()) {
-    return estimate::restored(estimate(estimate::reordered(hits, begin, order), 0, hit_count),
-                              order);
-  }
   const auto [largest, together] = impl_->query->sums().bytes_per_hit();
   LightTable result(impl_->store.needs);
   if (!result.sparse()) {
     const std::size_t estimates = hit_count * impl_->store.needs.light_count;
-    result.irradiance.resize(estimates);
-    if (impl_->store.needs.glossy) result.radiance.resize(estimates);
+    result.irradiance = touched_vector<glm::vec3>(estimates);
+    if (impl_->store.needs.glossy) result.radiance = touched_vector<glm::vec3>(estimates);
   }
   // Slots for many lights stay mostly empty: more of them than this at a time gain nothing.
   constexpr std::uint64_t comfortable_bytes = 128u << 20;
@@ -170,14 +165,6 @@ LightTable Estimator::estimate(const PrimaryHits& hits, std::size_t begin, std::
 
 NeighbourLists Estimator::nearest(const PrimaryHits& hits, ListOrder list_order) {
   const std::size_t k = impl_->neighbours;
-  const auto order =
-      estimate::order_by_map(impl_->store.maps_of(hits, 0, hits.size()), hits.position);
-  if (!order.empty()) {
-    NeighbourLists result = nearest(estimate::reordered(hits, 0, order), list_order);
-    estimate::restore_rows(result.photons, order, k);
-    estimate::restore_rows(result.squared_radius, order, 1);
-    return result;
-  }
   const std::uint64_t output = sizeof(std::uint32_t) * k;
   NeighbourLists result;
   result.k = static_cast<int>(k);

@@ -61,8 +61,8 @@ class GridQuery : public Query {
     constexpr std::uint32_t unit = 64;
     static_assert(unit % max_hits_per_item == 0);
     PhotileQuery query = query_of(store_, hits, parameters_);
-    pace_.run(hits.count, unit, [&](std::uint32_t first, std::uint32_t count) {
-      query.first_hit = hits.first + first;
+    pace_.run(hits.hits.count, unit, [&](std::uint32_t first, std::uint32_t count) {
+      query.first_hit = first;
       query.hit_count = count;
       launch.set("query", query);
       run_part(count);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "estimate/map_order.hpp"
 #include "trace/opaque_bsdf.hpp"
 
 namespace photile::estimate {
@@ -89,7 +90,8 @@ device::Buffer<T> upload_each(device::Context& context, std::size_t count, std::
 }  // namespace
 
 std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped) {
-  return sizeof(PhotileHit) + (normals || clipped ? sizeof(PhotileHitSurface) : 0) +
+  return sizeof(PhotileHit) + sizeof(std::uint32_t) +
+         (normals || clipped ? sizeof(PhotileHitSurface) : 0) +
          (needs.glossy ? sizeof(PhotileHitLobe) : 0);
 }
 
@@ -99,6 +101,8 @@ HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::s
   const std::size_t count = maps.size();
   HitBuffers buffers{.count = static_cast<std::uint32_t>(count)};
   if (count == 0) return buffers;
+  const auto order = order_by_map(maps, std::span(hits.position).subspan(first, count));
+  if (!order.empty()) buffers.order = context.upload(std::span(order), "order of hits");
   buffers.hits = upload_each<PhotileHit>(context, count, "hits", [&](std::size_t i) {
     PhotileHit hit{};
     store(hit.position, hits.position[first + i]);

@@ -31,6 +31,7 @@ struct SurfaceBuffers {
 struct HitBuffers {
   std::uint32_t count = 0;
   device::Buffer<PhotileHit> hits = {};
+  device::Buffer<std::uint32_t> order = {};         ///< by map; empty: their own
   device::Buffer<PhotileHitSurface> surfaces = {};  ///< where normals are compared or areas clipped
   device::Buffer<PhotileHitLobe> lobes = {};        ///< in glossy scenes
 };

@@ -11,14 +11,13 @@
 namespace photile::estimate {
 namespace {
 
-/// values[first + order[i]] for each i.
+/// values[order[i]] for each i.
 template <class T>
-std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> order,
-                      std::size_t first = 0) {
+std::vector<T> gather(const std::vector<T>& values, std::span<const std::uint32_t> order) {
   if (values.empty()) return {};
   std::vector<T> result(order.size());
   tbb::parallel_for(std::size_t{0}, order.size(),
-                    [&](std::size_t i) { result[i] = values[first + order[i]]; });
+                    [&](std::size_t i) { result[i] = values[order[i]]; });
   return result;
 }
 
@@ -48,20 +47,13 @@ std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps,
   return order;
 }
 
-LightTable restored(const LightTable& light, std::span<const std::uint32_t> order) {
-  std::vector<std::uint32_t> row_of(order.size());
-  for (std::uint32_t row = 0; row < order.size(); ++row) row_of[order[row]] = row;
-  return light.gathered(row_of);
-}
-
-PrimaryHits reordered(const PrimaryHits& hits, std::size_t first,
-                      std::span<const std::uint32_t> order) {
+PrimaryHits reordered(const PrimaryHits& hits, std::span<const std::uint32_t> order) {
   PrimaryHits result;
-  result.position = gather(hits.position, order, first);
-  result.oriented_face = gather(hits.oriented_face, order, first);
-  result.diffuse_albedo = gather(hits.diffuse_albedo, order, first);
-  result.outgoing = gather(hits.outgoing, order, first);
-  result.lobe = gather(hits.lobe, order, first);
+  result.position = gather(hits.position, order);
+  result.oriented_face = gather(hits.oriented_face, order);
+  result.diffuse_albedo = gather(hits.diffuse_albedo, order);
+  result.outgoing = gather(hits.outgoing, order);
+  result.lobe = gather(hits.lobe, order);
   return result;
 }
 

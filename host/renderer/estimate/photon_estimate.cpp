@@ -76,7 +76,7 @@ void PhotonEstimate::leave_out_hidden(const PrimaryHits& points, LightTable& res
   for (std::size_t first = 0; first < beside.size(); first += lists) {
     const std::span<const std::uint32_t> chosen =
         std::span(beside).subspan(first, std::min(lists, beside.size() - first));
-    const NeighbourLists near = estimators_.front().nearest(reordered(points, 0, chosen));
+    const NeighbourLists near = estimators_.front().nearest(reordered(points, chosen));
     seen_->leave_out_hidden(points, chosen, near, result);
   }
 }

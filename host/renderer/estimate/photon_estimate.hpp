@@ -41,7 +41,7 @@ class PhotonEstimate : public light::LightAtPoints {
 
   LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
-  /// Per oriented face, as PhotonMaps has it: points in this order are not put in another.
+  /// Per oriented face, as PhotonMaps has it.
   std::span<const std::uint32_t> map_of() const { return maps_->front().map_of(); }
 
   /// Each device's part of all points so far.

@@ -17,11 +17,10 @@
 
 namespace photile::estimate {
 
-/// Hits [first, first + count) of a batch, which all lie on maps of one page.
+/// The hits of a batch and a page of maps, on which some of them lie.
 struct PageHits {
   const HitBuffers& hits;
   const maps::MapPage& page;
-  std::uint32_t first = 0, count = 0;
 };
 
 /// The kernels for one k and radius. Outputs of hits that lie on no page, or on
@@ -65,28 +64,29 @@ inline void set_density_defines(device::Defines& defines, bool clipped, DensityK
   }
 }
 
-/// Calls launch(page_hits) for the hits of each map page that has any; `hit_maps`: theirs,
-/// ascending.
+/// Calls launch(page_hits) for each map page that hits lie on; `hit_maps`: their maps.
 template <class Launch>
 void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
                    std::span<const std::uint32_t> hit_maps, Launch launch) {
   const maps::ResidentMaps::Release release_last{store.pages};
   for (std::size_t i = 0; i < store.pages.size(); ++i) {
     const maps::PageExtent& extent = store.pages[i];
-    const auto first = std::lower_bound(hit_maps.begin(), hit_maps.end(), extent.first_map);
-    const auto last = std::lower_bound(first, hit_maps.end(), extent.last_map);
-    if (first == last) continue;
-    launch(PageHits{hits, store.pages.use(i), static_cast<std::uint32_t>(first - hit_maps.begin()),
-                    static_cast<std::uint32_t>(last - first)});
+    const auto is_here = [&](std::uint32_t map) {
+      return map >= extent.first_map && map < extent.last_map;
+    };
+    if (std::any_of(hit_maps.begin(), hit_maps.end(), is_here)) {
+      launch(PageHits{hits, store.pages.use(i)});
+    }
   }
 }
 
 /// What kernels are given about a page's hits.
 inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
                              const QueryParameters& parameters) {
-  return {.first_hit = hits.first,
-          .hit_count = hits.count,
+  return {.first_hit = 0,
+          .hit_count = hits.hits.count,
           .first_map = hits.page.first_map,
+          .map_count = hits.page.last_map - hits.page.first_map,
           .record_stride = hits.page.record_stride,
           .k = parameters.neighbours,
           .radius = parameters.radius,
@@ -98,6 +98,7 @@ inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
 /// Sets the arguments that every kernel takes, except the query itself.
 inline void set_page_arguments(device::Launch& launch, const PageHits& hits) {
   launch.set("hits", hits.hits.hits)
+      .set("order", hits.hits.order)
       .set("hit_surfaces", hits.hits.surfaces)
       .set("record_photon", hits.page.record_photon)
       .set("record_position", hits.page.record_position)

@@ -139,14 +139,14 @@ std::vector<std::vector<std::uint32_t>> Exchange::by_owner(const PrimaryHits& po
 LightTable Exchange::in_order(std::span<const std::vector<std::uint32_t>> of_owners,
                               std::span<const std::vector<std::byte>> bytes,
                               std::size_t points) const {
-  std::vector<std::uint32_t> order;
+  std::vector<std::uint32_t> row_of(points);
   LightTable all = none_;
-  order.reserve(points);
+  std::uint32_t row = 0;
   for (std::size_t rank = 0; rank < of_owners.size(); ++rank) {
-    order.insert(order.end(), of_owners[rank].begin(), of_owners[rank].end());
+    for (const std::uint32_t point : of_owners[rank]) row_of[point] = row++;
     if (!of_owners[rank].empty()) append_rows(bytes[rank], all);
   }
-  return estimate::restored(all, order);
+  return all.gathered(row_of);
 }
 
 LightTable Exchange::at_own(const PrimaryHits& points, const Progress& progress) {
@@ -155,7 +155,7 @@ LightTable Exchange::at_own(const PrimaryHits& points, const Progress& progress)
   std::vector<Communicator::Bytes> asked(ranks);
   for (std::uint32_t rank = 0; rank < ranks; ++rank) {
     if (of_owners[rank].empty()) continue;
-    asked[rank] = bytes_of(estimate::reordered(points, 0, of_owners[rank]));
+    asked[rank] = bytes_of(estimate::reordered(points, of_owners[rank]));
     if (rank == own) continue;
     sent_.points += of_owners[rank].size();
     sent_.point_bytes += asked[rank].size();
@@ -185,7 +185,7 @@ LightTable Exchange::at_common(const PrimaryHits& points, const Progress& progre
   const std::vector<std::uint32_t>& own = of_owners[processes_.rank()];
   const Communicator::Bytes bytes =
       own.empty() ? Communicator::Bytes()
-                  : bytes_of(here_->at(estimate::reordered(points, 0, own), progress));
+                  : bytes_of(here_->at(estimate::reordered(points, own), progress));
   return in_order(of_owners, processes_.gather(bytes), points.size());
 }
 

@@ -19,23 +19,39 @@ namespace photile {
 
 namespace {
 
-/// What a light gives to a pixel.
+/// What a light gives to a pixel: values, or references to those of planes.
+template <class Radiance, class Illuminance>
 struct PixelLight {
-  glm::vec3 radiance{0.0f};
-  float illuminance = 0;
+  Radiance radiance;
+  Illuminance illuminance;
 
   void add(const glm::vec3& seen, float arriving) {
     radiance += seen;
     illuminance += arriving;
   }
 };
-using PixelSums = light::RowSum<PixelLight>;
+using PixelSums = light::RowSum<PixelLight<glm::vec3, float>>;
+
+/// A pixel of dense layers, whose sums are its values themselves.
+struct PixelOfPlanes {
+  PixelLight<glm::vec3&, float&> of(std::size_t light) {
+    return {layers[light].radiance[pixel], layers[light].illuminance[pixel]};
+  }
+
+  std::span<LightLayers::Layer> layers;
+  std::size_t pixel;
+};
 
 /// Calls change(x, sums) for each pixel of a row, with what each light gives to it, and keeps what
 /// the sums are then.
 template <class Change>
 void change_row(LightLayers& layers, std::size_t y, const Change& change) {
   const auto width = static_cast<std::size_t>(layers.width);
+  if (!layers.sparse()) {
+    PixelOfPlanes sums{layers.layers, y * width};
+    for (std::size_t x = 0; x < width; ++x, ++sums.pixel) change(x, sums);
+    return;
+  }
   PixelSums sums(layers.layers.size());
   LightLayers::Row row;
   row.first.push_back(0);
@@ -45,27 +61,22 @@ void change_row(LightLayers& layers, std::size_t y, const Change& change) {
                      sums.of(light).add(radiance, illuminance);
                    });
     change(x, sums);
-    sums.take_lit([&](std::uint16_t light, const PixelLight& sum) {
-      if (layers.sparse()) {
-        row.light.push_back(light);
-        row.radiance.push_back(sum.radiance);
-        row.illuminance.push_back(sum.illuminance);
-      } else {
-        layers.layers[light].radiance[y * width + x] = sum.radiance;
-        layers.layers[light].illuminance[y * width + x] = sum.illuminance;
-      }
+    sums.take_lit([&](std::uint16_t light, const auto& sum) {
+      row.light.push_back(light);
+      row.radiance.push_back(sum.radiance);
+      row.illuminance.push_back(sum.illuminance);
     });
     row.first.push_back(static_cast<std::uint32_t>(row.light.size()));
   }
-  if (!layers.sparse()) return;
   row.light.shrink_to_fit();
   row.radiance.shrink_to_fit();
   row.illuminance.shrink_to_fit();
   layers.rows[y] = std::move(row);
 }
 
+template <class Sums>
 void add_hit(const PrimaryHits& hits, std::size_t hit, const LightTable& estimates,
-             float sample_weight, PixelSums& sums) {
+             float sample_weight, Sums& sums) {
   const float weight = hits.fraction.empty() ? sample_weight : sample_weight * hits.fraction[hit];
   estimates.for_each(hit, [&](std::size_t light, std::size_t i) {
     sums.of(light).add(hits.throughput[hit] * light::reflected_radiance(hits, hit, estimates, i),
@@ -95,7 +106,7 @@ void add_to_film(LightLayers& layers, const PrimaryHitBatch& batch, const LightT
       trace::by_pixel(batch.emission.size(), first_pixel, pixels,
                       [&](std::size_t i) { return batch.emission[i].pixel; });
   tbb::parallel_for(first_row, end_row, [&](std::size_t y) {
-    change_row(layers, y, [&](std::size_t x, PixelSums& sums) {
+    change_row(layers, y, [&](std::size_t x, auto& sums) {
       const std::size_t pixel = (y - first_row) * width + x;
       for (const std::uint32_t hit : hits.of(pixel)) {
         add_hit(batch.hits, hit, estimates, sample_weight, sums);
@@ -133,14 +144,14 @@ void add_weighted(LightLayers& layers, int row, const LightLayers& from,
                   const RowWeights& weights) {
   const auto width = static_cast<std::size_t>(from.width);
   PixelSums found(layers.layers.size());
-  change_row(layers, static_cast<std::size_t>(row), [&](std::size_t x, PixelSums& sums) {
+  change_row(layers, static_cast<std::size_t>(row), [&](std::size_t x, auto& sums) {
     for (std::uint32_t i = weights.first[x]; i < weights.first[x + 1]; ++i) {
       for_each_light(from, weights.pixel[i] % width, weights.pixel[i] / width,
                      [&](std::size_t light, float, const glm::vec3& radiance) {
                        found.of(light).add(weights.weight[i] * radiance, 0.0f);
                      });
     }
-    found.take_lit([&](std::uint16_t light, const PixelLight& mean) {
+    found.take_lit([&](std::uint16_t light, const auto& mean) {
       sums.of(light).add(mean.radiance, mean.illuminance);
     });
   });
@@ -173,7 +184,7 @@ void add_sample_errors(LightLayers& errors, const LightLayers& runs) {
   if (count < 2) return;
   tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(errors.height), [&](std::size_t y) {
     light::RowSum<Scatter> scatter(errors.layers.size());
-    change_row(errors, y, [&](std::size_t x, PixelSums& sums) {
+    change_row(errors, y, [&](std::size_t x, auto& sums) {
       for (std::size_t run = x * count; run < (x + 1) * count; ++run) {
         for_each_light(runs, run, y,
                        [&](std::size_t light, float illuminance, const glm::vec3& radiance) {
@@ -182,10 +193,11 @@ void add_sample_errors(LightLayers& errors, const LightLayers& runs) {
       }
       scatter.take_lit([&](std::uint16_t light, const Scatter& its) {
         // Standard errors of two sources that have nothing to do with each other, as one.
-        PixelLight& error = sums.of(light);
+        auto&& error = sums.of(light);
         const glm::dvec4 own(error.radiance, error.illuminance);
         const glm::dvec4 both = glm::sqrt(own * own + its.variance(static_cast<double>(count)));
-        error = {glm::vec3(both), static_cast<float>(both.w)};
+        error.radiance = glm::vec3(both);
+        error.illuminance = static_cast<float>(both.w);
       });
     });
   });

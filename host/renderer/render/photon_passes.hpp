@@ -63,9 +63,9 @@ class PassLight {
   /// Takes the points at which rays gathered, for the light of further photons.
   cache::GatheredPoints take_points() { return gathered_->take_points(); }
 
-  /// The order in which the light is found fastest: per oriented face, the map of a hit; empty
-  /// where the order does not matter, and where processes share the maps: each has other maps, by
-  /// whose numbers the hits of a pixel would be summed in another order on each.
+  /// The order in which a pixel's hits are summed: per oriented face, the map of a hit; empty where
+  /// it is that of the faces: where light maps are read, and where processes share the photon maps,
+  /// because each has other ones.
   std::span<const std::uint32_t> map_of() const;
   /// Each device's part of all points so far; empty where that is not known.
   std::vector<double> fractions() const;

@@ -12,13 +12,16 @@
 namespace photile {
 namespace {
 
-/// Hits estimated at a time: enough to fill a device, little enough to stay in memory with the
-/// light of every light at each, and fewer where each takes longer, so that progress is shown and a
-/// request to stop takes effect soon.
-std::int64_t hits_per_batch(int neighbours, std::size_t lights) {
-  constexpr std::int64_t most = 1 << 20, most_entries = 1 << 24;
-  return std::min(most * defaults::neighbours / std::max(defaults::neighbours, neighbours),
-                  most_entries / static_cast<std::int64_t>(std::max<std::size_t>(1, lights)));
+/// Hits of a batch: enough to fill a device, little enough to stay in memory with all lights of
+/// each. Of estimates, so few that the allocator keeps their memory for the next ones, and fewer
+/// where each takes longer: progress is shown, and a request to stop takes effect soon.
+std::int64_t hits_per_batch(const RenderPlan& plan, std::size_t lights) {
+  constexpr std::int64_t most = 1 << 20, most_estimates = 1 << 18, most_entries = 1 << 24;
+  const std::int64_t hits = plan.reads_light_maps()
+                                ? most
+                                : most_estimates * defaults::neighbours /
+                                      std::max(defaults::neighbours, plan.used().neighbours);
+  return std::min(hits, most_entries / static_cast<std::int64_t>(std::max<std::size_t>(1, lights)));
 }
 
 /// What `runs` runs of a pixel's samples see becomes that of `less` runs.
@@ -186,10 +189,8 @@ Shard Picture::own_rows() const {
 int Picture::rows_per_batch() const {
   const std::int64_t hits_per_row =
       std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
-  // Where light maps are read, only their nodes take long.
-  const int neighbours = plan_.reads_light_maps() ? defaults::neighbours : plan_.used().neighbours;
   return static_cast<int>(std::clamp<std::int64_t>(
-      hits_per_batch(neighbours, rays_.needs().light_count) / hits_per_row, 1, film_.height));
+      hits_per_batch(plan_, rays_.needs().light_count) / hits_per_row, 1, film_.height));
 }
 
 PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& light, int first,

@@ -1,4 +1,4 @@
-// Primary hits in batches: ordered by photon map and along a Morton curve, and grouped by pixel.
+// Primary hits in batches: pixel by pixel, those of one by photon map and along a Morton curve.
 #pragma once
 
 #include <cstddef>
@@ -39,25 +39,15 @@ class HitCells {
   glm::vec3 cells_per_metre_{0.0f};  ///< 0 along an axis where the box is flat
 };
 
-/// One of the hits of several records.
-struct HitIndex {
-  std::uint32_t record;
-  std::uint32_t index;  ///< into EyeRecord::hits
-};
-
-/// All hits in the order map, Morton code of their cell of `box`, position.
-///   map_of   per oriented face, `none`, which is the last, where it has no map; empty where a
-///            oriented face is the map itself
-std::vector<HitIndex> sorted_indices(std::span<const EyeRecord> records, const geometry::Box& box,
-                                     std::span<const std::uint32_t> map_of);
-
-/// The hits at these positions of the records, in the order of the positions.
-PrimaryHits hits_at(std::span<const EyeRecord> records, std::span<const HitIndex> indices);
+/// The hits of all records, one record after the other.
+PrimaryHits hits_of(std::span<const EyeRecord> records);
 
 /// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place
 /// of light. Does not depend on how samples are split into rows.
+///   rows     each of its own pixels, one pixel after the other
+///   runs     of a pixel: see PrimaryHitParameters
 ///   map_of   as in trace_primary_hits
-PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows,
+PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows, int runs,
                          std::span<const std::uint32_t> map_of);
 
 /// The part of trace_primary_hits, with the same samples, that comes by a mirror, by glass that

@@ -84,13 +84,14 @@ PrimaryHitBatch trace_rows(const RayScene& ray_scene, const Camera& camera,
     }
   });
 
-  PrimaryHitBatch batch = trace::batch_of(ray_scene, std::move(rows), map_of);
+  PrimaryHitBatch batch = trace::batch_of(ray_scene, std::move(rows), parameters.runs, map_of);
   if (!lobe_rays) return batch;
   batch.lobes = joined(
       reflected_rows.size(), [&](std::size_t row) -> const auto& {
         return reflected_rows[row].lobes;
       });
-  PrimaryHitBatch reflected = trace::batch_of(ray_scene, std::move(reflected_rows), map_of);
+  PrimaryHitBatch reflected =
+      trace::batch_of(ray_scene, std::move(reflected_rows), parameters.runs, map_of);
   batch.rays += reflected.rays;
   for (VisibleEmission& seen : reflected.emission) seen.illuminance = 0;  // of another surface
   batch.reflected = std::move(reflected.hits);

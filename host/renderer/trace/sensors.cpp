@@ -21,7 +21,6 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
   constexpr double reach = 1e-3;  // metres
   const Scene& scene = rays.scene();
   EyeRecord record;
-  std::vector<HitIndex> indices;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const Sensor& sensor = sensors[i];
     const glm::vec3 down(-sensor.normal);
@@ -36,9 +35,8 @@ PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors) {
     append_hit(impl_of(rays), *point,
                {glm::vec3(sensor.position), down, glm::vec3(1.0f), static_cast<std::uint32_t>(i)},
                record);
-    indices.push_back({0, static_cast<std::uint32_t>(i)});
   }
-  return hits_at({&record, 1}, indices);
+  return hits_of({&record, 1});
 }
 
 namespace {
@@ -157,7 +155,7 @@ PrimaryHitBatch gather_rays(const RayScene& rays, std::span<const Sensor> sensor
     const Photometer photometer(sensors[pixel], sensors[pixel].response.value_or(response));
     Gatherer(rays, light_sampler, setup, photometer, pixel).trace(rows[i], seen[i]);
   });
-  PrimaryHitBatch batch = batch_of(rays, std::move(rows), map_of);
+  PrimaryHitBatch batch = batch_of(rays, std::move(rows), film.runs, map_of);
   for (const auto& row : seen) {
     batch.emission.insert(batch.emission.end(), row.begin(), row.end());
   }

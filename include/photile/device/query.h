@@ -3,10 +3,11 @@
 #ifndef PHOTILE_DEVICE_QUERY_H
 #define PHOTILE_DEVICE_QUERY_H
 
-/* A launch over hits that lie on maps of one page. Kernels take it by value. */
+/* A launch over hits on the maps of one page; hits on others are passed over. Kernels take it by
+   value. */
 typedef struct {
   unsigned int first_hit, hit_count; /* hits [first_hit, first_hit + hit_count) of the batch */
-  unsigned int first_map;            /* of the page */
+  unsigned int first_map, map_count; /* of the page */
   unsigned int record_stride;        /* from one plane of the page's photon records to the next */
   unsigned int k;                    /* at most this many neighbours, */
   float radius;                      /* none farther than this, metres */
