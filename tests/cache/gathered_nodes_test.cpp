@@ -9,7 +9,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
-#include <string>
 
 #include "cache/light_maps.hpp"
 #include "cache/node_sources.hpp"

@@ -176,7 +176,7 @@ def walk():
                 frames[count] = [channels(folder / str(count) / f"f.{i}.exr")[1] for i in (1, 2, 3)]
                 if count > 0:
                     (folder / "3/f.2.exr").unlink()
-                    check("2 of 3 frames are finished" in run_whole(count, arguments).stderr,
+                    check("2 of 3 frames are already finished" in run_whole(count, arguments).stderr,
                           "finished frames were made again")
             check(all(np.array_equal(a, b) for a, b in zip(frames[0], frames[3])), f"walk {more} differs")
             for png in (folder / "0").glob("*.png"):

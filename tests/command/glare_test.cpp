@@ -55,15 +55,15 @@ TEST_CASE("glare of lamps of next to no light has an error that is a number") {
   CHECK_THAT(outcome.output, !Contains("nan"));
 }
 
-TEST_CASE("a camera that stands in no room is told, with the remedy") {
+TEST_CASE("a camera that is not in a room is told, with the remedy") {
   const FileFolder folder;
   const auto rate = [&](const std::string& scene, const char* sky) {
     return succeed(glare(scene, {"--camera", "default", "--ratings", "ugr", "--sky", sky})).errors;
   };
   CHECK_THAT(rate(folder.write("floor.obj", "v 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nf 4 3 2 1\n"),
                   "uniform=1000"),
-             Contains("camera 'default' stands in no room") && Contains("--observers"));
-  CHECK_THAT(rate(write_box(folder), "uniform=1000"), !Contains("stands in no room"));
+             Contains("camera 'default' is not in a room") && Contains("--observers"));
+  CHECK_THAT(rate(write_box(folder), "uniform=1000"), !Contains("is not in a room"));
 }
 
 TEST_CASE("a grid has four directions of view at each point, and no pictures") {

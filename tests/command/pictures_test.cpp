@@ -3,7 +3,6 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -36,31 +35,6 @@ nlohmann::json compare(const FileFolder& folder, const std::string& a, const std
       succeed({"compare", a, b, "-o", folder / "compared.png", "--json", folder / "compared.json"});
   CHECK_THAT(outcome.output, Contains("left"));
   return nlohmann::json::parse(folder.read("compared.json"));
-}
-
-TEST_CASE("a picture with a value that is no number is refused by its name") {
-  const FileFolder folder;
-  Image image;
-  image.width = image.height = 2;
-  for (const char* name : {"R", "G", "B"}) image.add(name) = {1, 1, 1, 1};
-  write_exr(folder / "sound.exr", image);
-  image.channels.front()[2] = std::numeric_limits<float>::quiet_NaN();
-  write_exr(folder / "damaged.exr", image);
-  for (const auto& [a, b] : {std::pair("sound.exr", "damaged.exr"), {"damaged.exr", "sound.exr"}}) {
-    CHECK_THAT(only_error(run_photile({"compare", folder / a, folder / b}), bad_input),
-               Contains("damaged.exr") && Contains("1 of its values"));
-  }
-}
-
-TEST_CASE("a picture without colours is refused by its name") {
-  const FileFolder folder;
-  Image image;
-  image.width = image.height = 2;
-  image.add("Y") = {1, 1, 1, 1};
-  write_exr(folder / "grey.exr", image);
-  CHECK_THAT(
-      only_error(run_photile({"compare", folder / "grey.exr", folder / "grey.exr"}), bad_input),
-      Contains("grey.exr") && Contains("no channel R"));
 }
 
 TEST_CASE("equal pictures are equal files, wherever they are written") {
@@ -338,27 +312,6 @@ TEST_CASE("what is drawn of a render is what its EXR holds, in scenes of watts a
     const double radiance = 0.2126 * value("R") + 0.7152 * value("G") + 0.0722 * value("B");
     CHECK(colour_at(drawn, x, y) == palette.at(efficacy * radiance / 3000));
   }
-}
-
-TEST_CASE("a drawing in false colour needs its values") {
-  const FileFolder folder;
-  const auto error = [&](std::vector<std::string> arguments, int code) {
-    return only_error(run_photile(arguments), code);
-  };
-  // Light groups as other programs write them.
-  Image foreign;
-  foreign.width = foreign.height = 1;
-  for (const char* channel : {"Combined_key.R", "Combined_key.G", "Combined_key.B"}) {
-    foreign.add(channel) = {1};
-  }
-  write_exr(folder / "foreign.exr", foreign);
-  CHECK_THAT(error({"relight", folder / "foreign.exr", "-o", folder / "a.exr", "--illuminance",
-                    folder / "a.png"},
-                   3),
-             Contains("Combined_key"));
-  CHECK_THAT(error({"relight", folder / "foreign.exr", "--luminance", folder / "a.png"}, 3),
-             Contains("whiteLuminance"));
-  CHECK_FALSE(std::filesystem::exists(folder / "a.exr"));
 }
 
 // Who pays for OpenImageIO: the dynamic linker says what it loads.

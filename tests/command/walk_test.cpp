@@ -51,13 +51,13 @@ TEST_CASE("a walk writes its frames, PNGs and a contact sheet, and again only th
   std::filesystem::remove(folder / "f.03.exr");
   folder.write("f.04.exr", "no picture");
   const Outcome again = succeed(arguments);
-  CHECK_THAT(again.errors, Contains("2 of 4 frames are finished"));
+  CHECK_THAT(again.errors, Contains("2 of 4 frames are already finished"));
   CHECK(written(folder / "f.01.exr") == first_written);
   CHECK(folder.read("sheet.png") == component_bytes);
   const Image now = read_image(folder / "f.03.exr");
   folder.write("before.exr", third);
   CHECK(*now.find("G") == *read_image(folder / "before.exr").find("G"));
-  CHECK_THAT(succeed(arguments).errors, Contains("4 of 4 frames are finished"));
+  CHECK_THAT(succeed(arguments).errors, Contains("4 of 4 frames are already finished"));
 }
 
 TEST_CASE("damaged frames and PNGs of a walk are made again, and no others") {
@@ -73,7 +73,7 @@ TEST_CASE("damaged frames and PNGs of a walk are made again, and no others") {
   folder.write("f.04.png", png.substr(0, png.size() / 2));
   const auto first_written = written(folder / "f.01.exr"),
              last_written = written(folder / "f.04.exr");
-  CHECK_THAT(succeed(arguments).errors, Contains("2 of 4 frames are finished"));
+  CHECK_THAT(succeed(arguments).errors, Contains("2 of 4 frames are already finished"));
   CHECK(written(folder / "f.01.exr") == first_written);
   CHECK(written(folder / "f.04.exr") == last_written);
   folder.write("whole.exr", second);
@@ -103,7 +103,7 @@ TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in pr
   }
   const auto first_written = written(file(1)), last_written = written(file(finished));
   CHECK_THAT(succeed(run.arguments).errors,
-             Contains(fmt::format("{} of {} frames are finished", finished, frames)));
+             Contains(fmt::format("{} of {} frames are already finished", finished, frames)));
   CHECK(written(file(1)) == first_written);
   CHECK(written(file(finished)) == last_written);
   CHECK(read_image(file(frames)).width == 16);
@@ -156,7 +156,8 @@ TEST_CASE("quick frames as EXR hold R, G, B, and are not made twice") {
   CHECK(frame.attributes.at("photile.scene") == "box.obj");
   const std::vector<float>& green = *frame.find("G");
   CHECK(*std::min_element(green.begin(), green.end()) > 0);
-  CHECK_THAT(succeed(walk(folder, {"--quick"})).errors, Contains("4 of 4 frames are finished"));
+  CHECK_THAT(succeed(walk(folder, {"--quick"})).errors,
+             Contains("4 of 4 frames are already finished"));
   CHECK_THAT(succeed(walk(folder)).errors, !Contains("finished"));
 }
 
@@ -194,7 +195,7 @@ TEST_CASE("frames that several processes make are those of one, with its exposur
   CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
   CHECK_FALSE(std::filesystem::exists(several / "f.03.png"));
   CHECK_THAT(succeed(walk(several, {"--frames", "3-5"})).errors,
-             Contains("1 of 3 frames are finished"));  // 3, 4 and 5
+             Contains("1 of 3 frames are already finished"));  // 3, 4 and 5
   CHECK_FALSE(std::filesystem::exists(several / "f.01.exr"));
   succeed(walk(several, {"--frames", "1-2"}));
   for (int frame = 1; frame <= 5; ++frame) {

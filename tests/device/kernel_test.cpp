@@ -1,8 +1,6 @@
 // Kernels: their source, arguments and launches.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <numeric>
 

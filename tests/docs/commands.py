@@ -23,7 +23,7 @@ from scene_tools.gltf_writer import GltfDocument  # noqa: E402
 from scene_tools.shapes import Shape  # noqa: E402
 
 # What stands for something that is not there, in the synopses and beside schedulers.
-PLACEHOLDER = re.compile(r"\b(SCENE|FILE|FIRST|PICTURE|FOLDER|PATTERN|HEIGHT)\b|\.\.\.|#FRAMESPEC#|\[--")
+PLACEHOLDER = re.compile(r"\b(SCENE|FILE|FIRST|PICTURE|FOLDER|PATTERN|HEIGHT|TOPIC)\b|\.\.\.|#FRAMESPEC#|\[--")
 RUNNERS = ("mpirun", "srun", "parallel", "podman", "oclgrind")
 LAMPS = ("desk_lamp", "daylight", "lamp", "ceiling_panel", "ceiling_left", "desk1", "picture_spot", "floor_lamp",
          "downlight")

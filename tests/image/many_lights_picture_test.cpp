@@ -1,8 +1,6 @@
 // Pictures of more lights than one part of an EXR holds: written and relit a few rows at a time.
 #include <OpenImageIO/imageio.h>
 
-#include <array>
-
 #include "file_limits.hpp"
 #include "memory_meter.hpp"
 #include "photile/layered_picture.hpp"

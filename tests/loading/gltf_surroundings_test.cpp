@@ -1,7 +1,6 @@
 // EXT_lights_image_based: cube maps in PNGs, plain and RGBD, that surround a glTF scene.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <numbers>
 

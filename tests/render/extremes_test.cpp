@@ -1,7 +1,6 @@
 // Pictures of unusual scenes.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/constants.hpp>

@@ -1,7 +1,6 @@
 // A library with the functions of Open Image Denoise 2 that photile calls: its "filter" gives each
 // pixel the mean of those around it, 3x3, whose albedo and normal are its own. Alone, an albedo or
 // a normal is rounded to quarters, which takes away a little noise.
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <glm/glm.hpp>

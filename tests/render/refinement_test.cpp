@@ -233,7 +233,7 @@ TEST_CASE("refinement: an error below what all rays and photons leave is told at
   studio.refine_to({.error = 1e-9}, good(), notes);
   CHECK(studio.made.size() == 1);
   CHECK(studio.made.back().light_map_rays == 64);
-  CHECK_THAT(notes.text, Catch::Contains("1e-07% is out of reach"));
+  CHECK_THAT(notes.text, Catch::Contains("1e-07% cannot be reached"));
 }
 
 TEST_CASE("refinement: an error that does not fall any longer is told") {
@@ -248,7 +248,7 @@ TEST_CASE("refinement: an error that does not fall any longer is told") {
   Notes notes;
   studio.refine_by(steps, {.error = 0.005}, good(), notes);
   CHECK(studio.made.size() == 3);  // 2%, 1.41%, 1.4%
-  CHECK_THAT(notes.text, Catch::Contains("0.5% is out of reach: about 1.4%"));
+  CHECK_THAT(notes.text, Catch::Contains("0.5% cannot be reached: about 1.4%"));
 }
 
 TEST_CASE("refinement: ends where rays and photons cannot grow") {

@@ -3,7 +3,6 @@
 // light, so that the light is even: a closed form that any wrong side of the partition breaks.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>

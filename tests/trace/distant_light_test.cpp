@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "path_irradiance.hpp"
 #include "photile/photons.hpp"

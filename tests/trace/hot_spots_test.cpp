@@ -2,7 +2,6 @@
 // on which side lights lie that are in a surface.
 #include "trace/hot_spots.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 

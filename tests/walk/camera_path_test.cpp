@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdint>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>

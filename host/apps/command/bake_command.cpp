@@ -63,17 +63,19 @@ void run_bake(BakeOptions& options) {
 void add_bake_command(CLI::App& photile) {
   auto options = std::make_shared<BakeOptions>();
   CLI::App* command = photile.add_subcommand(
-      "bake", "Write light maps as textures of a glTF scene, a picture per light");
+      "bake", "Bake light maps into textures of a glTF scene, one picture per light");
   const OptionGroup output(*command, "Output");
   output
-      .add("-o,--output", options->output, "FILE.gltf", "scene to write, with files beside it",
+      .add("-o,--output", options->output, "FILE.gltf",
+           "scene to write; its buffers and pictures lie beside it",
            file_ending_in({".gltf", ".glb"}))
       ->required();
   output.add("--texel", options->baking.texel, "M",
-             "metres between texels; default: half the coarsest nodes, or what fits",
+             "distance between texels, m; default: half that of the coarsest nodes, or what fits",
              positive_number());
   output
-      .add("--most-texels", options->baking.most_side, "N", "texels on a side of the pictures",
+      .add("--most-texels", options->baking.most_side, "N",
+           "largest width and height of the pictures, texels",
            count_between(64, limits::max_image_side))
       ->capture_default_str();
   add_setting_options(*command, options->render,

@@ -50,6 +50,7 @@ void define(CLI::App& photile) {
   add_view_command(photile);
   add_bake_command(photile);
   add_publish_command(photile);
+  add_help_command(photile);
   for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
     const std::string name = command->get_name();
     if (name == "render" || name == "measure" || name == "walk") continue;
@@ -89,7 +90,8 @@ void refuse_empty_values(std::span<const char* const> arguments) {
       option = arguments[i - 1];
     }
     if (option.empty()) throw UsageError("an argument is empty; give it a value, or leave it out");
-    throw UsageError(fmt::format("{}: its value is empty; give one, or leave it out", option));
+    throw UsageError(
+        fmt::format("{}: the value is empty; give one, or leave the option out", option));
   }
 }
 
@@ -148,10 +150,6 @@ int conclude(ExitCode code, const std::string& problem) {
   return processes()->conclude(own, tell).code;
 }
 
-}  // namespace
-
-namespace {
-
 /// Without allocating memory, which joining strings would.
 [[noreturn]] void end_in_runtime(std::string_view line) {
   static_cast<void>(::write(STDERR_FILENO, line.data(), line.size()) == 0);
@@ -160,8 +158,8 @@ namespace {
 
 [[noreturn]] void end_in_compiler() {
   end_in_runtime(
-      "photile: error: out of memory in the compiler of a device; raise the limit of its address "
-      "space (ulimit -v)\n");
+      "photile: error: out of memory in the compiler of a device; raise the limit on address space "
+      "(ulimit -v)\n");
 }
 
 /// Compilers of devices abort in states that they do not handle (docs/kernels/runtimes.md).

@@ -128,7 +128,7 @@ void check_pixels(const std::string& file, const Image& picture) {
   }
   if (lost == 0) return;
   throw InputError(fmt::format(
-      "{}: {} of its values are infinite or no numbers; give a picture without them", file, lost));
+      "{}: {} of its values are infinite or not numbers; give a picture without them", file, lost));
 }
 
 Compared from_file(const std::string& file) {
@@ -200,7 +200,7 @@ void check_moods(const CompareOptions& options) {
     return;
   }
   if (options.moods.size() != 2 || !options.second.empty()) {
-    throw UsageError("moods are compared by two: give one picture, and --mood twice");
+    throw UsageError("two moods are compared: give one picture, and --mood twice");
   }
 }
 
@@ -262,20 +262,19 @@ void run_compare(const CompareOptions& options) {
 void add_compare_command(CLI::App& photile) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = photile.add_subcommand(
-      "compare",
-      "Two pictures side by side: difference and error, layer by layer; levels of two moods");
+      "compare", "Compare two pictures layer by layer, or two moods of one picture");
   command->add_option("FIRST", options->first, "picture")->required()->type_name("");
   command->add_option("SECOND", options->second, "picture that the first is compared with")
       ->type_name("");
   const OptionGroup group(*command);
   group.repeat("--mood", options->moods, "NAME",
-               "give two: the first picture in both, as the window kept them");
+               "mood saved in the window; give two to compare the first picture in both");
   add_moods_file_option(group, options->moods_file);
   group.add("-o,--output", options->picture, "FILE.png",
-            "both and their difference in false colour", file_ending_in({".png"}));
+            "both pictures and their difference in false colour", file_ending_in({".png"}));
   group.add("--json", options->json, "FILE", "write the errors as JSON");
   group.add("-s,--scale", options->scale, "X",
-            "largest difference of the legend; default: from the pictures", positive_number());
+            "largest difference on the legend; default: from the pictures", positive_number());
   add_exposure_option(group, options->display.tone_mapping.exposure);
   add_white_option(group, options->display.white);
   add_set_option(*command, {{display_view_setting(options->display.tone_mapping)}});

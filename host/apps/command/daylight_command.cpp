@@ -146,7 +146,7 @@ void check_lights(const DaylightOptions& options) {
   }
   if (load.situation.weather.empty()) throw UsageError("daylight needs --weather FILE.epw");
   if (!options.blinds.empty() && options.suns != "rays") {
-    throw UsageError("--blinds close where the sun shines in; leave out --suns patches");
+    throw UsageError("--blinds needs rays to the sun; leave out --suns patches");
   }
   if (options.blinds.size() > most_blind_groups) {
     throw UsageError(
@@ -223,8 +223,8 @@ PreparedYear prepare_year(DaylightOptions& options, Progress& progress) {
   take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(
-        "no windows were found: rays look for the sky everywhere; name the panes' material by "
-        "--set portals=GLOB if there are some");
+        "no windows were found, so rays search for the sky in all directions; if there are "
+        "windows, name the material of their panes by --set portals=GLOB");
   }
   for (const auto& grid : grids)
     year.sensors.insert(year.sensors.end(), grid.sensors.begin(), grid.sensors.end());
@@ -317,35 +317,38 @@ void run_daylight(DaylightOptions& options) {
 
 void add_year(CLI::App& command, DaylightOptions& options) {
   const OptionGroup year(command, "Year");
-  year.add("--patches", options.patches, "", "of the sky: Tregenza's, or Reinhart's",
+  year.add("--patches", options.patches, "", "number of sky patches: Tregenza's, or Reinhart's",
            CLI::IsMember({145, 577, 2305}))
       ->capture_default_str();
   year.add("--suns", options.suns, "",
-           "rays: the sun's own to each point; patches: the four patches nearest to it, as "
-           "Radiance's two-phase method has it",
+           "rays: from each point to the sun; patches: the sun's light comes from the four nearest "
+           "patches, as in Radiance's two-phase method",
            CLI::IsMember({"rays", "patches"}))
       ->capture_default_str();
   year.add("--ground", options.render.load.ground, "X",
            "reflectance of the ground that surrounds the scene", number_between(0, 1))
       ->capture_default_str();
-  year.add("--lux", options.asked.target_lux, "LUX", "that count as autonomous daylight",
-           positive_number())
+  year.add("--lux", options.asked.target_lux, "LUX",
+           "illuminance that daylight has to provide (DA, sDA), lux", positive_number())
       ->capture_default_str();
-  year.add("--occupied", options.occupied, "FROM-TO", "hours of a day in standard time")
+  year.add("--occupied", options.occupied, "FROM-TO", "occupied hours of the day, standard time")
       ->capture_default_str();
-  year.add("--days", options.days, "DAYS", "on which they are occupied, by the weather's calendar")
+  year.add("--days", options.days, "DAYS",
+           "occupied days of the week, by the calendar of the weather file")
       ->capture_default_str();
-  year.add("--schedule", options.schedule, "FILE.csv",
-           "in their place: a value for each hour of the year, occupied above 0");
+  year.add(
+      "--schedule", options.schedule, "FILE.csv",
+      "replaces --occupied and --days: a value for each hour of the year, occupied if above 0");
   year.repeat("--blinds", options.blinds, "SCENE|MATERIAL=TRANSMITTANCE",
-              "that close where the sun comes in (IES LM-83): the scene with closed ones, or panes "
-              "and what they let through then; repeatable");
+              "blinds that close when the sun shines in (IES LM-83): the scene with closed blinds, "
+              "or the material of panes and their transmittance behind closed blinds; repeatable");
   year.add("--lamps-to", options.lamps_to, "LUX",
-           "lux that the scene's lamps, dimmed together, keep on the mean of a grid; tells their "
-           "energy",
+           "mean illuminance of a grid that the scene's lamps, dimmed together, maintain, lux; "
+           "adds their energy to the results",
            positive_number());
   year.add("--lamp-efficacy", options.lamp_efficacy, "X",
-           "lm/W of lamps whose photometric files state no power", positive_number())
+           "luminous efficacy of lamps whose photometric files state no power, lm/W",
+           positive_number())
       ->capture_default_str();
 }
 
@@ -369,22 +372,22 @@ void refine_year(DaylightOptions options, const std::function<void(std::vector<s
 void add_daylight_command(CLI::App& photile) {
   auto options = std::make_shared<DaylightOptions>();
   CLI::App* command = photile.add_subcommand(
-      "daylight", "A year of daylight at points: autonomy, glare of the sun, energy of lamps");
+      "daylight", "Assess a year of daylight at points: autonomy, sun exposure, energy of lamps");
   const OptionGroup output(*command, "Output"), measuring(*command, "Measuring");
   output.repeat("-o,--output", options->outputs, "FILE",
                 "table of the points (.csv, .json), plans of DA and UDI (.svg) or a report (.html, "
                 ".pdf); repeatable",
                 file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}));
   output.add("--honeybee", options->honeybee, "FOLDER",
-             "folder for the lux of every hour, as annual recipes leave it");
+             "folder for the lux of every hour, in the format of Honeybee's annual recipes");
   add_template_option(output, options->report);
   add_place_options(*command, options->places);
   add_year(*command, *options);
   add_maintenance_option(measuring, options->parameters);
   add_sensor_options(measuring, options->parameters);
   measuring.add("--for", options->seconds, "TIME",
-                "add rounds of rays for so long; figures get standard errors, and sDA says when it "
-                "certainly meets 55% or 75%",
+                "add rounds of rays for this time; results get standard errors, and sDA states "
+                "whether it certainly meets 55% or 75%",
                 duration());
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "direct_rays", "gloss", "quota"});

@@ -64,10 +64,10 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
     const Camera& placed = choose_camera(scene, name);
     const Camera camera = in_world(scene, placed);
     if (!trace::Room::around(RayScene(scene), {}, placed.position)) {
-      progress.warn(fmt::format(
-          "camera '{}' stands in no room with a ceiling; give the eyes of people who sit or stand "
-          "by --observers FILE",
-          camera.name));
+      progress.warn(
+          fmt::format("camera '{}' is not in a room with a ceiling; give the eyes of people who "
+                      "sit or stand by --observers FILE",
+                      camera.name));
     }
     all.push_back(
         glare::Observer::looking(camera.name, camera.position, camera.forward, camera.up));
@@ -226,11 +226,11 @@ void add_places(CLI::App& command, GlareOptions& options) {
   CLI::Option* grid =
       places
           .add("--grid", options.plane.height, "[HEIGHT]",
-               "observers over the floor, at the grid of EN 12464-1; default: " + height)
+               "observers over the floor, on the grid of EN 12464-1; default: " + height)
           ->expected(0, 1)
           ->default_str(height);
   places
-      .add("--directions", options.directions, "N", "of view at each point of the grid",
+      .add("--directions", options.directions, "N", "directions of view at each point of the grid",
            count_between(1, 360))
       ->capture_default_str()
       ->needs(grid);
@@ -242,15 +242,16 @@ void add_rating(CLI::App& command, GlareOptions& options) {
   const OptionGroup group(command, "Glare");
   group
       .add("--ratings", options.ratings, "LIST",
-           "ugr, dgp and dgi, separated by commas; default: all, of a grid ugr. dgp and dgi take a "
-           "picture of each view",
+           "ratings, separated by commas: ugr, dgp, dgi; default: all, with --grid ugr; dgp and "
+           "dgi render a picture of each view",
            CLI::IsMember({"ugr", "dgp", "dgi"}))
       ->delimiter(',');
   group.add("--target", options.target, "NAME|VALUES",
-            "the UGR that a standard allows, by name (office-desk) or value (UGR=19)");
+            "largest UGR that a standard allows, by name (office-desk) or value (UGR=19)");
   group
       .add("--source-luminance", parameters.search.threshold, "X",
-           "of glare sources in pictures: above 100 cd/m2; else times the mean luminance",
+           "threshold of glare sources in pictures: above 100 in cd/m2, otherwise times the mean "
+           "luminance",
            positive_number())
       ->capture_default_str();
   group
@@ -264,7 +265,7 @@ void add_rating(CLI::App& command, GlareOptions& options) {
 
 void add_glare_command(CLI::App& photile) {
   auto options = std::make_shared<GlareOptions>();
-  CLI::App* command = photile.add_subcommand("glare", "Discomfort glare: UGR, DGP and DGI");
+  CLI::App* command = photile.add_subcommand("glare", "Rate discomfort glare by UGR, DGP and DGI");
   const OptionGroup output(*command, "Output");
   output.repeat("-o,--output", options->outputs, "FILE",
                 "table to write, .csv or .json; repeatable", file_ending_in({".csv", ".json"}));

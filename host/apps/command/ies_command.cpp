@@ -141,9 +141,10 @@ void run_ies(const IesOptions& options) {
   print_lamp(lamp);
   for (const auto& line : warnings.lines()) std::cerr << "warning: " << line << '\n';
   if (options.ugr_table && !luminous) {
-    throw InputError(fmt::format(
-        "{}: states no luminous opening, so no luminance is known; get it again from the maker",
-        options.file));
+    throw InputError(
+        fmt::format("{}: states no luminous opening, so its luminance is not known; ask the maker "
+                    "for a complete file",
+                    options.file));
   }
   std::cout << table;
 }
@@ -153,21 +154,21 @@ void run_ies(const IesOptions& options) {
 void add_ies_command(CLI::App& photile) {
   auto options = std::make_shared<IesOptions>();
   CLI::App* command =
-      photile.add_subcommand("ies", "Say what a photometric file holds, and its UGR table");
+      photile.add_subcommand("ies", "Print what a photometric file holds, and its UGR table");
   command->add_option("FILE", options->file, "photometric file: .ies or .ldt")
       ->required()
       ->type_name("");
   const OptionGroup group(*command);
   CLI::Option* table = group.flag("--ugr-table", options->ugr_table,
-                                  "glare in standard rooms by the tabular method (CIE 190)");
+                                  "UGR in standard rooms by the tabular method (CIE 190)");
   group
       .add("--spacing", options->spacing, "X",
-           "of the luminaires, over their height above the eyes", number_between(0.1, 2))
+           "spacing of the luminaires, over their height above the eyes", number_between(0.1, 2))
       ->capture_default_str()
       ->needs(table);
   group
       .flag("--per-1000-lm", options->per_thousand_lumens,
-            "uncorrected values: of a luminaire of 1000 lm")
+            "uncorrected values, for a luminaire of 1000 lm")
       ->needs(table);
   group
       .repeat("-o,--output", options->outputs, "FILE", "table to write, .csv or .json; repeatable",

@@ -24,7 +24,6 @@
 #include "render/kernel_preparation.hpp"
 
 namespace photile::app {
-
 namespace {
 
 using nlohmann::json;
@@ -73,8 +72,9 @@ void run_compilation(const DevicesOptions& options) {
   TerminalProgress progress(false);
   for (Device& device : open_devices({.selector = options.selector})) {
     compile_usual_kernels(device, progress);
-    progress.note(fmt::format("kernels of {}: {} compiled, {} were there", device.info().id,
-                              device.programs_built(), device.programs_from_cache()));
+    progress.note(fmt::format("kernels of {}: {} compiled, {} already in the cache",
+                              device.info().id, device.programs_built(),
+                              device.programs_from_cache()));
   }
 }
 
@@ -96,8 +96,7 @@ void run_tests(const DevicesOptions& options) {
   }
   if (failed > 0) {
     throw DeviceError(
-        "a device computes wrong results; choose another one by --device, or update "
-        "its driver");
+        "a device computes wrong results; choose another by --device, or update its driver");
   }
 }
 
@@ -122,7 +121,7 @@ void run_devices(const DevicesOptions& options) {
   if (options.json) {
     std::cout << json_text(list, 2);
   } else {
-    std::cout << "* = what photile render uses; choose with --device or PHOTILE_DEVICE\n";
+    std::cout << "* = used by photile render; choose with --device or PHOTILE_DEVICE\n";
   }
 }
 
@@ -137,12 +136,12 @@ void add_devices_command(CLI::App& photile) {
             "devices to mark, to test or to compile for, as in photile render");
   group
       .flag("--compile", options->compile,
-            "compile the kernels of usual scenes ahead, so that the first picture of each is as "
-            "quick as later ones")
+            "compile the kernels of usual scenes in advance, so that the first picture is as quick "
+            "as later ones")
       ->excludes(json);
   group
       .flag("--test", options->test,
-            "test what each device computes, which decides if a GPU is taken by default; takes "
+            "test what each device computes; a GPU is used by default only if it passes; takes "
             "seconds")
       ->excludes(json);
   command->callback([options] { run_devices(*options); });
@@ -152,7 +151,7 @@ void add_settings_command(CLI::App& photile) {
   CLI::App* command =
       photile.add_subcommand("settings", "List what --set sets, with defaults and ranges");
   auto markdown = std::make_shared<bool>(false);
-  command->add_flag("--markdown", *markdown, "as docs/reference/settings.md holds it");
+  command->add_flag("--markdown", *markdown, "print the tables of docs/reference/settings.md");
   command->callback(
       [markdown] { std::cout << (*markdown ? settings_markdown() : settings_text()); });
 }
@@ -170,7 +169,7 @@ void print_text(const Scene& scene, const LightMix& mix, const SceneLoadOptions&
   for (const auto& line : sky_lines(load)) std::cout << line << '\n';
   const auto rooms = measuring::rooms_of_cameras(scene);
   if (rooms.empty()) {
-    std::cout << "room: none with a ceiling around a camera or before it\n";
+    std::cout << "room: none with a ceiling around a camera or in front of it\n";
   }
   for (const auto& [camera, room] : rooms) {
     std::cout << fmt::format(
@@ -207,7 +206,7 @@ void run_info(const InfoOptions& options) {
 void add_info_command(CLI::App& photile) {
   auto options = std::make_shared<InfoOptions>();
   options->load.may_be_dark = true;
-  CLI::App* command = photile.add_subcommand("info", "Say what a scene file holds");
+  CLI::App* command = photile.add_subcommand("info", "Print what a scene file holds");
   add_scene_file(*command, options->scene);
   command->add_flag("--json", options->json, "print JSON");
   add_set_option(*command, {scene_settings(options->load)});

@@ -57,8 +57,8 @@ struct MeasureOptions {
 void take_overcast_sky(SceneLoadOptions& load) {
   if (load.sky || load.sun || load.situation.time || !load.environment.file.empty()) {
     throw UsageError(
-        "--daylight-factor takes the CIE overcast sky; leave out --sky, --sun, "
-        "--time and --environment");
+        "--daylight-factor uses the CIE overcast sky; leave out --sky, --sun, --time and "
+        "--environment");
   }
   load.sky = Sky{SkyKind::overcast, 100};
 }
@@ -118,14 +118,14 @@ std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
   std::vector<std::string> lines = doubts_of(scene, mix);
   if (has_hidden_caustics(scene)) {
     lines.emplace_back(
-        "what mirrors and glass throw onto sensors from point, spot and directional "
-        "lights is missing; lamps with an area are seen in them");
+        "light of point, spot and directional lights that mirrors and glass cast onto sensors is "
+        "missing; that of area lights is included");
   }
   const std::size_t covered = measuring::covered_sensors(scene, grids);
   if (covered > 0) {
     lines.push_back(
-        fmt::format("{} points have a surface less than 1 cm before them; they may lie in "
-                    "furniture or just below a top",
+        fmt::format("{} points have a surface less than 1 cm in front of them; they may lie in "
+                    "furniture or just below a table top",
                     covered));
   }
   return lines;
@@ -144,8 +144,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!options.target.empty()) requirement = measuring::parse_requirement(options.target);
   if (options.daylight_factor && requirement) {
     throw UsageError(
-        "--target judges lux, and daylight factors are per cent of the sky's lux; leave out one of "
-        "them, or let photile daylight judge the room by EN 17037");
+        "--target needs lux, and --daylight-factor gives per cent; leave out one of them, or rate "
+        "the room by EN 17037 with photile daylight");
   }
   if (options.daylight_factor) take_overcast_sky(render.load);
   note_inputs_of(render);
@@ -218,20 +218,20 @@ void add_places(CLI::App& command, MeasureOptions& options) {
   places.flag("--walls", options.walls, "a grid on each wall of the room");
   places.flag("--ceiling", options.ceiling, "a grid on the ceiling of the room");
   places.add("--cylindrical-at", options.cylindrical_at, "HEIGHT",
-             "cylindrical illuminance over the floor: floor+1.2 of people who sit");
+             "cylindrical illuminance at this height: floor+1.2 for people who sit");
   places.add("--semi-cylindrical-at", options.semi_cylindrical_at, "HEIGHT",
-             "semi-cylindrical illuminance over the floor, towards four sides");
+             "semi-cylindrical illuminance at this height, towards four sides");
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {
   const OptionGroup measuring(command, "Measuring");
   measuring.flag("--cylindrical", options.cylindrical,
-                 "cylindrical illuminance round each point's direction, which points up");
+                 "cylindrical illuminance around the direction of each point, which must point up");
   measuring.flag(
       "--daylight-factor", options.daylight_factor,
-      "per cent of the lux on open ground under the CIE overcast sky; .csv, .json, .svg");
+      "per cent of the illuminance on open ground under the CIE overcast sky; .csv, .json, .svg");
   measuring.add("--target", options.target, "NAME|VALUES",
-                "what is required, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)");
+                "requirements, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)");
   add_maintenance_option(measuring, options.parameters, &options.outputs.maintenance);
   add_sensor_options(measuring, options.parameters);
 }
@@ -240,8 +240,8 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
 
 void add_measure_command(CLI::App& photile) {
   auto options = std::make_shared<MeasureOptions>();
-  CLI::App* command =
-      photile.add_subcommand("measure", "Illuminance at points, in lux, with standard errors");
+  CLI::App* command = photile.add_subcommand(
+      "measure", "Measure illuminance at points, in lux, with standard errors");
   add_measure_output_options(*command, options->outputs);
   add_places(*command, *options);
   add_measuring(*command, *options);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "command/command_line.hpp"
@@ -113,19 +112,21 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
   output.add("--honeybee", options.honeybee, "FOLDER",
              "folder for <grid>.res, grids_info.json and grid_summary.csv");
   output.add("--picture", options.picture, "FILE.exr",
-             "EXR of the scene, whose moods the report shows in pictures and in lux",
+             "EXR of the scene; the report shows its moods as pictures and in lux",
              file_ending_in({".exr"}));
   output.repeat("--include", options.report.results, "FILE.json",
-                "JSON of photile glare or daylight, which the report shows; repeatable",
+                "JSON of photile glare or daylight to show in the report; repeatable",
                 file_ending_in({".json"}));
-  output.add("--logo", options.logo, "FILE", "of the designer, PNG or JPEG, for the report's head");
-  output.add("--project", options.project, "TEXT", "name of the project, for the report's head");
+  output.add("--logo", options.logo, "FILE", "logo at the head of the report, PNG or JPEG");
+  output.add("--project", options.project, "TEXT",
+             "name of the project, at the head of the report");
   output.add("--client", options.client, "TEXT",
-             "for whom the report is; it ends with lines to sign on");
-  output.add("--designer", options.designer, "TEXT", "who answers for it");
+             "name of the client; the report ends with lines for signatures");
+  output.add("--designer", options.designer, "TEXT",
+             "name of the designer, at the head of the report");
   output
       .add("--language", options.report.language, "NAME",
-           "of the report: en, de, or one whose words --template has")
+           "language of the report: en, de, or one whose texts --template has")
       ->capture_default_str();
   add_template_option(output, options.report);
   add_false_colour_options(command, options.false_colour);
@@ -184,7 +185,7 @@ void MeasureOutputs::check_picture(const Scene& scene, Progress& progress) const
   const auto surfaces = header.attributes.find("photile.surfaces");
   if (surfaces == header.attributes.end() || surfaces->second == digest_of_surfaces(scene)) return;
   progress.warn(
-      fmt::format("{} shows other surfaces or reflectances than are measured; render it anew with "
+      fmt::format("{} shows other surfaces or reflectances than are measured; render it again with "
                   "the options of this command",
                   options_.picture));
 }

@@ -41,7 +41,7 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error || !std::filesystem::is_directory(folder)) {
-    throw OutputError(fmt::format("{}: cannot make this folder; name another", folder.string()));
+    throw OutputError(fmt::format("{}: cannot create this folder; name another", folder.string()));
   }
 }
 
@@ -61,13 +61,12 @@ WhiteOption WhiteOption::parse(const std::string& text) {
 void add_white_option(const OptionGroup& group, WhiteOption& white) {
   group.call(
       "--white", [&white](const std::string& text) { white = WhiteOption::parse(text); }, "KELVINK",
-      "colour temperature of the light that is shown as white; default: that of the lamps as the "
-      "scene has them");
+      "colour temperature that is shown as white; default: that of the scene's lamps");
 }
 
 void add_exposure_option(const OptionGroup& group, double& exposure) {
   group
-      .add("--exposure", exposure, "STOPS", "stops, for PNGs and the window alone",
+      .add("--exposure", exposure, "STOPS", "exposure in stops, for PNGs and the window only",
            number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
       ->capture_default_str();
 }
@@ -104,10 +103,10 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
   add_scale_option(group, options);
   group.add("-l,--label", colours.label, "TEXT", "text of the legend; default: the unit");
   group
-      .add("-n,--steps", colours.steps, "N", "steps of the legend and isolines",
+      .add("-n,--steps", colours.steps, "N", "number of steps of the legend and of isolines",
            count_between(1, 100))
       ->capture_default_str();
-  group.add("--log", colours.decades, "DECADES", "logarithmic scale over so many decades",
+  group.add("--log", colours.decades, "DECADES", "logarithmic scale over this number of decades",
             number_between(0.1, 30));
   group.add("--pal", colours.palette, "", "palette", CLI::IsMember(report::Palette::names()))
       ->capture_default_str();
@@ -115,8 +114,8 @@ void add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
     return group.call_flag(
         name, [&colours, drawn] { colours.contours = drawn; }, what);
   };
-  CLI::Option* lines = contours("--cl", report::Contours::lines, "isolines alone");
-  CLI::Option* bands = contours("--cb", report::Contours::bands, "bands around the isolines alone");
+  CLI::Option* lines = contours("--cl", report::Contours::lines, "isolines only");
+  CLI::Option* bands = contours("--cb", report::Contours::bands, "only bands around the isolines");
   CLI::Option* steps =
       contours("--cp", report::Contours::steps, "posterized: one colour for each step");
   bands->excludes(lines);
@@ -131,10 +130,10 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
   add_exposure_option(output, options.tone_mapping.exposure);
   add_white_option(output, options.white);
   output.add("--illuminance", options.illuminance, "FILE.png",
-             "lux on the surfaces that are seen, in false colour with a legend",
+             "illuminance on the visible surfaces, lux, in false colour with a legend",
              file_ending_in({".png"}));
-  output.add("--luminance", options.luminance, "FILE.png", "cd/m2, in false colour with a legend",
-             file_ending_in({".png"}));
+  output.add("--luminance", options.luminance, "FILE.png",
+             "luminance, cd/m2, in false colour with a legend", file_ending_in({".png"}));
 }
 
 ToneMapping shown_as(const PictureOptions& options, const PictureHeader& picture) {

@@ -9,7 +9,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -23,7 +22,6 @@
 #include "render/exchange.hpp"
 
 namespace photile::app {
-
 namespace {
 
 std::atomic<bool> stop{false};
@@ -151,10 +149,10 @@ void join_processes(std::span<const char* const> arguments) {
   auto* const found = module.find<decltype(photile_mpi_communicator)>("photile_mpi_communicator");
   if (!found) {
     if (launched == 1) return;
-    throw UsageError(fmt::format(
-        "mpirun has started {} processes, and photile's part for MPI is not here: {}; install the "
-        "package photile-mpi, or start one process",
-        launched, module.error()));
+    throw UsageError(
+        fmt::format("mpirun has started {} processes, and photile's module for MPI cannot be "
+                    "loaded: {}; install the package photile-mpi, or start one process",
+                    launched, module.error()));
   }
   other_failed_of_module =
       module.find<decltype(photile_mpi_other_failed)>("photile_mpi_other_failed");
@@ -176,6 +174,13 @@ bool other_failed() { return communicator != nullptr && other_failed_of_module()
 
 bool leads() { return communicator == nullptr || communicator->rank() == 0; }
 
+std::filesystem::path folder_of_program(const char* installed, const char* built) {
+  const auto here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const auto folder = (here / installed).lexically_normal();
+  return std::filesystem::exists(here / built) && !std::filesystem::exists(folder) ? here / built
+                                                                                   : folder;
+}
+
 std::vector<bool> as_first_says(const std::vector<bool>& own) {
   if (!communicator) return own;
   std::vector<std::byte> bytes;
@@ -189,7 +194,7 @@ std::vector<bool> as_first_says(const std::vector<bool>& own) {
 
 void refuse_several(const std::string& what, const std::string& remedy) {
   if (communicator == nullptr || communicator->size() == 1) return;
-  throw UsageError(fmt::format("{} is of one process, and {} share the work; {}", what,
+  throw UsageError(fmt::format("{} works with one process only, and {} share the work; {}", what,
                                communicator->size(), remedy));
 }
 

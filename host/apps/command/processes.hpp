@@ -2,7 +2,7 @@
 // started with it.
 #pragma once
 
-#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -51,6 +51,11 @@ bool leads();
 
 /// Whether another process has failed, so that the result of this one is not needed. Any thread.
 bool other_failed();
+
+/// A folder that is installed with the program, or lies in its build folder.
+///   installed   by its path from the program
+///   built       by its path from the build folder
+std::filesystem::path folder_of_program(const char* installed, const char* built);
 
 /// The values of rank 0, on all ranks. Collective.
 std::vector<bool> as_first_says(const std::vector<bool>& own);

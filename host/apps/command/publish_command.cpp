@@ -238,28 +238,28 @@ void run_publish(PublishOptions& options) {
 void add_publish_command(CLI::App& photile) {
   auto options = std::make_shared<PublishOptions>();
   CLI::App* command = photile.add_subcommand(
-      "publish", "Write a page in which anybody walks through the room and turns its lights");
+      "publish", "Write a web page to walk through the room and set its lights");
   const OptionGroup output(*command, "Output");
   output
       .repeat("-o,--output", options->outputs, "FILE.html",
-              "page to write, one file; FILE.glb or FILE.gltf: for other programs; repeatable",
+              "page to write, one file; .glb or .gltf for other programs; repeatable",
               file_ending_in({".html", ".glb", ".gltf"}))
       ->required();
   output.add("--title", options->title, "TEXT",
-             "of the page; default: the name of the scene's file");
+             "title of the page; default: the name of the scene file");
   add_exposure_option(output, options->render.pictures.tone_mapping.exposure);
   add_white_option(output, options->render.pictures.white);
-  CLI::Option* texel =
-      output.add("--texel", options->baking.texel, "M",
-                 fmt::format("metres between texels of the light maps; default: {}, or what fits",
-                             defaults::published_texel),
-                 positive_number());
+  CLI::Option* texel = output.add(
+      "--texel", options->baking.texel, "M",
+      fmt::format("distance between texels of the light maps, m; default: {}, or what fits",
+                  defaults::published_texel),
+      positive_number());
   set_quality(options->render.quality_options(), Quality::good);
   add_quality_preset(*command, options->render.quality_options());
   OptionGroup(*command, "Quality")
       .add("--for", options->render.goal.seconds, "TIME",
-           "add rays and photons for so long, from a quarter of the rays on; the page depends on "
-           "the machine",
+           "add rays and photons for this time, starting with a quarter of the rays; the page then "
+           "depends on the machine",
            duration());
   add_setting_options(*command, options->render, without,
                       {display_view_setting(options->render.pictures.tone_mapping)});

@@ -1,7 +1,6 @@
 #include "command/quality_options.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
@@ -19,12 +18,12 @@ namespace photile::app {
 std::span<const GoalOption> goal_options() {
   static constexpr std::array<GoalOption, 2> options{{
       {"target_error", "target-error", "PERCENT",
-       "add rays, photons and samples, until the picture states this root mean square relative "
-       "error",
+       "add rays, photons and samples until the estimated relative error of the picture (root mean "
+       "square) is at most this",
        &RefinementGoal::error},
       {"for", "for", "TIME",
-       "add them for so long, from a quarter of rays and samples on; the picture depends on "
-       "the machine",
+       "add rays, photons and samples for this time, starting with a quarter; the picture then "
+       "depends on the machine",
        &RefinementGoal::seconds},
   }};
   return options;
@@ -53,9 +52,10 @@ void check_goal(const RefinementGoal& goal, const RenderParameters& parameters) 
   if (nodes_gather(parameters)) return;
   for (const GoalOption& option : goal_options()) {
     if (!(goal.*option.value > 0)) continue;
-    throw UsageError(fmt::format(
-        "--{}: errors are stated where nodes of light maps gather, as with --quality good",
-        option.option));
+    throw UsageError(
+        fmt::format("--{}: errors are known only where nodes of light maps gather light by rays, "
+                    "as with --quality good",
+                    option.option));
   }
 }
 

@@ -2,7 +2,6 @@
 // make pictures until one is good enough or the time is over.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string_view>
 
@@ -33,7 +32,7 @@ struct GoalOption {
 std::span<const GoalOption> goal_options();
 
 inline constexpr std::string_view quality_help =
-    "photons, k, samples and rays of nodes together; options given beside it count";
+    "preset of photons, k, samples and rays of nodes; options given with it take precedence";
 
 /// Sets a quality and the settings that it consists of.
 void set_quality(const QualityOptions& options, Quality quality);

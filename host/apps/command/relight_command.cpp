@@ -128,15 +128,16 @@ void add_relight_command(CLI::App& photile) {
   const OptionGroup lamps(*command), sky(*command, "Sky of patches");
   add_light_change_option(lamps, options->lights);
   lamps.repeat("--mood", options->moods, "NAME",
-               "lamps as the window kept them under this name; --light changes them further; "
-               "repeatable with --sheet");
+               "mood saved in the window under this name; --light changes it further; repeatable "
+               "with --sheet");
   add_moods_file_option(lamps, options->moods_file);
   lamps.add("--sheet", options->sheet, "FILE.png",
-            "the given moods, or all of the file, on one PNG with one exposure",
+            "contact sheet of the given moods, or of all in the file, with one exposure",
             file_ending_in({".png"}));
   add_situation_options(sky, options->situation);
   sky.parse("--sky", options->sky, "perez=DIRECT,DIFFUSE",
-            "W/m2 facing the sun and on a horizontal surface; default: those of --weather");
+            "direct W/m2 facing the sun and diffuse W/m2 on a horizontal surface; default: those "
+            "of --weather");
   add_picture_options(*command, options->pictures);
   add_false_colour_options(*command, options->pictures.false_colour);
   add_set_option(*command, {display_settings(options->pictures)});

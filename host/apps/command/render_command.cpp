@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -135,7 +134,7 @@ void render_until_good(const Scene& scene, std::span<Device> devices, const Rend
   };
   const double error = refine(options.goal, {add, finished, elapsed, most_work(part)}, progress);
   if (options.goal.error > 0 && error > options.goal.error) {
-    progress.warn(fmt::format("a standard error of {} was not reached, but {}",
+    progress.warn(fmt::format("a standard error of {} was not reached; it is {}",
                               percent(options.goal.error), percent(error)));
   }
 }
@@ -158,8 +157,8 @@ LightLayers render_by_paths(const Scene& scene, const Camera& camera, const View
                             RunRecord& record, Progress& progress) {
   if (has_hidden_caustics(scene)) {
     progress.warn(
-        "paths do not find what mirrors and glass throw from point, spot and directional "
-        "lights; photon maps do");
+        "path tracing does not find light of point, spot and directional lights that mirrors and "
+        "glass cast; photon maps do");
   }
   PathTracerResult result =
       trace_paths_of_hits(scene, views.picture, eye_rays(record.used), progress);
@@ -226,8 +225,8 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
       options.integrator == Integrator::photon_map && nodes_gather(options.parameters);
   if (!options.errors.empty() && (!knows_errors || keeps_maps(options))) {
     throw UsageError(
-        "--errors: noise is known where nodes of light maps gather, as with --quality good, and "
-        "without --save-maps, --load-maps and --glare");
+        "--errors: noise is known only where nodes of light maps gather light by rays, as with "
+        "--quality good, and without --save-maps, --load-maps and --glare");
   }
   if (!options.denoiser.empty() && knows_errors && keeps_maps(options)) {
     throw UsageError(
@@ -237,8 +236,8 @@ Stopwatch render_to_files(const CLI::App& command, RenderOptions& options, RunRe
   check_goal(options.goal, options.parameters);
   if (options.goal.is_given() && keeps_maps(options)) {
     throw UsageError(
-        "--target-error and --for make pictures of photons of their own; leave out --save-maps, "
-        "--load-maps and --glare");
+        "--target-error and --for trace their own photons; leave out --save-maps, --load-maps and "
+        "--glare");
   }
   const PictureOutputs outputs = check_outputs_of(options);
 

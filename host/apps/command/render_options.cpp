@@ -7,7 +7,6 @@
 #include <cmath>
 #include <set>
 #include <string_view>
-#include <utility>
 
 #include "command/option_group.hpp"
 #include "command/processes.hpp"
@@ -25,7 +24,7 @@ constexpr std::array all_integrators{Integrator::photon_map, Integrator::path};
 
 void add_view_group(const OptionGroup& picture, RenderOptions& options) {
   picture.add("--camera", options.camera, "NAME|INDEX|FILE.vf",
-              "name or index, or a view of Radiance (.vf); default: the first");
+              "camera by name or index, or a Radiance view file (.vf); default: the first");
   const auto add_point = [&](const char* name, std::vector<double>& point, const char* help) {
     picture
         .add(name, point, "X,Y,Z", help,
@@ -34,11 +33,13 @@ void add_view_group(const OptionGroup& picture, RenderOptions& options) {
         ->expected(3);
   };
   add_point("--eye", options.eye,
-            "where the camera stands, metres in the axes of the file, whose extents photile info "
-            "prints; default: as --camera says");
-  add_point("--look-at", options.look_at, "what it looks at; default: straight on");
+            "position of the camera, metres in the axes of the file; photile info prints its "
+            "extents; default: that of --camera");
+  add_point("--look-at", options.look_at,
+            "point that the camera looks at; default: straight ahead");
   picture.add("--size", options.size, "WxH",
-              fmt::format("pixels; default: {} high, as wide as the camera says, else {}x{}",
+              fmt::format("width and height, pixels; default: {} high with the camera's aspect "
+                          "ratio, otherwise {}x{}",
                           defaults::image_height, defaults::image_width, defaults::image_height),
               picture_size());
 }
@@ -47,7 +48,7 @@ void add_view_group(const OptionGroup& picture, RenderOptions& options) {
 
 void add_run_group(CLI::App& command, RenderOptions& options) {
   const OptionGroup run(command, "Run");
-  run.add("--threads", options.threads, "N", "threads of the host; 0 = all cores",
+  run.add("--threads", options.threads, "N", "threads on the host; 0: one per core",
           count_between(0, limits::max_threads))
       ->capture_default_str();
   run.flag("-q,--quiet", options.quiet, "print warnings and errors only");
@@ -67,8 +68,8 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
   OptionGroup(command, "Device")
       .add("--device", options.device.selector, "SELECTOR",
            "OpenCL device: platform:device, index, cpu, gpu or a part of its name; all, or several "
-           "separated by commas; with /N split into N sub-devices, with =N only N of its compute "
-           "units; default: the environment's PHOTILE_DEVICE, else the best");
+           "separated by commas; /N splits it into N sub-devices, =N uses only N of its compute "
+           "units; default: the environment variable PHOTILE_DEVICE, otherwise the best");
   add_run_group(command, options);
 }
 
@@ -80,18 +81,19 @@ void add_picture_settings(CLI::App& command, RenderOptions& options, const Setti
 
 void add_integrator_option(CLI::App& command, RenderOptions& options) {
   OptionGroup(command, "Picture")
-      .choose("--integrator", all_integrators, options.integrator,
-              "photon maps, or paths from the eye: unbiased, slower, without a device",
-              [&options](Integrator integrator) { options.integrator = integrator; });
+      .choose(
+          "--integrator", all_integrators, options.integrator,
+          "photon maps, or path tracing from the eye: unbiased, slower, without an OpenCL device",
+          [&options](Integrator integrator) { options.integrator = integrator; });
 }
 
 void add_projection_options(const OptionGroup& picture, RenderOptions& options) {
   picture.choose("--projection", all_projections, Projection::perspective,
-                 "of the camera: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl",
+                 "projection: Radiance's -vtv, -vth and -vta, the whole sphere, -vtl",
                  [&options](Projection projection) { options.projection = projection; });
   picture.add("--field-of-view", options.field_of_view, "X",
-              fmt::format("degrees from the lower border to the upper; of orthographic metres; "
-                          "default: the camera's, of fisheyes {}, of orthographic {}",
+              fmt::format("vertical field of view, degrees, or metres with orthographic; default: "
+                          "the camera's, {} with fisheyes, {} with orthographic",
                           defaults::fisheye_field_of_view, defaults::orthographic_height),
               positive_number());
 }
@@ -112,26 +114,26 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_saved_maps_options(command, options);
   OptionGroup(command, "Quality")
       .add("--errors", options.errors, "FILE.exr",
-           "standard errors of the picture, a layer per light: the noise of nodes and samples",
+           "standard errors of the picture, one layer per light: the noise of nodes and samples",
            file_ending_in({".exr"}));
   picture
       .add("--denoise", options.denoiser, "[LIBRARY]",
-           "denoise each light's layer by Open Image Denoise 2, an installed library; never the "
-           "illuminance")
+           "denoise each light's layer by an installed Open Image Denoise 2; illuminance is never "
+           "denoised")
       ->expected(0, 1)
       ->default_str(defaults::denoising_library);
   output.add("--glare", options.glare, "FILE.png",
-             "picture in which reflections above a limit are marked, in a colour per light",
+             "picture that marks reflections above a limit, one colour per light",
              file_ending_in({".png"}));
 }
 
 void add_saved_maps_options(CLI::App& command, RenderOptions& options) {
   const OptionGroup photons(command, "Photons");
   CLI::Option* save =
-      photons.add("--save-maps", options.save_maps, "FILE", "keep the photons for --load-maps");
+      photons.add("--save-maps", options.save_maps, "FILE", "save the photons for --load-maps");
   photons
       .add("--load-maps", options.load_maps, "FILE",
-           "photons that --save-maps kept, of the same scene and options")
+           "load photons that --save-maps saved, of the same scene and options")
       ->excludes(save);
 }
 
@@ -158,13 +160,14 @@ void refuse_photon_map_options(const CLI::App& command) {
   const std::set<std::string> groups{"Photons", "Estimate", "Device", "Quality"};
   for (const std::string& name : names_set(command)) {
     if (!is_of_photon_maps(name)) continue;
-    throw UsageError(
-        fmt::format("--set {}: only photon maps use it; leave it out, or --integrator path", name));
+    throw UsageError(fmt::format(
+        "--set {}: only photon maps use it; leave out either this or --integrator path", name));
   }
   for (const CLI::Option* option : command.get_options()) {
     if (option->count() == 0 || groups.count(option->get_group()) == 0) continue;
-    throw UsageError(fmt::format("{}: only photon maps use it; leave it out, or --integrator path",
-                                 option->get_name()));
+    throw UsageError(
+        fmt::format("{}: only photon maps use it; leave out either this or --integrator path",
+                    option->get_name()));
   }
 }
 

@@ -28,12 +28,9 @@ namespace fs = std::filesystem;
 
 /// Of photile.report: beside the installed command, or in the build folder.
 fs::path program_folder() {
-  const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
-  for (const char* const place : {PHOTILE_INSTALLED_REPORT, "python/photile/report"}) {
-    const fs::path folder = (here / place).lexically_normal();
-    if (fs::exists(folder / "__main__.py")) return folder;
-  }
-  throw OutputError((here / PHOTILE_INSTALLED_REPORT).lexically_normal().string() +
+  fs::path folder = folder_of_program(PHOTILE_INSTALLED_REPORT, "python/photile/report");
+  if (fs::exists(folder / "__main__.py")) return folder;
+  throw OutputError(folder.string() +
                     ": the program that writes reports, plans, UGR tables and Honeybee's files is "
                     "missing; install photile again");
 }
@@ -111,10 +108,8 @@ void add_template(const ReportOptions& options, std::vector<std::string>& argume
 }  // namespace
 
 void add_template_option(const OptionGroup& group, ReportOptions& options) {
-  group.add(
-      "--template", options.templates, "FOLDER",
-      "templates of your own in place of the report's and the plans': style.css, report.html, "
-      "plan.svg");
+  group.add("--template", options.templates, "FOLDER",
+            "your own templates for reports and plans: style.css, report.html, plan.svg");
 }
 
 std::vector<std::string> drawn_files(const std::vector<std::string>& files) {

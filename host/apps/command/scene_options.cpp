@@ -20,16 +20,17 @@ void add_scene_file(CLI::App& command, std::string& file) {
 void add_scene_options(CLI::App& command, SceneLoadOptions& options) {
   OptionGroup(command, "Scene")
       .parse("--reflectance", options.reflectances, "MATERIAL=SHARE",
-             "fraction of the light that materials whose names match reflect; their colours are "
-             "made brighter or darker; repeatable");
+             "reflectance of materials whose names match; their colours are made brighter or "
+             "darker; repeatable");
 }
 
 void add_situation_options(const OptionGroup& group, SkySituation& situation) {
-  group.parse("--site", situation.site, "LAT,LON,TZ",
-              "degrees north, degrees east, hours before Greenwich; default: that of --weather");
+  group.parse(
+      "--site", situation.site, "LAT,LON,TZ",
+      "degrees north, degrees east, time zone in hours ahead of UTC; default: those of --weather");
   group.parse("--time", situation.time, "YYYY-MM-DDTHH:MM",
-              "the sun's position by the site's standard time, such as 2026-06-21T14:00; with "
-              "--weather the sky of that hour, too");
+              "standard time of the site, which gives the position of the sun, such as "
+              "2026-06-21T14:00; with --weather the sky of that hour, too");
   group.add("--weather", situation.weather, "FILE.epw", "EnergyPlus weather file");
 }
 
@@ -42,29 +43,29 @@ void add_light_options(CLI::App& command, SceneLoadOptions& options) {
   lights.parse("--area-light", options.panels, "NAME=WxH,LUMENS",
                "a luminous rectangle, in metres, at a node of a glTF file; repeatable");
   lights.add("--luminaires", options.luminaires, "FILE.json",
-             "luminaires to place, by their photometric files, alone or in arrays");
+             "luminaires to place, alone or in arrays, with their photometric files");
   lights.add("--environment", options.environment.file, "FILE",
              "surroundings: an equirectangular picture of radiance, .hdr or .exr");
-  lights.parse("--sun", options.sun, "AZIMUTH,ELEVATION,LUX[,DIAMETER]|LUX",
-               "degrees from north (-z) by east (+x), degrees above the horizon, lux facing it, "
-               "and degrees of its disc, 0.533 if not given; or its lux alone, with --site and "
-               "--time");
+  lights.parse(
+      "--sun", options.sun, "AZIMUTH,ELEVATION,LUX[,DIAMETER]|LUX",
+      "degrees from north (-z) towards east (+x), degrees above the horizon, lux facing the sun, "
+      "and degrees across its disc, 0.533 if not given; or its lux alone, with --site and --time");
   lights.parse("--sky", options.sky, "KIND=LUX|perez=DIRECT,DIFFUSE|patches=N",
                "uniform, overcast or clear (with --sun), and its lux on a horizontal surface; "
-               "perez: W/m2 facing the sun and on a horizontal surface; patches: 145, 577 or 2305 "
-               "lights, for relight --time");
+               "perez: direct W/m2 facing the sun and diffuse W/m2 on a horizontal surface; "
+               "patches: 145, 577 or 2305 lights, for relight --time");
   add_situation_options(lights, options.situation);
 }
 
 void add_light_change_option(const OptionGroup& group, std::vector<LightChange>& changes) {
   group.parse("--light", changes, "NAME=POWER|xFACTOR|N%|#RRGGBB|KELVINK|off",
-              "power of a light, or of all whose names match a glob, in its unit, a factor (x2), a "
-              "colour or off; repeatable");
+              "change all lights whose names match a glob: power in their unit, a factor (x2), per "
+              "cent, a colour, a colour temperature or off; repeatable");
 }
 
 void add_mood_options(const OptionGroup& group, MoodOptions& options) {
   group.add("--mood", options.mood, "NAME",
-            "lamps as the window kept them under this name; --light changes them further");
+            "mood saved in the window under this name; --light changes it further");
   add_moods_file_option(group, options.file);
 }
 

@@ -21,18 +21,18 @@ namespace photile::app {
 void add_plane_options(const OptionGroup& places, PlaneOptions& options) {
   places
       .add("--inside", options.inside, "X,Y,Z",
-           "a point in the room whose floor is followed; default: the first camera's room")
+           "point in the room whose floor is used; default: the first camera's room")
       ->delimiter(',')
       ->expected(3);
   places
-      .add("--wall-band", options.wall_band, "M", "metres left out along the walls",
+      .add("--wall-band", options.wall_band, "M", "width left out along the walls, m",
            number_between(0, limits::max_coordinate))
       ->capture_default_str();
-  places.add("--spacing", options.spacing, "M", "metres; default: that of EN 12464-1",
-             positive_number());
+  places.add("--spacing", options.spacing, "M",
+             "distance between points, m; default: that of EN 12464-1", positive_number());
   places.add("--clearance", options.clearance, "M",
-             "leaves out points with a surface less than M before or behind them; those inside "
-             "furniture are left out without it",
+             "leave out points with a surface less than M metres in front of or behind them; "
+             "points inside furniture are always left out",
              positive_number());
 }
 
@@ -40,7 +40,7 @@ void add_place_options(CLI::App& command, PlaceOptions& options) {
   const OptionGroup places(command, "Places");
   places.repeat("--grid", options.planes, "FILE", "planes of points as JSON; repeatable");
   places.repeat("--points", options.points, "FILE",
-                "points as Radiance and Honeybee have them; repeatable");
+                "points in the format of Radiance and Honeybee; repeatable");
   places.add("--plane", options.plane.height, "HEIGHT",
              "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres");
   add_plane_options(places, options.plane);
@@ -113,10 +113,9 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
     const std::size_t blank =
         measuring::leave_out_furniture(scene, options.clearance, grid, inside);
     if (grid.sensors.empty() && !(options.clearance > 0)) {
-      throw UsageError(
-          fmt::format("{}: all {} points lie in things or on surfaces; give another "
-                      "height or place",
-                      grid.name, all));
+      throw UsageError(fmt::format(
+          "{}: all {} points lie in objects or on surfaces; give another height or position",
+          grid.name, all));
     }
     if (grid.sensors.empty()) {
       throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
@@ -124,7 +123,7 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
     }
     left += grid.sensors.size();
     for (const auto& [mark, count] : measuring::counted_marks(grid)) {
-      progress.warn(fmt::format("{}: {} of {} points: {}; they are part of all figures", grid.name,
+      progress.warn(fmt::format("{}: {} of {} points: {}; they count in all results", grid.name,
                                 count, all, mark));
     }
     if (blank == 0) continue;
@@ -136,12 +135,12 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
 
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters) {
   group
-      .add("--rays", parameters.gathering.rays, "N", "rays of each point and repeat",
+      .add("--rays", parameters.gathering.rays, "N", "rays per point and repeat",
            count_between(1, limits::max_samples_per_pixel))
       ->capture_default_str();
   group
       .add("--repeats", parameters.repeats, "N",
-           "measurements with photons of their own, whose scatter is the standard error",
+           "independent measurements, whose scatter gives the standard error",
            count_between(2, limits::max_repeats))
       ->capture_default_str();
 }
@@ -187,8 +186,8 @@ void add_maintenance_option(const OptionGroup& group, MeasuringParameters& param
   };
   group
       .call("--maintenance", take, "X|PARTS",
-            "factor of all values for ageing and dirt, above 0 up to 1, or its parts by CIE 97, "
-            "such as LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94")
+            "maintenance factor of all values, above 0 up to 1, or its parts by CIE 97, such as "
+            "LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94")
       ->default_str("1");
 }
 

@@ -120,7 +120,7 @@ std::string problem_with_name(std::string_view name, const Settings& settings) {
       return fmt::format("give it by {}", option_names(setting).front());
     }
   }
-  if (named_in(AllSettings().list(), name)) return "this command has no use for it";
+  if (named_in(AllSettings().list(), name)) return "this command does not use it";
   std::vector<std::string_view> names;
   for (const Setting& one : settings) names.push_back(one.name);
   return fmt::format("there is no such setting; the nearest is {}, and photile settings lists all",
@@ -182,23 +182,21 @@ Settings scene_settings(SceneLoadOptions& options) {
   const char* group = "Scene";
   return {
       bound_word("up", group, Words{{"x", "y", "z", "-x", "-y", "-z"}},
-                 "axis of the file that points up", "y, and a warning where it seems to be z",
+                 "axis of the file that points up", "y, with a warning where it seems to be z",
                  [&options](std::string_view axis) { options.up = axis; }),
-      bound_word("units", group, Words{loading::names_of_units()},
-                 "what lengths in the file are in",
-                 "m, and a warning where the scene is as wide as no room",
+      bound_word("units", group, Words{loading::names_of_units()}, "unit of lengths in the file",
+                 "m, with a warning where the scene is too small or too large for a room",
                  [&options](std::string_view unit) {
                    options.metres_per_unit = loading::metres_in(unit);
                  }),
       bound_word("scene", group, Text{"NAME or INDEX"}, "scene of a glTF file",
-                 "the file's own, else the first",
+                 "the file's default scene, otherwise the first",
                  [&options](std::string_view scene) { options.scene = scene; }),
-      bound_word(
-          "hide", group, Text{"GLOB"},
-          "leaves out what the file calls so: nodes with all below them, meshes, objects, groups; "
-          "repeatable",
-          "nothing is left out",
-          [&options](std::string_view glob) { options.hidden.emplace_back(glob); }),
+      bound_word("hide", group, Text{"GLOB"},
+                 "leave out what has a matching name in the file: nodes with all below them, "
+                 "meshes, objects, groups; repeatable",
+                 "nothing is left out",
+                 [&options](std::string_view glob) { options.hidden.emplace_back(glob); }),
       bound_word("glass", group, Text{"MATERIAL=SHARE"},
                  "materials whose names match become clear glass that lets this fraction of light "
                  "through, as Tvis of a data sheet; repeatable",
@@ -206,31 +204,31 @@ Settings scene_settings(SceneLoadOptions& options) {
                  [&options](std::string_view glass) {
                    options.glasses.push_back(MaterialShare::parse(std::string(glass)));
                  }),
-      bound_word(
-          "portals", group, Text{"auto, off or GLOB"},
-          "windows that photons of suns and skies start through: auto finds them, off, or globs of "
-          "the materials of their panes; repeatable",
-          "auto", [&options](std::string_view glob) { options.portals.emplace_back(glob); }),
+      bound_word("portals", group, Text{"auto, off or GLOB"},
+                 "windows through which photons of suns and skies start: auto finds them, off uses "
+                 "none, a glob names the materials of their panes; repeatable",
+                 "auto", [&options](std::string_view glob) { options.portals.emplace_back(glob); }),
       bound_number("north", group, loading::turns, options.situation.north_degrees,
-                   "where north lies, clockwise from -z as seen from above", "degrees"),
+                   "direction of north, clockwise from -z as seen from above", "degrees"),
       bound_number(
           "ground", group, loading::reflectances, options.ground,
-          "reflectance of even ground below the horizon, which --sky and --sun light; 0 is "
-          "black"),
+          "reflectance of the flat ground below the horizon, lit by --sky and --sun; 0 is black"),
       bound_number("lumen_per_watt", group, PositiveNumbers{}, options.lumen_per_watt,
-                   "luminous efficacy: 683 or, as Radiance, 179", "lm/W"),
+                   "luminous efficacy: 683, or 179 as in Radiance", "lm/W"),
       bound_number("emissive_scale", group, PositiveNumbers{}, options.emissive_scale,
-                   "multiplies emissive materials; 683 mends files from Blender"),
+                   "multiplies emissive materials; 683 corrects files from Blender"),
       bound_number(
           "environment_scale", group, PositiveNumbers{}, options.environment.scale,
           "multiplies the picture of --environment, which is in cd/m2, or W/(m2 sr) for OBJ"),
       bound_number(
           "environment_rotation", group, loading::turns, options.environment.rotation_degrees,
-          "clockwise as seen from above; at 0 the picture's middle lies towards -z", "degrees"),
-      bound_switch("lambertian", group, options.lambertian,
-                   "no specular lobe on dielectrics, such as the 4% that glTF has by default"),
+          "rotation of that picture, clockwise as seen from above; at 0 its middle lies towards -z",
+          "degrees"),
+      bound_switch(
+          "lambertian", group, options.lambertian,
+          "on: dielectrics have no specular lobe, such as the 4% that glTF has by default"),
       bound_switch("allow_outside", group, options.allow_outside,
-                   "the scene may name files outside its folder"),
+                   "on: the scene may use files outside its folder"),
   };
 }
 
@@ -240,8 +238,8 @@ Settings device_settings(DeviceOptions& options) {
       {.name = "device_memory",
        .unit = "GiB",
        .group = group,
-       .help = "bound on the device's buffers together",
-       .otherwise = "all that the device has",
+       .help = "most memory for all buffers on the device",
+       .otherwise = "all memory of the device",
        .range = PositiveNumbers{},
        .assign =
            [&options](const SettingValue& value) {
@@ -250,7 +248,7 @@ Settings device_settings(DeviceOptions& options) {
                  static_cast<std::uint64_t>(std::min(std::get<double>(value), most) * 0x1p30);
            }},
       bound_switch("program_cache", group, options.use_program_cache,
-                   "kernels that were compiled before are taken from the cache"),
+                   "take compiled kernels from the cache"),
       bound_switch("profile", group, options.profile, "print the time of every kernel"),
   };
 }
@@ -259,8 +257,8 @@ Setting display_view_setting(ToneMapping& parameters) {
   std::vector<std::string_view> names;
   for (const DisplayView view : all_display_views) names.push_back(name_of(view));
   return bound_word("view", "Display", Words{std::move(names)},
-                    "display transform of PNGs, window and pages: Khronos PBR Neutral, in which "
-                    "highlights roll off, or the sRGB curve alone",
+                    "display transform of PNGs, window and pages: neutral: Khronos PBR Neutral, "
+                    "which rolls off highlights; standard: the sRGB curve alone",
                     std::string(name_of(parameters.view)), [&parameters](std::string_view word) {
                       for (const DisplayView view : all_display_views) {
                         if (name_of(view) == word) parameters.view = view;
@@ -270,8 +268,8 @@ Setting display_view_setting(ToneMapping& parameters) {
 
 Setting white_balance_setting(PictureOptions& options) {
   return bound_switch("white_balance", "Display", options.white_balance,
-                      "the white of a picture, that of --white or of the lamps, is shown as white, "
-                      "on displays and in PNGs; off: colours as they are");
+                      "on: light of the colour of --white, or of the lamps, is shown as white on "
+                      "displays and in PNGs; off: colours as they are");
 }
 
 Settings display_settings(PictureOptions& options) {
@@ -280,7 +278,8 @@ Settings display_settings(PictureOptions& options) {
                        "1 W/(m2 sr) becomes white; before --exposure"),
           display_view_setting(options.tone_mapping), white_balance_setting(options),
           bound_word("exr", "Display", Words{{"float", "half", "dwaa"}},
-                     "layers of EXRs: every bit, 11 significant bits in half the room, or lossy",
+                     "layers of EXRs: float keeps every bit, half 11 significant bits in half the "
+                     "space, dwaa is lossy",
                      "float", [&options](std::string_view word) {
                        for (const LayerPrecision one : all_layer_precisions) {
                          if (name_of(one) == word) options.precision = one;
@@ -291,8 +290,7 @@ Settings display_settings(PictureOptions& options) {
 Settings glare_settings(double& limit) {
   return {bound_number(
       "glare_limit", "Display", PositiveNumbers{}, limit,
-      "of --glare; above 100: luminance in cd/m2; else times the mean luminance of the "
-      "picture")};
+      "limit of --glare: above 100 in cd/m2, otherwise times the mean luminance of the picture")};
 }
 
 void assign_named(const Settings& settings, const std::string& assignment) {
@@ -321,7 +319,7 @@ void add_set_option(CLI::App& command, std::initializer_list<Settings> settings)
           [all](const std::vector<std::string>& assignments) {
             for (const std::string& assignment : assignments) assign_named(all, assignment);
           },
-          "a setting by its name, such as radius=0.1; photile settings lists them; repeatable")
+          "set a setting by its name, such as radius=0.1; photile settings lists them; repeatable")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false)
       ->group("Settings");

@@ -62,9 +62,10 @@ void run_trace(TraceOptions& options) {
 void add_trace_command(CLI::App& photile) {
   auto options = std::make_shared<TraceOptions>();
   RenderOptions& render = options->render;
-  CLI::App* command = photile.add_subcommand("trace", "Trace photons to a file for --load-maps");
+  CLI::App* command =
+      photile.add_subcommand("trace", "Trace photons and save them for --load-maps");
   OptionGroup(*command, "Output")
-      .add("-o,--output", options->output, "FILE", "file of photons")
+      .add("-o,--output", options->output, "FILE", "file of photons to write")
       ->required();
   add_scene_file(*command, render.scene);
   set_quality(render.quality_options(), Quality::good);

@@ -74,7 +74,7 @@ Reference reference_of(const Scene& scene, const Camera& camera, const LightMix&
                        const TradeOptions& options, Progress& progress) {
   if (options.reference.empty()) {
     Reference traced = trace_reference(scene, camera, mix, options, progress);
-    progress.note(fmt::format("reference: {} paths a pixel, its own error {:.2g}%",
+    progress.note(fmt::format("reference: {} paths per pixel, its own error {:.2g}%",
                               options.reference_samples, 100 * std::sqrt(traced.relative_mse)));
     return traced;
   }
@@ -146,8 +146,8 @@ void warn_of_noise(const Reference& reference, std::span<const trade::TradePoint
       });
   if (near == 0) return;
   progress.warn(
-      fmt::format("{} of {} errors are within twice the reference's own, which is "
-                  "in them; give more --reference-samples",
+      fmt::format("{} of {} errors are less than twice the reference's own error, which they "
+                  "include; give more --reference-samples",
                   near, points.size()));
 }
 
@@ -205,7 +205,7 @@ void add_trade_command(CLI::App& photile) {
   auto options = std::make_shared<TradeOptions>();
   options->render.parameters.neighbours = defaults::trade_neighbours;
   CLI::App* command = photile.add_subcommand(
-      "trade", "Measure time and error of many settings on a view, around those given");
+      "trade", "Measure time and error of many settings of a view, around those given");
   const OptionGroup group(*command);
   group.add("-o,--output", options->folder, "FOLDER", "folder for trade.csv and trade.json")
       ->required();

@@ -139,7 +139,7 @@ std::vector<validation::AnalyticCase> chosen_cases(const std::string& only) {
   for (const auto& each : cases) names += (names.empty() ? "'" : ", '") + each.name + "'";
   std::erase_if(cases, [&](const auto& each) { return each.name.find(only) == std::string::npos; });
   if (cases.empty()) {
-    throw UsageError(fmt::format("--case '{}' is part of no name; there are {}", only, names));
+    throw UsageError(fmt::format("--case '{}': no name contains it; there are {}", only, names));
   }
   return cases;
 }
@@ -192,10 +192,10 @@ void add_validate_command(CLI::App& photile) {
   photons.neighbours = defaults::validation_neighbours;
   options->parameters.paths = defaults::validation_paths;
   CLI::App* command =
-      photile.add_subcommand("validate", "Measure light that is known in closed form");
+      photile.add_subcommand("validate", "Check scenes whose light is known in closed form");
   const OptionGroup group(*command);
   group
-      .add("--integrator", options->integrator, "", "what to measure with",
+      .add("--integrator", options->integrator, "", "methods to measure with",
            CLI::IsMember({"photon-map", "path", "both"}))
       ->capture_default_str();
   group.add("--case", options->only, "TEXT", "only cases with this in their names");
@@ -205,13 +205,13 @@ void add_validate_command(CLI::App& photile) {
            count_between(1, std::numeric_limits<int>::max()))
       ->capture_default_str();
   group
-      .add("--seed", photons.seed, "N", "what all seeds follow from",
+      .add("--seed", photons.seed, "N", "seed from which all others follow",
            count_between(0, std::numeric_limits<std::uint64_t>::max() - 16))
       ->capture_default_str();
   group.add("--device", options->device.selector, "SELECTOR",
             "OpenCL device, as in photile render");
   group
-      .add("--threads", options->threads, "N", "threads of the host; 0 = all cores",
+      .add("--threads", options->threads, "N", "threads on the host; 0: one per core",
            count_between(0, limits::max_threads))
       ->capture_default_str();
   group.add("--json", options->json, "FILE", "write the readings as JSON");

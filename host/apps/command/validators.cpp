@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -95,7 +94,7 @@ CLI::Validator share_up_to(double highest) {
 CLI::Validator duration() {
   const auto check = [](std::string& text) -> std::string {
     const auto seconds = parse_duration(text);
-    if (!seconds) return fmt::format("'{}' is no time such as 33ms or 2s", text);
+    if (!seconds) return fmt::format("'{}' is not a time such as 33ms or 2s", text);
     text = fmt::format("{}", *seconds);
     return {};
   };

@@ -52,8 +52,8 @@ void run_view(ViewOptions& options) {
   RenderOptions& render = options.render;
   check(render.parameters);
   if (!std::filesystem::is_directory(options.outputs)) {
-    throw UsageError(
-        fmt::format("{}: is no folder; make it, or give another with --outputs", options.outputs));
+    throw UsageError(fmt::format("{}: is not a folder; create it, or give another with --outputs",
+                                 options.outputs));
   }
   // The file may be written, and a new one does not exist yet.
   const std::filesystem::path luminaires = std::exchange(render.load.luminaires, {});
@@ -127,10 +127,10 @@ void add_view_command(CLI::App& photile) {
   const OptionGroup window(*command, "Window");
   window
       .add("--frame-rate", options->frames_per_second, "X",
-           "frames per second aimed at while moving: pictures become smaller for it",
+           "frames per second to reach while moving; pictures become smaller where needed",
            positive_number())
       ->capture_default_str();
-  window.add("--outputs", options->outputs, "FOLDER", "folder of what F12 and Ctrl+S keep")
+  window.add("--outputs", options->outputs, "FOLDER", "folder for what F12 and Ctrl+S save")
       ->capture_default_str();
   add_white_option(window, options->render.pictures.white);
   add_picture_settings(*command, options->render,

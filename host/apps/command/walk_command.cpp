@@ -120,8 +120,8 @@ class Walk {
     const std::vector<bool> finished = find_finished();
     const auto kept = static_cast<std::size_t>(std::count(finished.begin(), finished.end(), true));
     if (kept > 0) {
-      progress_.note(
-          fmt::format("{} of {} frames are finished, with these settings", kept, frames_.size()));
+      progress_.note(fmt::format("{} of {} frames are already finished with these settings", kept,
+                                 frames_.size()));
     }
     if (kept < frames_.size() || !options_.render.save_maps.empty()) make_maps();
     if (png_names_ && kept < frames_.size() && frames_.front() != 0) expose_by_first();
@@ -333,7 +333,7 @@ void check_quick(WalkOptions& options, bool off) {
   }
   if (options.quick) options.render.parameters.light_maps = LightMapMode::on;
   if (!to_exr && !options.png.empty()) {
-    throw UsageError("--png: the frames are PNG by --output already; leave out one");
+    throw UsageError("--png: --output already writes PNG; leave out one of them");
   }
 }
 
@@ -388,12 +388,12 @@ void add_walk_command(CLI::App& photile) {
   const OptionGroup output(*command, "Output"), motion(*command, "Motion");
   output
       .add("-o,--output", options->output, "PATTERN",
-           "frames to write, such as frame.####.exr, or PNG alone; a name without #### gets its "
-           "number before the ending",
+           "frames to write, such as frame.####.exr, or .png; a name without #### gets the number "
+           "before its ending",
            file_ending_in({".exr", ".png"}))
       ->required();
   output.flag("--quick", options->quick,
-              "draw light maps alone, as the window does while it moves: matt, no layers");
+              "draw only light maps, as the window does while it moves: matt surfaces, no layers");
   output.add("--png", options->png, "PATTERN.png", "frames as PNG, with the exposure of the first",
              file_ending_in({".png"}));
   add_exposure_option(output, options->render.pictures.tone_mapping.exposure);
@@ -401,7 +401,7 @@ void add_walk_command(CLI::App& photile) {
   output.add("--contact-sheet", options->sheet, "FILE.png", "all frames on one PNG",
              file_ending_in({".png"}));
   CLI::Option* path = motion.add("--camera-path", options->path, "FILE",
-                                 "keyframes as JSON; default: the scene's animation");
+                                 "keyframes of the camera as JSON; default: the scene's animation");
   motion
       .add("--animation", options->animation, "NAME|INDEX",
            "animation of a glTF scene; default: the first that moves the camera")
@@ -419,7 +419,7 @@ void add_walk_command(CLI::App& photile) {
       [&frames = options->frames](const std::string& text) {
         frames = walk::parse_frame_range(text);
       },
-      "A[-B[xS]]", "frames to render, by number; every S-th", frame_range());
+      "A[-B[xS]]", "frames to render, by number: A to B, every S-th", frame_range());
   set_quality(options->render.quality_options(), Quality::good);
   add_picture_settings(*command, options->render,
                        {display_view_setting(options->render.pictures.tone_mapping),

@@ -78,7 +78,6 @@ void group_lights(Scene& scene, std::span<const LightGrouping> groupings) {
 }  // namespace photile
 
 namespace photile::loading {
-
 namespace {
 
 /// The light called `name` that a `change` is for. Errors: UsageError that lists the lights there
@@ -187,7 +186,7 @@ void apply(Scene& scene, const MaterialShare& change) {
     const auto before = scene::reflectance_of(scene, material);
     if (scene::set_reflectance(scene, material, change.fraction)) return;
     const std::string what =
-        fmt::format("reflectance of '{}': {:g} cannot be had", material.name, change.fraction);
+        fmt::format("reflectance of '{}': {:g} cannot be reached", material.name, change.fraction);
     if (!before) {
       throw UsageError(what + ": it is glass, whose colour is what it lets through");
     }

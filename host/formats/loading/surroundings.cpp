@@ -18,7 +18,6 @@
 #include "weather/weather_file.hpp"
 
 namespace photile::loading {
-
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
@@ -46,7 +45,7 @@ Weathered with_weather(const SceneLoadOptions& given) {
   SkySituation& situation = result.options.situation;
   if (situation.weather.empty()) return result;
   if (!situation.time) {
-    throw UsageError("--weather says nothing without an hour; give --time, too");
+    throw UsageError("--weather needs an hour; give --time, too");
   }
   const weather::WeatherYear year = weather::read_weather(situation.weather);
   if (!situation.site) situation.site = year.site;
@@ -60,9 +59,9 @@ Weathered with_weather(const SceneLoadOptions& given) {
 /// The sun as the time places it, without light. Nothing where no time is given.
 std::optional<Sun> sun_by_time(const SkySituation& situation) {
   if (!situation.time && !situation.site) return std::nullopt;
-  if (!situation.time) throw UsageError("--site says nothing without a time; give --time, too");
+  if (!situation.time) throw UsageError("--site needs a time; give --time, too");
   if (!situation.site) {
-    throw UsageError("--time says nothing without a place; give --site or --weather, too");
+    throw UsageError("--time needs a place; give --site or --weather, too");
   }
   const weather::SunPosition position = weather::sun_position(*situation.site, *situation.time);
   return Sun{position.azimuth * degrees, position.elevation * degrees, 0};

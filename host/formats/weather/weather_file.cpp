@@ -62,7 +62,8 @@ class Line {
     const double value = number(index, what, 0, 10 * missing_irradiance + 9);
     if (value >= missing_irradiance) refuse(fmt::format("the {} is missing", what));
     if (value > most_irradiance) {
-      refuse(fmt::format("the {} of {:g} W/m2 is more than the sun's above the air", what, value));
+      refuse(fmt::format("the {} of {:g} W/m2 is more than the sun's above the atmosphere", what,
+                         value));
     }
     return value;
   }

@@ -1,8 +1,8 @@
 #include "common/ascii_text.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace photile {
 
@@ -43,26 +43,25 @@ std::optional<double> parse_signed(std::string_view text) {
   return parse_number<double>(text);
 }
 
-std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words) {
-  std::string_view nearest;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
-  for (const std::string_view word : words) {
-    // Row by row of Levenshtein's table: letters that make a start of `text` a start of `word`.
-    std::vector<std::size_t> row(word.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      std::size_t diagonal = row[0]++;
-      for (std::size_t j = 0; j < word.size(); ++j) {
-        const std::size_t changed = diagonal + (text[i] == word[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-      }
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
     }
-    if (row.back() >= least) continue;
-    least = row.back();
-    nearest = word;
   }
-  return nearest;
+  return row.back();
+}
+
+std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words) {
+  const auto nearest = std::min_element(words.begin(), words.end(), [&](auto a, auto b) {
+    return edits_between(text, a) < edits_between(text, b);
+  });
+  return nearest == words.end() ? std::string_view() : *nearest;
 }
 
 }  // namespace photile

@@ -25,7 +25,11 @@ std::string_view trimmed(std::string_view text);
 /// Lines without their ends (LF, CR LF or CR) and without a byte-order mark.
 std::vector<std::string_view> lines_of(std::string_view text);
 
-/// The word that the fewest letters make of `text`: put in, left out, or changed. "" of none.
+/// Letters to insert, remove or replace (Levenshtein, "Binary codes capable of correcting
+/// deletions, insertions and reversals", 1966).
+std::size_t edits_between(std::string_view a, std::string_view b);
+
+/// The word with the fewest edits between it and `text`. "" of none.
 std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words);
 
 /// The word of an enumerator, by a list of the words of all, in their order.

@@ -113,7 +113,7 @@ PassPhotons PhotonPasses::next(TracedPhotons* prepared, const KeepPhotons* keep,
   all_parts_ += parts;
   if (prepared && prepared->light_maps && plan_.reads_light_maps()) {
     if (prepared->light_maps->settings == light_map_settings()) return build_later(*prepared, keep);
-    progress.note("light maps of the saved photons are of other settings: they are made anew");
+    progress.note("the saved light maps have other settings: they are computed again");
   }
   PassPhotons photons = build(prepared, keep, progress);
   if (!plan_.reads_light_maps()) ++pass_;

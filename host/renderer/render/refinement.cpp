@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "common/stoppable_progress.hpp"
@@ -62,7 +60,7 @@ double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress
     } catch (const Interrupted&) {
       if (!may_end || progress.cancelled()) throw;
       progress.end();
-      progress.note("the time is over; what was being made is given up");
+      progress.note("the time is over; unfinished work is discarded");
       return error;
     }
     const int parts_before = std::exchange(parts, next);
@@ -78,10 +76,10 @@ double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress
       const double floor =
           error > stalled * error_before ? error : least_error(parts, steps.most_parts, error);
       if (floor > goal.error) {
-        progress.note(fmt::format(
-            "a standard error of {:.3g}% is out of reach: about {:.2g}% is left however much is "
-            "done; the picture is the best so far",
-            100 * goal.error, 100 * floor));
+        progress.note(
+            fmt::format("a standard error of {:.3g}% cannot be reached: about {:.2g}% remains "
+                        "however much is added; the picture is the best so far",
+                        100 * goal.error, 100 * floor));
         return error;
       }
     }

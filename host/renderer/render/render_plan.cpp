@@ -106,9 +106,10 @@ RenderPlan::RenderPlan(const RenderParameters& asked, const RayScene& rays, Hits
   if (asked.light_maps == LightMapMode::on && passes() > 1) {
     throw SettingError(
         setting_named("light_maps"),
-        fmt::format("light maps are of one photon pass, but for single pictures whose nodes gather "
-                    "(light_map_rays), and there are {}; take fewer photons, or one pass",
-                    passes()));
+        fmt::format(
+            "light maps need one photon pass, except for single pictures whose nodes gather light "
+            "(light_map_rays), and there are {}; use fewer photons, or one pass",
+            passes()));
   }
   const bool read = reads_nodes(asked, passes());
   if (!read) used_.light_map_rays = 0;

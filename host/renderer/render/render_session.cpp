@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "photile/errors.hpp"
@@ -16,14 +15,13 @@
 #include "render/setting.hpp"
 
 namespace photile {
-
 namespace {
 
 /// Errors: UsageError and SettingError where the passes cannot be kept, or not from these photons.
 void check_kept(const RenderPlan& plan, const TracedPhotons* prepared, bool keeps) {
   if (plan.used().processes && (prepared || keeps)) {
     throw UsageError(
-        "saved maps are of one process; leave them out where several share a rendering");
+        "saved maps work with one process only; leave them out where several share a rendering");
   }
   if (prepared && !prepared->caustics && plan.gathers_at_nodes()) {
     throw SettingError(

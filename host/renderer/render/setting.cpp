@@ -132,20 +132,20 @@ std::vector<Setting> picture_rows() {
   constexpr std::string_view hits = "primary hits";
   return {
       row<&P::film, &Film::width>("width", hits, WholeNumbers{1, limits::max_image_side},
-                                  "of the picture", not_kept, "", "pixels"),
+                                  "width of the picture", not_kept, "", "pixels"),
       row<&P::film, &Film::height>("height", hits, WholeNumbers{1, limits::max_image_side},
-                                   "of the picture", not_kept, "", "pixels"),
+                                   "height of the picture", not_kept, "", "pixels"),
       by_quality(row<&P::film, &Film::samples_per_pixel>(
                      "samples_per_pixel", hits, WholeNumbers{1, limits::max_samples_per_pixel},
-                     "primary rays per pixel, over all passes, at least one in each; from 8 on, "
-                     "pixels with edges have up to four times as many, 64 at most",
+                     "primary rays per pixel over all passes, at least one per pass; from 8 on, "
+                     "pixels with edges get up to four times as many, at most 64",
                      not_kept),
                  8, 16, 64),
       row<&P::seed>("seed", "all", WholeNumbers{0, most_seed},
                     "the same seed gives the same picture", kept_as_it_is),
-      row<&P::max_specular_depth>("max_specular_depth", hits,
-                                  WholeNumbers{0, limits::max_specular_depth},
-                                  "mirrors and glass that a ray from the eye follows", not_kept),
+      row<&P::max_specular_depth>(
+          "max_specular_depth", hits, WholeNumbers{0, limits::max_specular_depth},
+          "most mirrors and glass surfaces that a ray from the eye follows", not_kept),
   };
 }
 
@@ -155,20 +155,21 @@ std::vector<Setting> photon_rows() {
       by_quality(row<&P::photons, &PhotonPaths::emitted_photons>(
                      "photons_emitted", paths,
                      WholeNumbers{limits::min_photons, limits::max_emitted_photons},
-                     "paths over all lights", kept_as_it_is),
+                     "photon paths over all lights", kept_as_it_is),
                  150'000, 1'500'000, 6'000'000),
       row<&P::photons, &PhotonPaths::quota>(
           "quota", paths, words_of(all_photon_quotas),
-          "how the lights share the paths: by power, equally, or half by each", kept_as_it_is),
+          "how the lights share the paths: by power, equally, or balanced: half by each",
+          kept_as_it_is),
       row<&P::photons, &PhotonPaths::max_path_length>(
-          "max_path_length", paths, WholeNumbers{1, most_int},
-          "surfaces that a photon meets at most", kept_as_it_is),
+          "max_path_length", paths, WholeNumbers{1, most_int}, "most surfaces that a photon meets",
+          kept_as_it_is),
       row<&P::photons, &PhotonPaths::roulette_start>(
           "roulette_start", paths, WholeNumbers{1, most_int},
-          "first bounce at which a path may end by chance", kept_as_it_is),
+          "first bounce at which Russian roulette may end a path", kept_as_it_is),
       row<&P::passes>("passes", "all", WholeNumbers{1, limits::max_passes},
-                      "photon passes, each of its part of the paths; with light maps on, parts of "
-                      "all work",
+                      "photon passes, each with a part of the paths; with light maps, each with a "
+                      "part of all work",
                       not_kept, "as many as the host's memory needs"),
   };
 }
@@ -179,47 +180,48 @@ std::vector<Setting> estimate_rows() {
   return {
       by_quality(of_groups(row<&P::neighbours>("neighbours", estimate,
                                                WholeNumbers{1, limits::max_neighbours},
-                                               "photons of an estimate", kept_for_radius)),
+                                               "photons in an estimate", kept_for_radius)),
                  25, 100, 100),
       of_groups(row<&P::radius>("radius", groups, PositiveNumbers{},
-                                "photons farther away do not count", kept_if_given,
+                                "largest distance of photons in an estimate", kept_if_given,
                                 "twice the median distance to the k-th photon", "m")),
       of_groups(row<&P::angle_degrees>("angle_degrees", groups, Numbers{0, 180},
                                        "largest angle between the normals of a group",
                                        kept_as_it_is, "", "degrees")),
       row<&P::area>("area", "surface index", words_of(all_area_modes),
-                    "area by which photons are divided; disc: dark borders and corners, the only "
-                    "one of naive maps",
+                    "area by which flux is divided; disc: darkens borders and corners, the only "
+                    "one with naive maps",
                     not_kept),
       row<&P::kernel>("kernel", estimate, words_of(all_density_kernels),
                       "weights of photons; cone: less blur, more noise", not_kept),
-      of_groups(row<&P::maps>("maps", groups, words_of(all_map_modes),
-                              "naive: dark edges; patch: triangles share maps", kept_as_it_is)),
+      of_groups(row<&P::maps>(
+          "maps", groups, words_of(all_map_modes),
+          "kind of photon maps; naive: darkens edges; patch: triangles share maps", kept_as_it_is)),
       row<&P::photons_per_cell>("photons_per_cell", build, PositiveNumbers{},
-                                "fineness of the grids", not_kept),
-      row<&P::direct_rays>("direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
-                           "light samples from a hit, which replace photons directly from lights",
-                           kept_for_direct_light, "photons carry it"),
+                                "fineness of the search grids", not_kept),
+      row<&P::direct_rays>(
+          "direct_rays", "primary hits", WholeNumbers{1, limits::max_direct_rays},
+          "light samples per hit, which replace photons that come directly from lights",
+          kept_for_direct_light, "photons carry direct light"),
       row<&P::gloss>("gloss", "primary hits", words_of(all_gloss_modes),
-                     "what finds the light that lobes reflect; filtered: rays, whose noise is "
-                     "averaged over pixels; auto: filtered where light maps are read, else photons",
+                     "how glossy reflections are found; filtered: by rays, whose noise is averaged "
+                     "over pixels; auto: filtered where light maps are read, otherwise photons",
                      not_kept),
       row<&P::light_maps>("light_maps", "light maps", words_of(all_light_map_modes),
-                          "matt surfaces are read between nodes; auto: not with naive maps or "
-                          "several passes; off: an estimate at each hit",
+                          "interpolate the light of matt surfaces between nodes; auto: except with "
+                          "naive maps or several passes; off: an estimate at each hit",
                           not_kept),
-      by_quality(
-          row<&P::light_map_rays>(
-              "light_map_rays", "light maps", WholeNumbers{0, limits::max_gathering_rays},
-              "rays, and light samples, by which nodes of light maps gather light; 0: photon "
-              "estimates value nodes",
-              not_kept),
-          16, 64, 256),
-      by_quality(
-          row<&P::light_map_detail>("light_map_detail", "light maps", PositiveNumbers{},
-                                    "largest distance between the finest nodes of light maps",
-                                    not_kept, "an eighth of the coarsest, by the photons", "m"),
-          defaults::no_detail, 0.0, 0.0),
+      by_quality(row<&P::light_map_rays>("light_map_rays", "light maps",
+                                         WholeNumbers{0, limits::max_gathering_rays},
+                                         "rays, and light samples, by which a node of light maps "
+                                         "gathers light; 0: nodes hold photon estimates",
+                                         not_kept),
+                 16, 64, 256),
+      by_quality(row<&P::light_map_detail>(
+                     "light_map_detail", "light maps", PositiveNumbers{},
+                     "largest distance between the finest nodes of light maps", not_kept,
+                     "an eighth of the coarsest, which follows from the photons", "m"),
+                 defaults::no_detail, 0.0, 0.0),
   };
 }
 

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
-#include <numeric>
 #include <string_view>
 #include <unordered_set>
-#include <utility>
 
 #include "common/ascii_text.hpp"
 #include "common/foreign_text.hpp"
@@ -16,28 +14,6 @@
 #include "photile/limits.hpp"
 
 namespace photile::scene {
-
-namespace {
-
-/// Names that a message lists before it only counts the rest.
-constexpr std::size_t max_listed_names = 20;
-
-/// Letters to insert, remove or replace.
-std::size_t edits_between(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
 
 std::string clean_light_name(std::string_view name, std::size_t max_bytes) {
   std::string clean;
@@ -85,30 +61,27 @@ void make_light_names_unique(std::vector<Light>& lights) {
   }
 }
 
-std::string names_like(std::string_view name, std::vector<std::string> names) {
+std::string names_like(std::string_view name, std::vector<std::string> names, std::size_t most) {
   const std::string requested = lower(name);
   std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
     return edits_between(requested, lower(a)) < edits_between(requested, lower(b));
   });
-  return listed_names(names);
+  return listed_names(names, most);
 }
 
-std::string listed_names(std::span<const std::string> names) {
+std::string listed_names(std::span<const std::string> names, std::size_t most) {
   if (names.empty()) return "are none";
   std::string list = names.size() == 1 ? "is " : "are ";
-  for (std::size_t i = 0; i < std::min(names.size(), max_listed_names); ++i) {
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
     list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
   }
-  if (names.size() > max_listed_names) {
-    list += fmt::format(" and {} more", names.size() - max_listed_names);
-  }
+  if (names.size() > most) list += fmt::format(" and {} more", names.size() - most);
   return list;
 }
 
 }  // namespace photile::scene
 
 namespace photile {
-
 namespace {
 
 /// Gathers the lights of each layer.

@@ -25,11 +25,11 @@ void make_light_names_unique(std::vector<Light>& lights);
 
 /// What follows "there" in a message: "are 'a', 'b'", "is 'a'" or "are none". Only counts the rest
 /// of a long list.
-std::string listed_names(std::span<const std::string> names);
+std::string listed_names(std::span<const std::string> names, std::size_t most = 20);
 
-/// The names listed, with those first that differ least from `name` (Levenshtein, "Binary codes
-/// capable of correcting deletions, insertions and reversals", 1966; small and capital letters are
-/// alike).
-std::string names_like(std::string_view name, std::vector<std::string> names);
+/// The names listed, with those first that have the fewest edits between them and `name`; small and
+/// capital letters are alike.
+std::string names_like(std::string_view name, std::vector<std::string> names,
+                       std::size_t most = 20);
 
 }  // namespace photile::scene

@@ -17,7 +17,6 @@
 // with one message and exit code 4, or with the right result; never by a signal, never hanging.
 #include <atomic>
 #include <chrono>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
