@@ -208,9 +208,7 @@ TEST_CASE("times are read with their units") {
   CHECK_FALSE(parse_duration(text).has_value());
 }
 
-// Numbers as people read them, at the borders between units.
-
-TEST_CASE("counts take a suffix from a thousand on") {
+TEST_CASE("numbers are printed as people read them, at the borders between units") {
   CHECK(format_count(0) == "0");
   CHECK(format_count(999) == "999");
   CHECK(format_count(1000) == "1.0k");
@@ -220,16 +218,10 @@ TEST_CASE("counts take a suffix from a thousand on") {
   CHECK(format_count(999'960) == "1.0M");
   CHECK(format_count(1.94e6) == "1.9M");
   CHECK(format_count(2.5e9) == "2.5G");
-}
-
-TEST_CASE("bytes take binary units") {
   CHECK(format_bytes(0) == "0 B");
   CHECK(format_bytes(1023) == "1023 B");
   CHECK(format_bytes(1024) == "1.0 KiB");
   CHECK(format_bytes(3ull << 29) == "1.5 GiB");
-}
-
-TEST_CASE("seconds turn into minutes and hours") {
   CHECK(format_seconds(0.123) == "0.12 s");
   CHECK(format_seconds(9.999) == "10.0 s");
   CHECK(format_seconds(59.99) == "1 min 00 s");
@@ -246,9 +238,6 @@ TEST_CASE("numbers of five digits and more are grouped, not powers of ten") {
   CHECK(report::grouped(1'000'000, 4) == "1,000,000");
   CHECK(report::grouped(1e12, 4) == "1e+12");
   CHECK(report::grouped(-1234.5, 4) == "-1234");
-}
-
-TEST_CASE("a power is given in its own unit first") {
   CHECK(format_power_in_lumens(683, PowerUnit::lumen, 683) == "683 lm");
   CHECK(format_power_in_lumens(2, PowerUnit::watt, 179) == "2 W (358 lm)");
 }

@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <set>
 
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"

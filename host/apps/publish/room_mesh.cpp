@@ -2,7 +2,6 @@
 
 #include <tsl/robin_map.h>
 
-#include <algorithm>
 #include <map>
 #include <tuple>
 

@@ -1,6 +1,5 @@
 #include "trade/trade.hpp"
 
-#include <algorithm>
 #include <string_view>
 
 #include "photile/layered_picture.hpp"

@@ -1,5 +1,4 @@
 #include <GLFW/glfw3.h>
-#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 

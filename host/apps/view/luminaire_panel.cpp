@@ -1,5 +1,4 @@
 // The luminaires that are placed, and the selected ones' numbers.
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
-
 #include "photile/errors.hpp"
 #include "view/picture_area.hpp"
 

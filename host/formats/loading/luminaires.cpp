@@ -8,7 +8,6 @@
 #include <glm/gtc/constants.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>

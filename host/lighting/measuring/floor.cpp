@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "photile/ray_scene.hpp"

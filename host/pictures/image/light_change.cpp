@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fnmatch.h>
 
-#include <cmath>
 #include <string_view>
 
 #include "common/ascii_text.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <sstream>
-#include <string>
 #include <vector>
 
 #include "common/foreign_text.hpp"

@@ -4,9 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "cache/charts.hpp"

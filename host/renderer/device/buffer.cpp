@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "common/process_limits.hpp"

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <mutex>
-#include <optional>
 
 #include "device/context_impl.hpp"
 #include "device/launch.hpp"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 #include <optional>

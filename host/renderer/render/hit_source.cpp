@@ -1,11 +1,9 @@
 #include "render/hit_source.hpp"
 
-#include <algorithm>
 #include <glm/gtc/constants.hpp>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "light/pixel_light.hpp"
 #include "photile/errors.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "estimate/device_test.hpp"
 #include "estimate/photon_estimate.hpp"

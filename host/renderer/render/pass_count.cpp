@@ -7,7 +7,6 @@
 #include <fstream>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "photile/defaults.hpp"

@@ -1,8 +1,6 @@
 #include "render/render_costs.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
 #include <span>
 #include <utility>
