@@ -9,9 +9,8 @@ Usage: figures.py SOURCE_FOLDER
 - A table of which more than half is numbers stands in such a block, or has a comment <!-- not measured --> before it.
 - Between <!-- begin: bench/SCRIPT --> and <!-- end --> is the text that was recorded; each such block has a record, and
   each record a block. In docs/measured the line below the block states the record.
-- No figure or block is older than what it measures by more than 200 commits. Commits that change comments alone do not
-  count as the last change of what is measured. A commit that the history does not have is
-  looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What
+- No figure or block is older than what it measures by more than 200 commits. Commits that change comments or includes
+  alone do not count as the last change of what is measured. A commit that the history does not have is looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What
   was measured on a card that not every machine has may be older: whoever cites it says the date beside it, and so does
   each row of a block.
 """
@@ -27,7 +26,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 from tools.report_section import record_line  # noqa: E402
 
 OLDEST = 200  # commits
-CODE_LINE = "^[[:space:]]*([^/[:space:]]|/[^/*])"  # that begins with no comment
+CODE_LINE = "^[[:space:]]*([^/#[:space:]]|/[^/*]|#[^i]|#i[^n])"  # that begins with no comment and is no #include
 # Their tables are compared with what the command prints by tests/command.
 LEFT_OUT = ("options.md", "settings.md")
 SECTIONS = ("Three figures", "When not to use it")
