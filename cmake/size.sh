@@ -1,6 +1,7 @@
 #!/bin/bash
 # Prints the size of the code beside the bounds that the project keeps (docs/reference/architecture.md), and beside what
-# it aims at where that is less. Exits with 1 where a bound is exceeded. A bound follows the code down, to the next hundred.
+# it aims at where that is less. Exits with 1 where a bound is exceeded. A bound follows the code down, to the next hundred;
+# a change that needs more raises it, and its commit says what the lines are for.
 # Usage: cmake/size.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,7 +23,7 @@ host() { tracked host | grep -E '\.(cpp|hpp)$'; }
 # lengths: the number of lines of each file on standard input, ascending
 lengths() { while read -r file; do wc -l <"$file"; done | sort -n; }
 
-row 'lines of host/' "$(host | lines)" at-most 78400 58000
+row 'lines of host/' "$(host | lines)" at-most 78600 58000
 row 'files of host/' "$(host | wc -l)" at-most 550 520
 row 'lines of host/renderer/' "$(host | grep '^host/renderer/' | lines)" at-most 36000 32000
 row 'lines of the median file of host/' \

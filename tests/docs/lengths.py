@@ -1,7 +1,4 @@
-"""Checks that the documentation can be read: how long its pages are, without what scripts and the program write.
-
-    lengths.py SOURCE-FOLDER
-"""
+"""lengths.py SOURCE-FOLDER: how long pages are, without what scripts and the program write, is bounded."""
 
 import pathlib
 import re

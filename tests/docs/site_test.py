@@ -1,9 +1,7 @@
 #!/usr/bin/python3
 """The documentation as a site: mkdocs builds it without a warning, and each link of it leads somewhere.
 
-    site_test.py SOURCE-FOLDER SITE-FOLDER
-
-Without mkdocs the test is skipped.
+    site_test.py SOURCE-FOLDER SITE-FOLDER; without mkdocs the test is skipped.
 """
 
 import functools
