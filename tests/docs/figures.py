@@ -10,9 +10,10 @@ Usage: figures.py SOURCE_FOLDER
 - Between <!-- begin: bench/SCRIPT --> and <!-- end --> is the text that was recorded; each such block has a record, and
   each record a block. In docs/measured the line below the block states the record.
 - No figure or block is older than what it measures by more than 200 commits. Commits that change comments or includes
-  alone do not count as the last change of what is measured. A commit that the history does not have is looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What
-  was measured on a card that not every machine has may be older: whoever cites it says the date beside it, and so does
-  each row of a block.
+  alone do not count as the last change of what is measured. A commit that the history does not have is looked for by
+  its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What was measured
+  on a card that not every machine has may be older: whoever cites it says the date beside it, and so does each row of
+  a block.
 """
 
 import hashlib
