@@ -85,11 +85,12 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
         (plan_.used().processes && film_.lobe_rays)) {
       add_hits(source, light, reflected, true, progress);
     }
-    // Which lights reach a pixel is known now: the first rows forecast the memory of all.
-    if (done == 0 && layers_.sparse() && last > first) {
+    // Which lights reach a pixel is known now: the rows so far forecast the memory of all.
+    if (layers_.sparse() && last > begin) {
+      QuietProgress without_notes(progress);
       check_picture_memory(film_.width, film_.height, layers_.layers.size(),
-                           static_cast<double>(layers_.bytes()) * film_.height / (last - first),
-                           progress);
+                           static_cast<double>(layers_.bytes()) * film_.height / (last - begin),
+                           done == 0 ? progress : without_notes);
     }
     progress.advance(static_cast<std::uint64_t>(last - first));
   }
