@@ -9,11 +9,10 @@ Usage: figures.py SOURCE_FOLDER
 - A table of which more than half is numbers stands in such a block, or has a comment <!-- not measured --> before it.
 - Between <!-- begin: bench/SCRIPT --> and <!-- end --> is the text that was recorded; each such block has a record, and
   each record a block. In docs/measured the line below the block states the record.
-- No figure or block is older than what it measures by more than 200 commits. Commits that change comments or includes
-  alone do not count as the last change of what is measured. A commit that the history does not have is looked for by
-  its date. Where that is not there either, in an archive or a shallow clone, ages are not checked. What was measured
-  on a card that not every machine has may be older: whoever cites it says the date beside it, and so does each row of
-  a block.
+- No figure or block is older than what it measures by more than 200 commits. A commit that the history does not
+  have is looked for by its date. Where that is not there either, in an archive or a shallow clone, ages are not checked.
+  What was measured on a card that not every machine has may be older: whoever cites it says the date beside it, and so
+  does each row of a block.
 """
 
 import hashlib
@@ -27,7 +26,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 from tools.report_section import record_line  # noqa: E402
 
 OLDEST = 200  # commits
-CODE_LINE = "^[[:space:]]*([^/#[:space:]]|/[^/*]|#[^i]|#i[^n])"  # that begins with no comment and is no #include
 # Their tables are compared with what the command prints by tests/command.
 LEFT_OUT = ("options.md", "settings.md")
 SECTIONS = ("Three figures", "When not to use it")
@@ -94,8 +92,7 @@ def git(source, *arguments):
 
 def commits_behind(source, figure):
     """How many commits lie between a figure and the last change of what it measures; 0 where nobody knows."""
-    last = (git(source, "log", "-1", "--format=%H", f"-G{CODE_LINE}", "--", *figure["measures"])
-            if figure["measures"] else "")
+    last = git(source, "log", "-1", "--format=%H", "--", *figure["measures"]) if figure["measures"] else ""
     commit = (git(source, "rev-parse", "--verify", "--quiet", f"{figure['commit']}^{{commit}}")
               or git(source, "rev-list", "-1", f"--before={figure['date']} 23:59:59 +0000", "HEAD"))
     count = git(source, "rev-list", "--count", f"{commit}..{last}") if last and commit else ""
