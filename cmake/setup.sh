@@ -48,6 +48,7 @@ libcli11-dev           | command line
 libglfw3-dev           | the window of photile view
 libimgui-dev           | its panels
 libgl-dev              | what draws them
+libcpp-httplib-dev     | the web server of photile serve
 robin-map-dev          | hash tables, for meshes of millions of triangles
 libxxhash-dev          | checksums of the program cache
 libopenmpi-dev         | several processes: any MPI-3 library

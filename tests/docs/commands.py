@@ -39,6 +39,7 @@ SMALL = {
     "glare": [*PHOTONS, "--rays", "16", "--repeats", "2"],
     "daylight": [*PHOTONS],
     "bake": [*PHOTONS, *NODES],
+    "serve": [*PHOTONS, *NODES],
     "publish": [*PHOTONS, *NODES, "--texel", "0.5"],
     "trace": PHOTONS,
     "trade": [*IMAGE, *PHOTONS],
@@ -205,9 +206,11 @@ NO_SCREEN = "no window can be opened"
 def run(words, folder):
     """Its exit code and what it wrote. No screen is there: of a window all is tested but what it shows."""
     environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-    done = subprocess.run([PHOTILE, *words[1:]], cwd=folder, env=environment, timeout=PATIENCE, text=True,
+    # A page is served until somebody ends it.
+    ended = ["timeout", "--preserve-status", "-s", "INT", "5"] if words[1] == "serve" else []
+    done = subprocess.run([*ended, PHOTILE, *words[1:]], cwd=folder, env=environment, timeout=PATIENCE, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    passed = done.returncode == 0 or (words[1] == "view" and NO_SCREEN in done.stdout)
+    passed = done.returncode == (130 if words[1] == "serve" else 0) or (words[1] == "view" and NO_SCREEN in done.stdout)
     return 0 if passed else done.returncode, done.stdout
 
 

@@ -54,16 +54,12 @@ bool is_page(const std::filesystem::path& file) { return file.extension() == ".h
 
 /// The lights as the page opens with them, then those of the scene's moods.
 std::vector<publish::Preset> presets_of(const RenderOptions& options, const LightMix& mix) {
-  std::vector<publish::Preset> presets{{"As published", mix}};
-  std::filesystem::path file = options.mood.file;
-  if (file.empty()) file = view::Moods::file_of(options.scene);
-  if (!std::filesystem::exists(file)) return presets;
-  note_input(file);
-  const view::Moods moods(file);
+  std::vector<publish::Preset> presets{{"As published", mix, {}}};
+  const std::filesystem::path given = options.mood.file;
+  const view::Moods moods(given.empty() ? view::Moods::file_of(options.scene) : given);
+  if (std::filesystem::exists(moods.file())) note_input(moods.file());
   for (const std::string& name : moods.names()) {
-    LightMix changed = mix;
-    change_lights(changed, moods.changes(name, mix));
-    presets.push_back({name, changed});
+    presets.push_back(publish::preset_of(name, mix, moods.changes(name, mix)));
   }
   return presets;
 }
@@ -191,7 +187,8 @@ void run_publish(PublishOptions& options) {
       publish::write_page(
           file,
           {.scene = scene,
-           .baked = lit.baked(),
+           .atlas = lit.baked(),
+           .light = &lit.baked(),
            .mix = mix,
            .node_errors = errors ? &*errors : nullptr,
            .relative_error = 1 / std::sqrt(static_cast<double>(render.parameters.neighbours)),

@@ -42,6 +42,8 @@ constexpr int most_surroundings = 2048;
 /// Parts of the room's size that positions are rounded to, and of 1 that normals are: 0.1 mm in a
 /// room, and 0.1 degrees. Finer detail packs badly and is not visible.
 constexpr int position_bits = 17, normal_steps = 511, normal_scale = 64;
+/// Packing by zlib: of what is sent once, to a page that waits, and of what is kept.
+constexpr int quickest = 1, smallest = 9;
 /// Kelvin that the page offers (page/lights.js).
 constexpr int lowest_kelvin = 1500, highest_kelvin = 10'000, kelvin_step = 100;
 
@@ -85,21 +87,23 @@ json camera_of(const Camera& camera) {
 
 class PageWriter {
  public:
-  explicit PageWriter(const PublishedRoom& room) : room_(room), scene_(room.scene) {}
+  explicit PageWriter(const PublishedRoom& room)
+      : room_(room), scene_(room.scene), sections_(room.light ? smallest : quickest) {}
 
   json document() {
     add_lights();
-    add_errors();
+    if (room_.light) add_errors();
     add_mesh();
     add_surroundings();
     add_hours();
     json& d = document_;
     d["title"] = room_.title;
+    d["live"] = room_.light == nullptr;
     d["version"] = room_.version;
     d["lux"] = in_unit(1, room_.mix.unit(), PowerUnit::lumen, room_.mix.lumen_per_watt);
     d["coding"] = {{"steps", steps_per_octave}, {"octaves", octaves}, {"chroma", chroma_steps}};
-    d["atlas"] = {{"width", room_.baked.width()}, {"height", room_.baked.height()},
-                  {"texel", room_.baked.texel()}, {"used", room_.baked.used_texels()},
+    d["atlas"] = {{"width", room_.atlas.width()}, {"height", room_.atlas.height()},
+                  {"texel", room_.atlas.texel()}, {"used", room_.atlas.used_texels()},
                   {"block", error_block},         {"errorSteps", error_steps}};
     d["display"] = display_of(room_.display);
     d["temperatures"] = kelvins();
@@ -109,7 +113,7 @@ class PageWriter {
     }
     if (!d.contains("cameras")) d["cameras"] = {camera_of(opening_camera(scene_))};
     d["probe"] = d["cameras"][0]["position"];
-    d["presets"] = presets();
+    d["presets"] = to_json(room_.presets);
     d["simplified"] = simplified();
     d["sections"] = sections_.table();
     return std::move(document_);
@@ -124,15 +128,16 @@ class PageWriter {
     const LightMix& mix = room_.mix;
     for (std::size_t i = 0; i < mix.lights.size(); ++i) {
       const MixedLight& light = mix.lights[i];
-      const double brightest =
-          sections_.add_light(fmt::format("light{}", i), room_.baked.layer(i), room_.baked.width());
       json entry{{"name", light.name},
                  {"power", light.power},
                  {"scale", in_unit(1, light.unit, mix.unit(), mix.lumen_per_watt)},
                  {"unit", symbol_of(light.unit)},
                  {"color", numbers(light.color)},
-                 {"tint", numbers(light.tint)},
-                 {"brightest", brightest}};
+                 {"tint", numbers(light.tint)}};
+      if (room_.light) {
+        entry["brightest"] = sections_.add_light(fmt::format("light{}", i), room_.light->layer(i),
+                                                 room_.atlas.width());
+      }
       if (patch_of[i] != none) {
         entry["patch"] = patch_of[i];
         entry["unitPower"] =
@@ -150,14 +155,14 @@ class PageWriter {
 
   /// The root of the mean squared error of each block over that of its light.
   void add_errors() {
-    const std::uint32_t width = room_.baked.width(), height = room_.baked.height();
+    const std::uint32_t width = room_.atlas.width(), height = room_.atlas.height();
     const std::uint32_t columns = (width + error_block - 1) / error_block;
     const std::uint32_t rows = (height + error_block - 1) / error_block;
     std::vector<std::uint8_t> codes;
     for (std::size_t layer = 0; layer < room_.mix.lights.size(); ++layer) {
-      const std::vector<glm::vec3> light = room_.baked.layer(layer);
+      const std::vector<glm::vec3> light = room_.light->layer(layer);
       const std::vector<float> errors =
-          room_.node_errors ? room_.baked.errors(layer, *room_.node_errors) : std::vector<float>();
+          room_.node_errors ? room_.light->errors(layer, *room_.node_errors) : std::vector<float>();
       std::vector<double> squares(std::size_t{columns} * rows), whole(squares.size());
       for (std::size_t i = 0; i < light.size(); ++i) {
         const std::size_t block = i / width / error_block * columns + i % width / error_block;
@@ -176,7 +181,7 @@ class PageWriter {
   }
 
   void add_mesh() {
-    const RoomMesh mesh = mesh_of(scene_, room_.baked);
+    const RoomMesh mesh = mesh_of(scene_, room_.atlas);
     std::array<std::vector<float>, 3> axes;
     std::vector<float> uv;
     std::vector<std::uint16_t> normals, light_uv, kinds;
@@ -359,20 +364,6 @@ class PageWriter {
                           {"startTime", hours.start_time}};
   }
 
-  json presets() const {
-    json list = json::array();
-    for (const Preset& preset : room_.presets) {
-      json lights = json::array();
-      for (std::size_t i = 0; i < preset.mix.lights.size(); ++i) {
-        const MixedLight& light = preset.mix.lights[i];
-        lights.push_back(
-            {{"light", i}, {"power", light.power}, {"tint", numbers(light.tint)}, {"kelvin", 0}});
-      }
-      list.push_back({{"name", preset.name}, {"lights", lights}});
-    }
-    return list;
-  }
-
   /// What the page shows differently from a picture.
   std::vector<std::string> simplified() const {
     std::vector<std::string> list{"light on matt surfaces is exact as the light maps have it"};
@@ -473,14 +464,44 @@ void check_materials(const Scene& scene) {
                                scene.source.string(), scene.materials.size(), most));
 }
 
-void write_page(const std::filesystem::path& file, const PublishedRoom& room) {
+Preset preset_of(const std::string& name, const LightMix& mix,
+                 const std::vector<LightChange>& changes) {
+  Preset preset{name, mix, std::vector<double>(mix.lights.size())};
+  change_lights(preset.mix, changes);
+  for (const LightChange& change : changes) {
+    if (!change.value.ends_with('K')) continue;
+    for (std::size_t i = 0; i < mix.lights.size(); ++i) {
+      if (mix.lights[i].name == change.name) preset.kelvins[i] = std::stod(change.value);
+    }
+  }
+  return preset;
+}
+
+json to_json(const std::vector<Preset>& presets) {
+  json list = json::array();
+  for (const Preset& preset : presets) {
+    json lights = json::array();
+    for (std::size_t i = 0; i < preset.mix.lights.size(); ++i) {
+      const MixedLight& light = preset.mix.lights[i];
+      lights.push_back({{"light", i},
+                        {"power", light.power},
+                        {"tint", numbers(light.tint)},
+                        {"kelvin", preset.kelvins.empty() ? 0.0 : preset.kelvins[i]}});
+    }
+    list.push_back({{"name", preset.name}, {"lights", lights}});
+  }
+  return list;
+}
+
+std::string page_text(const PublishedRoom& room) {
   PageWriter writer(room);
   const std::string document = inline_json(writer.document());
   std::map<std::string_view, std::string> parts;
   parts["@TITLE@"] = escaped_xml(room.title);
+  parts["@REQUESTS@"] = room.light ? "" : " connect-src 'self';";
   parts["@ROOM@"] = document;
   parts["@DATA@"] = report::base64(writer.bytes());
-  OutputFile output(file);
+  std::string page;
   std::string_view rest = page_template();
   while (!rest.empty()) {
     std::size_t next = rest.size();
@@ -489,11 +510,15 @@ void write_page(const std::filesystem::path& file, const PublishedRoom& room) {
       const std::size_t place = rest.find(name);
       if (place < next) next = place, found = name;
     }
-    output.write(rest.data(), next);
+    page += rest.substr(0, next);
     rest.remove_prefix(next + found.size());
-    if (!found.empty()) output.write(parts[found].data(), parts[found].size());
+    if (!found.empty()) page += parts[found];
   }
-  output.commit();
+  return page;
+}
+
+void write_page(const std::filesystem::path& file, const PublishedRoom& room) {
+  write_file(file, page_text(room));
 }
 
 }  // namespace photile::publish

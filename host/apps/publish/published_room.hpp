@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,14 @@ namespace photile::publish {
 struct Preset {
   std::string name;
   LightMix mix;
+  std::vector<double> kelvins;  ///< per light: the colour temperature that was asked for; 0 = none
 };
+
+/// The preset of a mood. Errors: those of change_lights.
+Preset preset_of(const std::string& name, const LightMix& mix,
+                 const std::vector<LightChange>& changes);
+/// As the page has them.
+nlohmann::json to_json(const std::vector<Preset>& presets);
 
 /// The luminances of a sky in patches over the hours of some days.
 struct SkyHours {
@@ -40,19 +48,25 @@ const Camera& opening_camera(const Scene& scene);
 
 struct PublishedRoom {
   const Scene& scene;
-  const bake::BakedLight& baked;
+  const bake::LightAtlas& atlas;
+  const bake::BakedLight* light;  ///< of the atlas; null where a server sends it (serve/)
   const LightMix& mix;            ///< as the page opens
   const LightTable* node_errors;  ///< as GatheredNodes::errors; null where photons value nodes ...
   double relative_error = 0;      ///< ... which all err by this part
   std::vector<Preset> presets;
   SkyHours hours;
-  ToneMapping display;  ///< of the picture by `photile render` from the first camera, as stops
+  ToneMapping display;  ///< with its light: of the picture by `photile render` from the first
+                        ///< camera, as stops
   std::string title;
   std::string version;
 };
 
 /// Errors: InputError where there are more materials than the vertices of a page can name.
 void check_materials(const Scene& scene);
+
+/// The text of the page. Where its light is sent, it requests that from the server that it came
+/// from.
+std::string page_text(const PublishedRoom& room);
 
 /// Writes the page. It loads nothing from elsewhere. Errors: OutputError.
 void write_page(const std::filesystem::path& file, const PublishedRoom& room);

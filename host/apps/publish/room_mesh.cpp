@@ -36,9 +36,9 @@ RoomTextures textures_of(const Scene& scene, const Material& material, std::uint
 
 }  // namespace
 
-RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked) {
+RoomMesh mesh_of(const Scene& scene, const bake::LightAtlas& atlas) {
   std::map<std::tuple<bool, Interaction, RoomTextures>, std::vector<std::uint32_t>> sides;
-  for (const std::uint32_t side : baked.sides()) {
+  for (const std::uint32_t side : atlas.sides()) {
     const Material& material = scene.materials[scene.triangle_material[triangle_of(side)]];
     const bool clear = scene::is_glazing(material);
     sides[{clear, material.interaction, textures_of(scene, material, light_of(scene, side))}]
@@ -53,8 +53,8 @@ RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked) {
     for (const std::uint32_t side : members) {
       const std::uint32_t triangle = triangle_of(side);
       const auto positions = scene.corners(triangle);
-      const auto light_uv = baked.corners(side);
-      for (const bake::DrawnTriangle& drawn : baked.drawn(side)) {
+      const auto light_uv = atlas.corners(side);
+      for (const bake::DrawnTriangle& drawn : atlas.drawn(side)) {
         for (const glm::vec3& weights : drawn) {
           RoomVertex vertex;
           vertex.position = bake::at_weights(positions, weights);

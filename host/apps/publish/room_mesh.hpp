@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/baked_light.hpp"
+#include "bake/light_atlas.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::publish {
@@ -47,6 +47,6 @@ struct RoomMesh {
 };
 
 /// The baked sides, each as seen from its own side.
-RoomMesh mesh_of(const Scene& scene, const bake::BakedLight& baked);
+RoomMesh mesh_of(const Scene& scene, const bake::LightAtlas& atlas);
 
 }  // namespace photile::publish

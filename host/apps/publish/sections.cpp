@@ -53,7 +53,7 @@ void Sections::add(const std::string& name, std::span<const std::uint8_t> bytes,
                    const char* coding) {
   uLongf size = compressBound(bytes.size());
   std::vector<Bytef> packed(size);
-  if (compress2(packed.data(), &size, bytes.data(), bytes.size(), Z_BEST_COMPRESSION) != Z_OK) {
+  if (compress2(packed.data(), &size, bytes.data(), bytes.size(), level_) != Z_OK) {
     throw std::bad_alloc();
   }
   table_[name] = {

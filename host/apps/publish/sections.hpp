@@ -20,6 +20,9 @@ inline constexpr int steps_per_octave = 128, octaves = 20, chroma_steps = 511;
 /// zlib.
 class Sections {
  public:
+  ///   level   of packing, 1 (quickest) to 9 (smallest)
+  explicit Sections(int level) : level_(level) {}
+
   void add_bytes(const std::string& name, std::span<const std::uint8_t> bytes);
   void add_floats(const std::string& name, std::span<const float> numbers);
   void add_words(const std::string& name, std::span<const std::uint16_t> numbers);
@@ -41,6 +44,7 @@ class Sections {
  private:
   void add(const std::string& name, std::span<const std::uint8_t> bytes, const char* coding);
 
+  const int level_;
   nlohmann::json table_ = nlohmann::json::object();
   std::string bytes_;
 };

@@ -41,8 +41,9 @@ constexpr int first_samples = 4, more_samples = 4;
 
 }  // namespace
 
-FrameWorker::FrameWorker(int most_samples, double frames_per_second)
+FrameWorker::FrameWorker(int most_samples, double frames_per_second, Drawn drawn)
     : most_samples_(most_samples),
+      drawn_(std::move(drawn)),
       frame_seconds_(1 / frames_per_second),
       size_(frames_per_second),
       thread_([this](std::stop_token stop) { work(std::move(stop)); }) {}
@@ -110,7 +111,7 @@ bool FrameWorker::next_task(std::stop_token stop, Task& task) {
   const bool shown = done_version_ == version_;
   const bool refines = !request_.moving && shown && done_samples_ > 0;
   const bool whole = shown && !request_.moving;
-  const bool draws = !request_.powers.empty() && maps_->renderer->draws();
+  const bool draws = !request_.powers.empty() && maps_->renderer->reads_light_maps();
   const int first = draws && !request_.moving ? first_samples : 1;
   task = {request_, maps_, std::min(refines ? more_samples * done_samples_ : first, most_samples_),
           version_, draws && !whole};
@@ -154,6 +155,7 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     stopwatch = Stopwatch();
     if (drawn.empty == 0) maps.lit = true;
     keep(task, std::make_shared<Frame>(std::move(frame)), 0);
+    if (drawn_) drawn_(requested.camera, maps, drawn);
     at_once = false;
     draw_seconds_ = drawn.draw_seconds;
     return time_to_fill(task, draw_seconds_);
@@ -163,9 +165,9 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     filling.soft = !maps.whole;
     picture.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height),
                    {});
-    const DrawnFrame drawn = maps.renderer->draw(
-        requested.camera, film, requested.powers, filling, picture, Progress::none(),
-        maps.coarser ? maps.coarser->renderer.get() : nullptr);
+    const DrawnFrame drawn =
+        maps.renderer->frames().draw(requested.camera, film, requested.powers, filling, picture,
+                                     Progress::none(), maps.coarser_view());
     if (ended()) throw Interrupted();
     hand_over(drawn);
   };
@@ -193,11 +195,12 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   });
   const Stopwatch stopwatch;
   const LayerMixdown* const mixdown = task.request.mixdown.get();
-  RenderResult result = task.maps->renderer->render(task.request.camera, film, progress, mixdown);
+  RenderResult result =
+      task.maps->renderer->render(camera_hits(task.request.camera), film, progress, mixdown);
   std::optional<LightLayers> reflections;
   if (task.request.reflections) {
     reflections = std::move(
-        task.maps->renderer->render_reflections(task.request.camera, film, progress, mixdown)
+        task.maps->renderer->render(reflected_hits(task.request.camera), film, progress, mixdown)
             .layers);
   }
   const double seconds = stopwatch.seconds();

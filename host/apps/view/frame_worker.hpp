@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -53,9 +54,13 @@ struct FrameRequest {
 /// viewer moves, and cancelled when it starts to move.
 class FrameWorker {
  public:
+  using Drawn = std::function<void(const Camera&, MapGeneration&, const DrawnFrame&)>;
+
   ///   most_samples        per pixel, standing still
   ///   frames_per_second   aimed at while moving
-  FrameWorker(int most_samples, double frames_per_second);
+  ///   drawn               told on the worker's thread of each quick frame, before more nodes are
+  ///                       valued; may be empty
+  FrameWorker(int most_samples, double frames_per_second, Drawn drawn = {});
   ~FrameWorker();
 
   void show(const FrameRequest& request);
@@ -93,6 +98,7 @@ class FrameWorker {
   double time_to_fill(const Task& task, double draw_seconds) const;
 
   const int most_samples_;
+  const Drawn drawn_;
   mutable std::mutex mutex_;
   std::condition_variable_any wake_;
   FrameRequest request_;

@@ -80,7 +80,7 @@ void PhotonWorker::work(std::optional<TracedPhotons> prepared) {
     }
     const std::shared_ptr<MapGeneration> whole =
         build(parameters_, true, prepared ? &*prepared : nullptr);
-    if (whole->renderer->draws()) whole->coarser = std::move(first);
+    if (whole->renderer->reads_light_maps()) whole->coarser = std::move(first);
     deliver_(whole);
   } catch (const Interrupted&) {
     // The window was closed, or other parameters were asked for.
@@ -99,8 +99,10 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(const RenderParameters& param
     generation->photons = std::make_shared<InspectablePhotons>(InspectablePhotons::of(photons));
     if (whole && keep_) keep_(photons);
   };
-  generation->renderer = std::make_unique<SceneRenderer>(scene_, generation->devices, parameters,
-                                                         prepared, keep, *listener_);
+  if (!prepared_scene_) prepared_scene_ = std::make_shared<const PreparedScene>(scene_);
+  generation->renderer =
+      std::make_unique<RenderSession>(prepared_scene_, generation->devices, parameters, *listener_);
+  generation->renderer->keep_passes(prepared, keep, *listener_);
   generation->emitted_photons = parameters.photons.emitted_photons;
   generation->whole = whole;
   generation->noise = EstimateNoise::of(scene_, parameters);
@@ -117,7 +119,9 @@ void PhotonFeed::trace(std::shared_ptr<const Scene> scene, const RenderParameter
                       std::shared_ptr<MapGeneration> maps) mutable {
                     if (maps != bounded) {  // else frames are drawn from it by now
                       maps->scene = scene;
-                      maps->renderer->bound_light_maps(light_map_bytes_);
+                      if (maps->renderer->reads_light_maps()) {
+                        maps->renderer->frames().view().bound(light_map_bytes_);
+                      }
                     }
                     bounded = maps;
                     const std::lock_guard lock(mutex_);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "photile/renderer.hpp"
+#include "render/render_session.hpp"
 #include "view/frame.hpp"
 #include "view/photon_map.hpp"
 
@@ -23,10 +24,14 @@ namespace photile::view {
 struct MapGeneration {
   std::shared_ptr<const Scene> scene;  ///< held for the renderer; null where its owner is elsewhere
   std::vector<Device> devices;
-  std::unique_ptr<SceneRenderer> renderer;
+  std::unique_ptr<RenderSession> renderer;
   /// The maps of a first picture, shown where the light maps of this one have no node yet; null =
   /// none.
   std::shared_ptr<MapGeneration> coarser;
+  /// The frames of that, which show it so; null = none.
+  cache::FrameView* coarser_view() const {
+    return coarser ? &coarser->renderer->frames().view() : nullptr;
+  }
   std::uint64_t emitted_photons = 0;
   bool whole = false;            ///< of all photons that were asked for
   std::atomic<bool> lit{false};  ///< set once a frame had its own light on all surface
@@ -68,6 +73,7 @@ class PhotonWorker {
                                        TracedPhotons* prepared);
 
   const Scene& scene_;
+  std::shared_ptr<const PreparedScene> prepared_scene_;  ///< once there is any
   const OpenDevices open_devices_;
   const RenderParameters parameters_;
   const KeepPhotons keep_;

@@ -139,7 +139,7 @@ class Viewer {
     const std::shared_ptr<MapGeneration> maps = frames_.stop();
     if (!parameters_.keep_light_maps || !maps || maps->scene != first_scene_) return;
     if (maps->emitted_photons != parameters_.render.photons.emitted_photons) return;
-    if (const auto light_maps = maps->renderer->light_maps()) {
+    if (const auto light_maps = maps->renderer->light_map_contents()) {
       parameters_.keep_light_maps(*light_maps);
     }
   }

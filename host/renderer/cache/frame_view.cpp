@@ -234,6 +234,7 @@ void FrameView::begin_frame() {
 void FrameView::mix(std::span<const glm::vec3> powers, bool soft) {
   const std::size_t nodes = maps_.statistics().nodes;
   if (bound_ > 0) seen_.resize(nodes, 0);
+  soft_ = soft;
   const std::span<const glm::vec3> former = mix_.powers();
   const bool relit = !std::equal(powers.begin(), powers.end(), former.begin(), former.end());
   const std::size_t weights = soft || !softened_.empty() ? nodes : 0;
@@ -282,14 +283,24 @@ std::optional<glm::vec3> FrameView::irradiance(std::uint32_t oriented_face,
       seen.store(frame_, std::memory_order_relaxed);
     }
   }
-  if (!weight_.empty()) {
-    float sum = 0;
-    for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
-      softened |= lacks_beside_[bilinear.node[i]] != 0;
-      sum += bilinear.weight[i] *= weight_[bilinear.node[i]];
-    }
-    for (float& weight : bilinear.weight) weight /= sum;
+  softened |= weigh(bilinear);
+  return between(bilinear, oriented_face, position);
+}
+
+bool FrameView::weigh(BilinearWeights& bilinear) const {
+  if (weight_.empty()) return false;
+  bool softened = false;
+  float sum = 0;
+  for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+    softened |= lacks_beside_[bilinear.node[i]] != 0;
+    sum += bilinear.weight[i] *= weight_[bilinear.node[i]];
   }
+  for (float& weight : bilinear.weight) weight /= sum;
+  return softened;
+}
+
+glm::vec3 FrameView::between(const BilinearWeights& bilinear, std::uint32_t oriented_face,
+                             const glm::vec3& position) const {
   const auto interpolated = [&](std::span<const glm::vec4> of) {
     return (bilinear.weight[0] * of[bilinear.node[0]] + bilinear.weight[1] * of[bilinear.node[1]]) +
            (bilinear.weight[2] * of[bilinear.node[2]] + bilinear.weight[3] * of[bilinear.node[3]]);
@@ -298,6 +309,17 @@ std::optional<glm::vec3> FrameView::irradiance(std::uint32_t oriented_face,
   if (by_normal_.empty()) return light;
   return turned(light, interpolated(by_normal_),
                 trace::shading_normal(scene_, oriented_face, position));
+}
+
+bool FrameView::find(std::uint32_t oriented_face, const glm::vec3& position,
+                     BilinearWeights& bilinear, bool& is_final) const {
+  const std::uint32_t chart = maps_.charts().chart_of()[oriented_face];
+  const bool lacks = maps_.tiles().find(chart, position, bilinear).has_value();
+  if (bilinear.node[0] == none || state_[chart] != shown) return false;
+  is_final = !lacks && !soft_;
+  if (is_final) maps_.keep_visible(oriented_face, position, bilinear);
+  is_final &= !weigh(bilinear);
+  return true;
 }
 
 glm::vec3 FrameView::ambient(std::uint32_t oriented_face, const glm::vec3& position) const {

@@ -54,6 +54,17 @@ class FrameView {
   ///   softened   is set where its light is softened because nodes beside it are not
   std::optional<glm::vec3> irradiance(std::uint32_t oriented_face, const glm::vec3& position,
                                       std::uint32_t packet, bool& lacks, bool& softened) const;
+  /// The nodes whose light a point of an opaque surface shows, by what they count; false where its
+  /// chart is not shown, or the point has no level. Thread-safe; the caller's thread must flush
+  /// denormals (ray_query.hpp).
+  ///   is_final   is set where better nodes can no longer come: then those that something hides
+  ///   from
+  ///              the point are left out
+  bool find(std::uint32_t oriented_face, const glm::vec3& position, BilinearWeights& bilinear,
+            bool& is_final) const;
+  /// The light between these nodes.
+  glm::vec3 between(const BilinearWeights& bilinear, std::uint32_t oriented_face,
+                    const glm::vec3& position) const;
   /// The light of nodes around, for points without any of their own.
   glm::vec3 ambient(std::uint32_t oriented_face, const glm::vec3& position) const;
 
@@ -79,6 +90,10 @@ class FrameView {
  private:
   class Softening;
 
+  /// Weighs nodes by how much they count. Returns whether any is softened because a cell beside it
+  /// lacks nodes.
+  bool weigh(BilinearWeights& bilinear) const;
+
   /// Where a cell is seen whose nodes are not valued: one sample in each packet of rays.
   struct MissingSample {
     MissingCell cell;
@@ -102,6 +117,7 @@ class FrameView {
   // it lacks nodes. Both are empty where nothing is softened.
   std::vector<float> weight_;
   std::vector<std::uint8_t> lacks_beside_;
+  bool soft_ = false;                        ///< whether all cells are softened
   std::vector<MissingCell> softened_;        ///< cells that have a tile, but lacked nodes
   AmbientLight ambient_;                     ///< where no level is valued
   std::size_t ambient_nodes_ = 0;            ///< that it was gathered from

@@ -306,4 +306,42 @@ DrawnFrame FrameRenderer::draw(const Camera& camera, const Film& film,
   }
 }
 
+std::vector<std::uint8_t> FrameRenderer::light_at(const PrimaryHits& points, bool soft,
+                                                  const TakeLight& take,
+                                                  cache::FrameView* coarser) {
+  std::vector<cache::FrameView*> views{&view_};
+  if (coarser) views.push_back(coarser);
+  std::vector<cache::BilinearWeights> around(points.size());
+  std::vector<std::uint8_t> view_of(points.size()), is_final(points.size());
+  std::vector<glm::vec3> light(points.size());
+  const auto for_each_point = [&](const auto& visit) {
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+      const trace::FlushDenormals flush_denormals;
+      visit(i, points.oriented_face[i], points.position[i]);
+    });
+  };
+  const std::size_t layers = light_groups_of(rays_.scene()).groups.size();
+  for (std::size_t layer = 0; layer < layers; ++layer) {
+    std::vector<glm::vec3> powers(layers, glm::vec3(0.0f));
+    powers[layer] = glm::vec3(1.0f);
+    for (cache::FrameView* view : views) view->mix(powers, soft || view == coarser);
+    if (layer == 0) {  // how much nodes count does not depend on the layer
+      for_each_point([&](std::size_t i, std::uint32_t face, const glm::vec3& position) {
+        bool all = false;
+        while (view_of[i] < views.size() &&
+               !views[view_of[i]]->find(face, position, around[i], all)) {
+          ++view_of[i];
+        }
+        is_final[i] = all ? 1 : 0;
+      });
+    }
+    for_each_point([&](std::size_t i, std::uint32_t face, const glm::vec3& position) {
+      light[i] = view_of[i] < views.size() ? views[view_of[i]]->between(around[i], face, position)
+                                           : views.back()->ambient(face, position);
+    });
+    take(layer, light);
+  }
+  return is_final;
+}
+
 }  // namespace photile

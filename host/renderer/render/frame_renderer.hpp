@@ -1,7 +1,9 @@
 // Pictures of the light on surfaces alone, quick enough to walk in: a ray and a query a sample.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -39,6 +41,16 @@ class FrameRenderer {
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   const FrameFilling& filling, std::span<glm::vec3> picture,
                   const Progress& progress, cache::FrameView* coarser = nullptr);
+
+  /// Takes the irradiance of a layer at power 1 at points, in their order.
+  using TakeLight = std::function<void(std::size_t layer, std::span<const glm::vec3> irradiance)>;
+  /// The light of each layer at points of opaque surfaces, one layer after the other, as pictures
+  /// show it by now: that of these light maps, of `coarser`, or from around. Values no node. To be
+  /// called where `draw` may be, or while it shows a picture (FrameFilling::show).
+  ///   soft   as FrameFilling has it
+  /// Returns 1 for points whose light is final, else 0.
+  std::vector<std::uint8_t> light_at(const PrimaryHits& points, bool soft, const TakeLight& take,
+                                     cache::FrameView* coarser = nullptr);
 
  private:
   class Picture;

@@ -71,8 +71,9 @@ function unpack(texel, colour) {
   colour[2] = ((texel >>> 18) & 511) * scale;
 }
 
-/// Texels of a picture of light, its brightest luminance 1.
-function decodeLight(bytes, width) {
+/// Texels of a picture of light.
+///   brightest   luminance
+function decodeLight(bytes, width, brightest = 1) {
   const {steps, octaves, chroma} = room.coding;
   const words = joinPlanes(bytes, 2);
   const count = words.length / 3;
@@ -83,7 +84,7 @@ function decodeLight(bytes, width) {
     return values;
   });
   const luminances = Float64Array.from({length: steps * octaves + 1},
-                                       (_, code) => (code ? 2 ** (code / steps - octaves) : 0));
+                                       (_, code) => (code ? brightest * 2 ** (code / steps - octaves) : 0));
   const texels = new Uint32Array(count);
   for (let i = 0; i < count; ++i) {
     if (planes[0][i] === 0) continue;

@@ -10,7 +10,8 @@ const shaderDisplay = {
   fragment: `#version 300 es
 precision highp float;
 precision highp int;
-uniform sampler2D uPicture;
+uniform sampler2D uPicture, uRest;
+uniform float uShown;         // of uRest, in place of uPicture
 uniform vec3 uToWhite;        // from light to multiples of white
 uniform bool uIsLight;        // false colours are shown as they are
 out vec4 fragment;
@@ -19,7 +20,9 @@ const float brightest = 1e9;
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
 vec3 lightAt(ivec2 place) {
-  return min(max(texelFetch(uPicture, place, 0).rgb, 0.0) * uToWhite, brightest);
+  vec3 light = texelFetch(uPicture, place, 0).rgb;
+  if (uShown > 0.0) light = mix(light, texelFetch(uRest, place, 0).rgb, uShown);
+  return min(max(light, 0.0) * uToWhite, brightest);
 }
 
 // Khronos PBR Neutral; names are those of its specification.
@@ -115,7 +118,8 @@ class Screen {
   }
 
   ///   exposure   of light in units of white; null where the frame is to be shown as it is
-  show(exposure) {
+  ///   rest       a picture that is shown in part, or null
+  show(exposure, rest) {
     const gl = this.gl, {width, height, program: {program, uniforms}} = this;
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.samples);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, this.pixels);
@@ -127,9 +131,13 @@ class Screen {
     gl.disable(gl.CULL_FACE);
     gl.disable(gl.BLEND);
     gl.bindVertexArray(this.vertices);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, this.light);
+    [rest?.before?.texture ?? this.light, rest?.light.texture ?? this.light].forEach((texture, unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+    });
     gl.uniform1i(uniforms.uPicture, 0);
+    gl.uniform1i(uniforms.uRest, 1);
+    gl.uniform1f(uniforms.uShown, rest?.shown ?? 0);
     gl.uniform1i(uniforms.uIsLight, exposure === null ? 0 : 1);
     gl.uniform3f(uniforms.uToWhite, ...room.display.white.map((part) => (exposure ?? 1) / part));
     gl.drawArrays(gl.TRIANGLES, 0, 3);

@@ -16,14 +16,20 @@ class Lights {
     return room.lights.map((light, i) => {
       const state = this.states[i];
       if (light.patch !== undefined) {
-        const power = sky ? sky[light.patch] * light.unitPower : light.power;
-        return scaled(light.tint, this.sky.on ? light.scale * power * this.sky.factor : 0);
+        const power = sky ? light.scale * sky[light.patch] * light.unitPower : light.scale * light.power;
+        return scaled(light.tint, this.sky.on ? power * this.sky.factor : 0);
       }
       return scaled(state.tint, state.on ? light.scale * state.power : 0);
     });
   }
 
   sky = {on: true, factor: 1};
+
+  /// Of a patch, in the unit of the light maps.
+  skyPower(i) {
+    const {scale, patch, unitPower} = room.lights[i];
+    return scale * this.skyPowers()[patch] * unitPower;
+  }
 
   skyPowers() {
     const {times, luminances, lights} = room.hours;

@@ -16,6 +16,9 @@ function automaticExposure(radiance) {
   return key / Math.exp(counted.reduce((sum, value) => sum + Math.log(value), 0) / counted.length);
 }
 
+const areNumbers = (list, count) => list.length === count &&
+    list.every((value) => Number.isFinite(value) && Math.abs(value) <= 1e30);
+
 class Page {
   async open() {
     this.canvas = find('#view');
@@ -39,7 +42,7 @@ class Page {
     this.lights = new Lights();
     if (room.hours) this.lights.hour = {date: room.hours.startDate, time: room.hours.startTime};
     await this.renderer.load(archive);
-    this.errors = await archive.array('errors');
+    if (!room.live) this.errors = await archive.array('errors');
     this.surfaces = new Surfaces(this.renderer.positions, this.renderer.indices);
     this.walker = new Walker(this.surfaces);
     this.panel = new Panel(this.lights, (what) => this.changed(what));
@@ -49,6 +52,7 @@ class Page {
     this.makeTools();
     this.walker.stand(room.cameras[0]);
     this.begin();
+    if (room.live) this.live = new Live(this);
     this.restore();
     this.panel.show();
     listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.point(x, y));
@@ -64,7 +68,7 @@ class Page {
   /// Shows the published light as `photile render` does. The light of an hour has its own exposure.
   begin() {
     this.renderer.mix(this.lights.weights());
-    if (room.hours) {
+    if (room.hours && !room.live) {
       this.renderer.unit = 1 / this.seenExposure();
       this.renderer.mix(this.lights.weights());
     }
@@ -73,13 +77,15 @@ class Page {
   }
 
   /// The exposure of what is in view.
-  seenExposure() {
+  seenExposure(walker = this.walker) {
     const aspect = clamp(this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight), 0.5, 2);
-    return automaticExposure(this.renderer.radiance(this.walker, Math.round(96 * aspect), 96));
+    return automaticExposure(this.renderer.radiance(walker, Math.round(96 * aspect), 96));
   }
 
   /// Exposes for what is in view: steps of the slider from the published light.
   adapt() {
+    if (!this.renderer.isLit) return;
+    if (this.live) this.live.exposes = false;
     this.renderer.mix(this.lights.weights());
     this.lightIsOld = false;
     this.setExposure(clamp(Math.log2(this.seenExposure() * this.renderer.unit), -12, 14));
@@ -116,6 +122,7 @@ class Page {
 
   changed(what) {
     this.lightIsOld = true;
+    this.live?.lampsChanged();
     if (what === 'hour' || what === 'preset') this.adapt();
     this.wake();
     this.showReading();
@@ -132,19 +139,22 @@ class Page {
   frame(time) {
     const began = performance.now();
     this.scheduled = false;
-    const moved = this.walker.advance(clamp((time - this.lastTime) / 1000, 0, 0.1));
+    const passed = clamp((time - this.lastTime) / 1000, 0, 0.1);
+    const moved = this.walker.advance(passed);
     this.lastTime = time;
     if (this.lightIsOld) {
       this.renderer.mix(this.lights.weights());
       this.lightIsOld = false;
     }
-    if (moved || this.dirty) {
+    const fades = this.live?.advance(passed);
+    if (moved || fades || this.dirty) {
       this.renderer.draw(this.walker);
       this.placeReading();
+      this.live?.look();
     }
-    this.dirty = false;
+    this.dirty = fades;
     const pads = [...(navigator.getGamepads?.() ?? [])].some((pad) => pad?.connected);
-    if (moved || pads || this.walker.keys.size > 0 || this.walker.stick.some((part) => part !== 0)) {
+    if (moved || fades || pads || this.walker.keys.size > 0 || this.walker.stick.some((part) => part !== 0)) {
       this.scheduled = true;
       requestAnimationFrame((next) => this.frame(next));
     }
@@ -167,7 +177,10 @@ class Page {
   }
 
   makeDisplay() {
-    find('#exposure').addEventListener('input', (event) => this.setExposure(Number(event.target.value)));
+    find('#exposure').addEventListener('input', (event) => {
+      if (this.live) this.live.exposes = false;
+      this.setExposure(Number(event.target.value));
+    });
     find('#adapt').addEventListener('click', () => this.adapt());
     document.querySelectorAll('[name=shown]').forEach((button) => {
       button.addEventListener('input', () => this.setMode(Number(button.value)));
@@ -239,6 +252,7 @@ class Page {
     const uv = [0, 1].map((axis) => [1 - u - v, u, v].reduce((sum, weight, i) =>
       sum + weight * this.renderer.lightUvs[2 * this.renderer.indices[3 * triangle + i] + axis], 0) / 65535);
     const lux = this.renderer.lightAt(uv).map((light) => luminanceOf(light) * room.lux);
+    if (room.live) return {lux: lux.reduce((sum, value) => sum + value, 0), error: null, lights: lux};
     const {width, height, block} = room.atlas;
     const columns = Math.ceil(width / block), rows = Math.ceil(height / block);
     const cell = Math.min(rows - 1, Math.floor(uv[1] * height / block)) * columns +
@@ -259,6 +273,7 @@ class Page {
       return;
     }
     this.reading = hit;
+    this.live?.point(hit);
     this.showReading();
     this.placeReading();
   }
@@ -269,7 +284,8 @@ class Page {
       this.renderer.mix(this.lights.weights());
       this.lightIsOld = false;
     }
-    const {lux, error, lights} = this.illuminance(this.reading);
+    if (!this.renderer.isLit) return;
+    const {lux, error, lights} = this.live?.measured() ?? this.illuminance(this.reading);
     const box = find('#reading');
     const parts = lights.map((value, i) => [value, room.lights[i].patch === undefined
                                             ? room.lights[i].name.replaceAll('_', ' ') : 'daylight']);
@@ -277,7 +293,7 @@ class Page {
     for (const [value, name] of parts) sums.set(name, (sums.get(name) ?? 0) + value);
     const most = [...sums].sort((a, b) => b[1] - a[1]).filter(([, value]) => value > 0.005 * lux).slice(0, 4);
     box.replaceChildren(
-        element('b', {textContent: `${shortNumber(lux)} lx`}), ` ± ${shortNumber(error)}`,
+        element('b', {textContent: `${shortNumber(lux)} lx`}), error === null ? ' …' : ` ± ${shortNumber(error)}`,
         ...(most.length > 1 ? most.map(([name, value]) => `\n${shortNumber(value)}  ${name}`) : []));
     box.hidden = false;
   }
@@ -297,6 +313,7 @@ class Page {
   }
 
   forgetReading() {
+    if (this.reading) this.live?.point(null);
     this.reading = null;
     find('#reading').hidden = true;
     find('#cross').hidden = true;
@@ -318,6 +335,14 @@ class Page {
     const {eye, yaw, pitch, angle, flies} = this.walker;
     return encodeURIComponent(JSON.stringify({
       eye: eye.map(short), look: [yaw, pitch, angle].map(short), fly: flies ? 1 : 0, ev: short(this.stops),
+      ...this.lamps,
+    }));
+  }
+
+  /// The lights as they differ from those of the scene.
+  get lamps() {
+    const short = (value) => Number(value.toPrecision(5));
+    return {
       lights: Object.fromEntries(room.lights.flatMap((light, i) => {
         const {power, on, kelvin, tint} = this.lights.states[i];
         const same = tint.every((part, c) => part === light.tint[c]);
@@ -327,24 +352,27 @@ class Page {
       })),
       sky: this.lights.sky.on ? 1 : 0,
       hour: this.lights.hour ? [this.lights.hour.date, this.lights.hour.time] : null,
-    }));
+    };
+  }
+
+  /// What `lamps` has written, its lights as a list; throws where it has not.
+  lampsOf(state) {
+    const lights = Object.entries(state.lights ?? {}).map(([name, [power, on, colour]]) => {
+      const sound = areNumbers([power], 1) && power >= 0 &&
+          (Array.isArray(colour) ? areNumbers(colour, 3) : areNumbers([colour ?? 0], 1));
+      if (!sound) throw new Error('light');
+      return {name, power, on: Boolean(on), colour};
+    });
+    if (state.hour && !areNumbers(state.hour, 2)) throw new Error('hour');
+    return {...state, lights};
   }
 
   /// What `state` has written; throws where it has not.
   stateOf(text) {
-    const state = JSON.parse(decodeURIComponent(text));
-    const are = (list, count) => list.length === count &&
-        list.every((value) => Number.isFinite(value) && Math.abs(value) <= 1e30);
-    const lights = Object.entries(state.lights ?? {}).map(([name, [power, on, colour]]) => {
-      const sound = are([power], 1) && power >= 0 &&
-          (Array.isArray(colour) ? are(colour, 3) : are([colour ?? 0], 1));
-      if (!sound) throw new Error('light');
-      return {name, power, on: Boolean(on), colour};
-    });
-    const sound = are(state.eye, 3) && are(state.look, 3) && are([state.ev], 1) &&
-        (!state.hour || are(state.hour, 2));
+    const state = this.lampsOf(JSON.parse(decodeURIComponent(text)));
+    const sound = areNumbers(state.eye, 3) && areNumbers(state.look, 3) && areNumbers([state.ev], 1);
     if (!sound) throw new Error('numbers');
-    return {...state, lights};
+    return state;
   }
 
   restore() {
@@ -354,12 +382,21 @@ class Page {
       state = this.stateOf(location.hash.slice(1));
     } catch {
       tell('The link is damaged: this is the room as it was published.');
+      if (this.live) this.live.ownLamps = false;
       return;
     }
     this.walker.standAt(state.eye);
     [this.walker.yaw, this.walker.pitch, this.walker.angle] = state.look;
     this.walker.flies = Boolean(state.fly);
     find('#fly').setAttribute('aria-pressed', this.walker.flies);
+    this.takeLamps(state);
+    this.live?.lampsChanged();
+    this.setExposure(clamp(state.ev, -12, 14));
+    this.panel.show();
+    this.wake();
+  }
+
+  takeLamps(state) {
     for (const {name, power, on, colour} of state.lights) {
       const i = room.lights.findIndex((light) => light.name === name);
       if (i < 0) continue;
@@ -373,9 +410,15 @@ class Page {
                           time: clamp(state.hour[1], 0, room.hours.times.length - 1)};
     }
     this.lightIsOld = true;
-    this.setExposure(clamp(state.ev, -12, 14));
+  }
+
+  /// Lamps as another page has them.
+  setLamps(lamps) {
+    this.lights.states = new Lights().states;
+    this.takeLamps(this.lampsOf(lamps));
     this.panel.show();
     this.wake();
+    this.showReading();
   }
 
   async share() {

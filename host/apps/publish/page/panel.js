@@ -121,16 +121,21 @@ class Panel {
     return row;
   }
 
-  makePresets() {
+  ///   remove   of a mood by its name; none where they are not to be removed
+  makePresets(remove) {
     const section = find('#presets');
-    for (const preset of room.presets) {
+    section.querySelectorAll('.preset').forEach((button) => button.remove());
+    for (const [i, preset] of room.presets.entries()) {
       const button = element('button', {type: 'button', textContent: preset.name});
       button.addEventListener('click', () => {
         this.lights.apply(preset);
         this.show();
         this.changed('preset');
       });
-      section.append(button);
+      const drop = element('button', {type: 'button', textContent: '×', title: `Remove ${preset.name}`});
+      drop.setAttribute('aria-label', drop.title);
+      drop.addEventListener('click', () => remove(preset.name));
+      find('#keep').before(element('span', {className: 'preset'}, button, ...(remove && i > 0 ? [drop] : [])));
     }
     section.hidden = room.presets.length < 2;
   }

@@ -3,6 +3,8 @@
 /// Layers that every WebGL 2 has in an array of textures.
 const mostLayers = 256;
 const probeSide = 128;
+/// Irradiance in multiples of white.
+const evenLight = 1.8;
 
 class Renderer {
   constructor(canvas) {
@@ -20,6 +22,8 @@ class Renderer {
     this.scale = [Math.log2(1), Math.log2(1000)];
     this.unit = 1 / room.display.exposure;  // luminance of white when the page was opened
     this.drawCalls = 0;
+    this.isLit = !room.live;  // else an even light stands for that which is to come
+    this.rest = null;         // an exact picture of where the viewer rests
   }
 
   async load(archive) {
@@ -27,6 +31,7 @@ class Renderer {
     this.roomProgram = this.program(shaderRoom);
     this.skyProgram = this.program(shaderSky);
     this.mixProgram = this.program(shaderMix);
+    this.copyProgram = this.program(shaderCopy);
     this.screen = new Screen(gl, this.program(shaderDisplay));
     this.emptyVertices = gl.createVertexArray();
     this.noProbe = gl.createTexture();
@@ -151,21 +156,29 @@ class Renderer {
       gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
       gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
       for (let layer = 0; layer < count; ++layer) {
-        const texels = await archive.array(`light${first + layer}`, width);
-        this.layers.push(texels);
+        this.layers.push(room.live ? new Uint32Array(width * height)
+                                   : await archive.array(`light${first + layer}`, width));
         gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
         gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, layer, width, height, 1, gl.RGB,
-                         gl.UNSIGNED_INT_5_9_9_9_REV, texels);
+                         gl.UNSIGNED_INT_5_9_9_9_REV, this.layers.at(-1));
       }
       this.maps.push({texture, first, count});
     }
-    this.light = this.texture(width, height, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, null, gl.LINEAR);
-    this.lightTarget = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.lightTarget);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.light, 0);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    this.light = this.lightTarget(width, height);
+    this.fresh = room.live ? this.lightTarget(width, height) : this.light;  // that becomes it
     this.weights = gl.createTexture();
     this.emitters = gl.createTexture();
+  }
+
+  /// A texture of light, and what draws into it.
+  lightTarget(width, height, filter = this.gl.LINEAR) {
+    const gl = this.gl;
+    const texture = this.texture(width, height, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, null, filter);
+    const target = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return {texture, target, width, height};
   }
 
   /// Patches of the sky have a texel each degree; a picture of surroundings is a texture.
@@ -200,25 +213,26 @@ class Renderer {
     }
   }
 
-  /// Mixes the light maps.
-  ///   weights   of each light: what its light at power 1 is multiplied by, linear RGB
-  mix(weights) {
+  /// Sums layers of light.
+  ///   maps      arrays of textures
+  ///   weights   of each layer, linear RGB
+  ///   to        as lightTarget makes it
+  ///   ground    what is there without them
+  sum(maps, weights, to, ground = [0, 0, 0]) {
     const gl = this.gl;
-    this.lit = weights;
     const shining = weights.map((_, i) => i).filter((i) => weights[i].some((part) => part > 0));
-    const rows = shining.flatMap((i) => [
-      ...scaled(weights[i], room.lights[i].brightest / this.unit), i % mostLayers]);
+    const rows = shining.flatMap((i) => [...weights[i], i % mostLayers]);
     gl.bindTexture(gl.TEXTURE_2D, this.weights);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, Math.max(1, shining.length), 1, 0, gl.RGBA,
                   gl.FLOAT, Float32Array.from(rows.length ? rows : [0, 0, 0, 0]));
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
       gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
     }
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.lightTarget);
-    gl.viewport(0, 0, room.atlas.width, room.atlas.height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, to.target);
+    gl.viewport(0, 0, to.width, to.height);
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.CULL_FACE);
-    gl.clearColor(0, 0, 0, 1);
+    gl.clearColor(...ground, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE);
@@ -226,7 +240,7 @@ class Renderer {
     gl.useProgram(program);
     gl.bindVertexArray(this.emptyVertices);
     this.bind(0, gl.TEXTURE_2D, this.weights, uniforms.uWeights);
-    for (const {texture, first, count} of this.maps) {
+    for (const {texture, first, count} of maps) {
       const from = shining.findIndex((i) => i >= first);
       const of = shining.filter((i) => i >= first && i < first + count).length;
       if (of === 0) continue;
@@ -237,10 +251,26 @@ class Renderer {
     }
     gl.disable(gl.BLEND);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
 
+  /// Mixes the light maps.
+  ///   weights   of each light: what its light at power 1 is multiplied by, linear RGB
+  ///   fades     whether `fade` is to bring the new light into view
+  mix(weights, fades = false) {
+    const gl = this.gl;
+    this.lit = weights;
+    if (this.isLit) {
+      this.sum(this.maps, weights.map((weight, i) => scaled(weight, room.lights[i].brightest / this.unit)),
+               this.fresh);
+    } else {
+      this.sum([], [], this.fresh, room.display.white.map((part) => evenLight * part));
+    }
+    if (!fades) this.fade(1);
+    this.mixRest();
     const emitted = [0, 0, 0, 0];
     for (const {layer, radiance} of room.emitters) {
-      emitted.push(...radiance.map((part, c) => part * weights[layer][c] / this.unit), 0);
+      const light = radiance.map((part, c) => part * weights[layer][c] / this.unit);
+      emitted.push(...(this.isLit ? light : light.map((part, c) => (part > 0 ? room.display.white[c] : 0))), 0);
     }
     gl.bindTexture(gl.TEXTURE_2D, this.emitters);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, emitted.length / 4, 1, 0, gl.RGBA, gl.FLOAT,
@@ -250,6 +280,98 @@ class Renderer {
     }
     this.mixSky(weights);
     this.probeIsOld = true;
+  }
+
+  /// Brings the newest mix into view: this part of it.
+  fade(part) {
+    if (this.fresh === this.light) return;
+    const gl = this.gl, {program, uniforms} = this.copyProgram;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.light.target);
+    gl.viewport(0, 0, this.light.width, this.light.height);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.CULL_FACE);
+    gl.enable(gl.BLEND);
+    gl.blendColor(0, 0, 0, part);
+    gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
+    gl.useProgram(program);
+    gl.bindVertexArray(this.emptyVertices);
+    this.bind(0, gl.TEXTURE_2D, this.fresh.texture, uniforms.uPicture);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.disable(gl.BLEND);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    if (part === 1) this.probeIsOld = true;
+  }
+
+  /// Gives each light map one colour.
+  fillMaps(colours) {
+    const {width, height} = room.atlas;
+    colours.forEach((colour, i) => {
+      this.layers[i].fill(rgb9e5(...colour));
+      const {texture, first} = this.maps[Math.floor(i / mostLayers)], gl = this.gl;
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, i - first, width, height, 1, gl.RGB,
+                       gl.UNSIGNED_INT_5_9_9_9_REV, this.layers[i]);
+    });
+  }
+
+  /// Gives a rectangle of the light maps other texels.
+  ///   texels   of each light in turn, rows of `side` texels
+  setTile(x, y, side, texels) {
+    const gl = this.gl, {width, height} = room.atlas;
+    const columns = Math.min(side, width - x), rows = Math.min(side, height - y);
+    gl.pixelStorei(gl.UNPACK_ROW_LENGTH, side);
+    this.layers.forEach((layer, i) => {
+      const own = texels.subarray(i * side * side, (i + 1) * side * side);
+      for (let row = 0; row < rows; ++row) {
+        layer.set(own.subarray(row * side, row * side + columns), (y + row) * width + x);
+      }
+      const {texture, first} = this.maps[Math.floor(i / mostLayers)];
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+      gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, x, y, i - first, columns, rows, 1, gl.RGB,
+                       gl.UNSIGNED_INT_5_9_9_9_REV, own);
+    });
+    gl.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
+  }
+
+  /// Fades from what is shown to a picture of the same view.
+  ///   exponents   of two, by which the layers are too bright
+  ///   weigh       gives the weights of the layers
+  ///   halves      numbers of the layers: RGB, row 0 at the bottom
+  setRest({width, height, samples, exponents}, weigh, halves) {
+    const gl = this.gl, before = this.rest?.shown === 1 ? this.rest.light : null;
+    this.dropRest(before);
+    const layers = gl.createTexture(), count = exponents.length;
+    gl.bindTexture(gl.TEXTURE_2D_ARRAY, layers);
+    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGB16F, width, height, count);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, filter, gl.NEAREST);
+    }
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2);
+    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, count, gl.RGB, gl.HALF_FLOAT,
+                     halves);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+    this.rest = {layers, samples, exponents, weigh, before, shown: 0,
+                 light: this.lightTarget(width, height, gl.NEAREST)};
+    this.mixRest();
+  }
+
+  mixRest() {
+    if (!this.rest) return;
+    const {layers, exponents, weigh, light} = this.rest;
+    this.sum([{texture: layers, first: 0, count: exponents.length}],
+             weigh().map((weight, i) => scaled(weight, 2 ** -exponents[i] / this.unit)), light);
+  }
+
+  ///   kept   a light of it that is still needed
+  dropRest(kept = null) {
+    if (!this.rest) return;
+    const gl = this.gl, {layers, light, before} = this.rest;
+    gl.deleteTexture(layers);
+    for (const {texture, target} of [light, before].filter((one) => one && one !== kept)) {
+      gl.deleteTexture(texture);
+      gl.deleteFramebuffer(target);
+    }
+    this.rest = null;
   }
 
   mixSky(weights) {
@@ -310,7 +432,7 @@ class Renderer {
               u.uSurroundings);
     gl.bindVertexArray(this.vertices);
     const drawParts = (clear, layers) => {
-      this.bind(0, gl.TEXTURE_2D, this.light, u.uLight);
+      this.bind(0, gl.TEXTURE_2D, this.light.texture, u.uLight);
       for (const part of room.parts) {
         if (part.clear !== clear) continue;
         gl.uniform1i(u.uInteraction, part.interaction);
@@ -436,10 +558,12 @@ class Renderer {
     this.drawCalls = 0;
     this.updateProbe();
     this.fit();
-    const {width, height} = this.canvas;
+    const {width, height} = this.canvas, rest = this.mode === 0 ? this.rest : null;
     this.screen.begin(width, height);
-    this.drawView(this.cameraOf(walker, width / height), this.mode);
-    this.screen.show(this.mode === 2 ? null : this.exposure);
+    if (!rest || (rest.shown < 1 && !rest.before)) {
+      this.drawView(this.cameraOf(walker, width / height), this.mode);
+    }
+    this.screen.show(this.mode === 2 ? null : this.exposure, rest);
     ++this.drawCalls;
   }
 

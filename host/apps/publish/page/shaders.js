@@ -178,3 +178,12 @@ void main() {
   fragment = vec4(min(sum, 60000.0), 1.0);
 }`,
 };
+
+const shaderCopy = {
+  vertex: shaderMix.vertex,
+  fragment: `#version 300 es
+precision highp float;
+uniform sampler2D uPicture;
+out vec4 fragment;
+void main() { fragment = texelFetch(uPicture, ivec2(gl_FragCoord.xy), 0); }`,
+};

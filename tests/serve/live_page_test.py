@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""The page of `photile serve` in Chromium, beside `photile render` and `photile measure`.
+
+Usage: live_page_test.py page PHOTILE SOURCE_FOLDER
+"""
+
+import base64
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import time
+import urllib.parse
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "publish"))
+import page_test  # noqa: E402
+from page_test import SET_POWER, SIZE, channels_of, near, np, photile  # noqa: E402
+from served import Served  # noqa: E402
+
+MADE = ["--quality", "draft", "--photons", "50k", "-q"]
+EYE, FORWARD = [3, 1.6, 4.5], [0, 0, -1]
+# Of a power, as a light shines, a half float is off by half a unit of its eleventh bit at most.
+HALF = 2 ** -11
+
+BYTES = """
+const bytes = new Uint8Array(arguments[0].buffer);
+let text = '';
+for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+return btoa(text);
+"""
+# The exact picture as it is mixed: linear RGB radiance, rows from below.
+RESTING = """
+const {gl, rest, unit} = page.renderer;
+const {target, width, height} = rest.light;
+const texels = new Float32Array(4 * width * height);
+gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
+gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+arguments = [texels.map((value) => value * unit)];
+""" + BYTES
+
+
+class Browser(page_test.Browser):
+    def __init__(self):
+        super().__init__()
+        self.run_command("Network.emulateNetworkConditions",
+                         {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1})
+
+    def visit(self, url, state=""):
+        began = time.monotonic()
+        self.driver.get(url + (f"#{state}" if state else ""))
+        self.until("return document.getElementById('loading') === null")
+        self.run(page_test.COUNT_FRAMES)
+        return time.monotonic() - began
+
+    def until(self, script, seconds=90):
+        for _ in range(20 * seconds):
+            value = self.run(script)
+            if value:
+                return value
+            time.sleep(0.05)
+        raise AssertionError(f"never: {script}")
+
+    def stand(self, eye=EYE, forward=FORWARD):
+        self.run(page_test.STAND, eye, forward)
+        self.until("return page.renderer.rest === null")
+
+    def exact(self):
+        self.until("const {rest} = page.renderer; return document.getElementById('work').hidden && "
+                   "rest?.shown === 1 && rest.number === page.live.picture")
+        text = self.run(RESTING)
+        return np.frombuffer(base64.b64decode(text), np.float32).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
+
+
+def check_first_light(browser):
+    """Something is to be seen at once, never a black picture, and light comes to it."""
+    shown = browser.run("""
+page.renderer.draw(page.walker);
+const {gl, canvas} = page.renderer, texels = new Uint8Array(4 * canvas.width * canvas.height);
+gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, texels);
+return [page.renderer.isLit, texels.reduce((sum, value) => sum + value) / texels.length];""")
+    print(f"lit, mean grey: {shown}")
+    assert shown[1] > 100, shown
+    browser.until("return page.renderer.isLit")
+    browser.until("return page.live.fading <= 0")
+
+
+def check_picture(browser, folder, scene):
+    """The picture at rest is that of `photile render`, as half floats, and sliders mix it."""
+    browser.stand()
+    found = browser.exact()
+    angle = math.degrees(browser.run("return page.walker.angle"))
+    rendered, relit = folder / "hall.exr", folder / "relit.exr"
+    photile("render", scene, "-o", rendered, "--size", "%dx%d" % SIZE, "--field-of-view", angle, "--eye",
+            ",".join(map(str, EYE)), "--look-at", ",".join(str(e + f) for e, f in zip(EYE, FORWARD)), *MADE)
+
+    def compare(what, picture):
+        expected = channels_of(picture, "RGB")
+        error = np.abs(found - expected) / np.maximum(expected, 1e-3 * expected.max())
+        print(f"{what}: off by {error.max():.2g}", flush=True)
+        assert error.max() < 4 * HALF, what  # of two layers, and of their sum
+
+    compare("exact picture", rendered)
+    browser.run(SET_POWER, "left", 0.3)
+    found = browser.exact()
+    photile("relight", rendered, "--light", "left=x0.3", "-o", relit)
+    compare("a slider moved", relit)
+    # What is drawn from light maps beside it.
+    browser.run("page.renderer.dropRest()")
+    drawn = browser.radiance().astype(float)
+    page_test.compare_pixels("light maps", drawn, channels_of(relit, "RGB"), np.ones(drawn.shape[:2], bool))
+    browser.run(SET_POWER, "left", 1)
+
+
+def check_lux(browser, folder, scene):
+    browser.stand([3, 1.6, 3.5], [0, -0.6, -0.8])
+    hit = browser.run(page_test.CLICK, 160, 100)
+    browser.mouse("Pressed", 160, 100)
+    browser.mouse("Released", 160, 100)
+    early = browser.until("return page.live.repeats.length >= 2 && page.live.measured()")
+    late = browser.until("return page.live.repeats.length >= 60 && page.live.measured()")
+    assert late["error"] < early["error"] or early["error"] == 0, (early, late)
+    points = folder / "click.pts"
+    points.write_text(" ".join(f"{number:.7g}" for number in hit["place"] + hit["normal"]) + "\n")
+    photile("measure", scene, "--points", points, "-o", folder / "click.json", "-q", "--photons", "1M")
+    sensor = json.loads((folder / "click.json").read_text())["grids"][0]["sensors"][0]
+    print(f"lux {late['lux']:.1f} +- {late['error']:.1f}, measured {sensor['lux']:.1f} +- {sensor['standard_error']:.1f}")
+    near(late["lux"], sensor["lux"], 0.01 * sensor["lux"] + 4 * np.hypot(late["error"], sensor["standard_error"]))
+    text = browser.run("return document.getElementById('reading').textContent")
+    assert "±" in text and "left" in text and "right" in text, text
+    browser.press("Escape")
+    browser.until("return page.live.repeats.length === 0")
+
+
+def check_walk(browser):
+    browser.stand()
+    browser.exact()
+    browser.hold("w", 0.4, "KeyW")
+    assert browser.viewer()["eye"][2] < EYE[2] - 0.1
+    browser.exact()
+
+
+def check_moods(browser, scene):
+    moods = scene.with_suffix(".moods.json")
+    browser.run("page.lights.setKelvin(1, 3000)")
+    browser.run(SET_POWER, "left", 0.25)
+    browser.run("""
+const form = document.getElementById('keep');
+form.elements.mood.value = 'evening';
+form.querySelector('button').click();""")
+    browser.until("return room.presets.some((preset) => preset.name === 'evening')")
+    kept = json.loads(moods.read_text())["moods"]["evening"]
+    assert kept["right"]["kelvin"] == 3000 and kept["left"]["on"], kept
+    full = browser.run("return room.lights[0].power")
+    near(kept["left"]["power"] / full, 0.25, 1e-3)
+    buttons = "[...document.querySelectorAll('#presets button')]"
+    browser.run(f"{buttons}[0].click()")
+    near(browser.run("return page.lights.states[0].power") / full, 1, 1e-6)
+    browser.run(f"{buttons}.find((one) => one.textContent === 'evening').click()")
+    near(browser.run("return page.lights.states[0].power") / full, 0.25, 1e-3)
+    assert browser.run("return page.lights.states[1].kelvin") == 3000
+    browser.run(f"{buttons}.find((one) => one.title === 'Remove evening').click()")
+    browser.until("return !room.presets.some((preset) => preset.name === 'evening')")
+    assert "evening" not in json.loads(moods.read_text())["moods"]
+    browser.run(f"{buttons}[0].click()")
+
+
+def check_two(browser, url):
+    """A second page has the lamps of the first, and its own eye; one that a link opened gives everybody its lamps."""
+    browser.run(SET_POWER, "left", 0.5)
+    time.sleep(0.3)
+    first = browser.driver.current_window_handle
+    browser.driver.switch_to.new_window("tab")
+    browser.visit(url)
+    half = "return Math.abs(page.lights.states[0].power / room.lights[0].power - {}) < 0.01"
+    browser.until(half.format(0.5))
+    state = {"eye": [2, 1.5, 3], "look": [0.3, 0, 1], "ev": 0.5, "lights": {"left": [browser.run(
+        "return 0.75 * room.lights[0].power"), 1, 2700]}, "hour": None}
+    browser.driver.get("about:blank")
+    browser.visit(url, urllib.parse.quote(json.dumps(state)))
+    browser.until(half.format(0.75))
+    near(browser.viewer()["eye"], [2, 1.5, 3], 1e-3)
+    assert browser.run("return page.stops") == 0.5
+    browser.until("return page.renderer.rest")
+    browser.driver.close()
+    browser.driver.switch_to.window(first)
+    browser.until(half.format(0.75))
+    assert browser.run("return page.lights.states[0].kelvin") == 2700
+    assert browser.viewer()["eye"] != [2, 1.5, 3]
+
+
+def test_page(browser, folder):
+    scene = page_test.obj_room(folder)
+    with Served(page_test.PHOTILE, scene, *MADE) as served:
+        print(f"the room is there after {browser.visit(served.url):.2f} s")
+        check_first_light(browser)
+        check_picture(browser, folder, scene)
+        check_lux(browser, folder, scene)
+        check_walk(browser)
+        check_moods(browser, scene)
+        check_two(browser, served.url)
+        messages = browser.messages()
+        assert not messages, messages
+
+
+def main():
+    if not all(pathlib.Path(file).exists() for file in (page_test.CHROMIUM, page_test.DRIVER)):
+        print("skipped: no chromium with its driver; apt-get install chromium chromium-driver")
+        return 77
+    browser = Browser()
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            test_page(browser, pathlib.Path(folder))
+    finally:
+        browser.driver.quit()
+    return 0
+
+
+if __name__ == "__main__":
+    page_test.PHOTILE, page_test.SOURCE = sys.argv[2], pathlib.Path(sys.argv[3])
+    sys.exit(main())
