@@ -47,15 +47,18 @@ page.frame = (time) => {
 };
 """
 KEY_CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27, "Tab": 9,
-             "Shift": 16}
+             "Shift": 16, "F2": 113, "[": 219, "]": 221, "PageDown": 34}
 
-RADIANCE = """
-const [width, height] = arguments;
-const bytes = new Uint8Array(page.renderer.radiance(page.walker, width, height, 4).buffer);
+BYTES = """
+const bytes = new Uint8Array(arguments[0].buffer);
 let text = '';
 for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
 return btoa(text);
 """
+RADIANCE = """
+const [width, height] = arguments;
+arguments = [page.renderer.radiance(page.walker, width, height, 4)];
+""" + BYTES
 # Paints all that is not matt black, lamps included, and leaves reflections out, and back: pixels that do
 # not change see matt surfaces alone. Normal maps, which a page leaves out, count as not matt.
 SHOW_MATT_ONLY = """
@@ -421,8 +424,14 @@ def check_keyboard(browser):
     browser.press("1")
     near(browser.viewer()["eye"], browser.run("return room.cameras[0].position"), 1e-6)
     browser.press("f")
+    browser.press("F2")
+    assert browser.run("return document.getElementById('panel').hidden")
+    browser.press("F2")
+    assert not browser.run("return document.getElementById('panel').hidden")
     browser.press("h")
     assert browser.run("return document.getElementById('about').open")
+    text = browser.run("return document.getElementById('frames').textContent")
+    assert "320 × 200" in text and "draw calls: " in text and "ms of JavaScript" in text, text
     browser.press("Escape")
     assert not browser.run("return document.getElementById('about').open")
     # A slider has the keys while it has the focus: it moves, and nobody walks.
@@ -432,6 +441,28 @@ def check_keyboard(browser):
     assert browser.run("return page.lights.states[0].power < room.lights[0].power")
     assert browser.viewer()["eye"] == MIDDLE
     browser.run("document.querySelector('#presets button').click(); page.canvas.focus(); page.panel.unfold(false)")
+
+
+def check_orbit(browser):
+    """The right button turns around what was in the middle of the view, which stays there: on foot and in flight."""
+    for flies in (False, True):
+        browser.run(STAND, MIDDLE, [0.6, 0, -0.8])
+        browser.run("page.walker.flies = arguments[0]", flies)
+        place = browser.run("return page.meet(160, 100).place")
+        browser.mouse("Pressed", 160, 100, button="right")
+        browser.mouse("Moved", 200, 110, button="right", buttons=2)
+        browser.mouse("Released", 200, 110, button="right")
+        browser.rest()
+        near(browser.run("return page.meet(160, 100).place"), place, 0.02)
+        eye = browser.viewer()["eye"]
+        assert math.dist(eye, MIDDLE) > 0.3, eye
+        assert abs(math.dist(eye, place) / math.dist(MIDDLE, place) - 1) < (0.01 if flies else 0.1), (eye, place)
+    assert browser.run("return document.querySelectorAll('#rings i').length") == 0
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.run_command("Input.dispatchMouseEvent", {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0,
+                                                     "deltaY": -100, "modifiers": 2})
+    browser.rest()
+    assert browser.viewer()["angle"] == 1  # that is the browser's zoom
 
 
 def check_mouse(browser):
@@ -446,6 +477,7 @@ def check_mouse(browser):
                         {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0, "deltaY": -100})
     browser.rest()
     near(browser.viewer()["angle"], math.exp(-0.08), 1e-6)
+    check_orbit(browser)
     browser.run(STAND, MIDDLE, [0, -0.8, -0.6])
     for kind in ("Pressed", "Released"):
         browser.mouse(kind, 160, 100)
@@ -474,7 +506,7 @@ def check_touch(browser):
     browser.touch("End")
     assert " lx" in browser.run("return document.getElementById('reading').textContent")
     assert not browser.run("return document.getElementById('reading').hidden")
-    browser.run("page.forgetReading(); document.getElementById('pad').style.display = 'block'")
+    browser.run("page.points.removeAll(); document.getElementById('pad').style.display = 'block'")
     x, y, width = browser.run("""
 const box = document.getElementById('pad').getBoundingClientRect();
 return [box.left + box.width / 2, box.top + box.height / 2, box.width];""")
@@ -505,7 +537,8 @@ window.dispatchEvent(new Event('gamepadconnected'));
 def check_link(browser, page):
     browser.run(STAND, [2, 1.5, 3], [0.6, 0, -0.8])
     browser.run(SET_POWER, "left", 0.5)
-    browser.run("page.lights.setKelvin(1, 2700); page.setExposure(1.5); document.getElementById('link').click()")
+    browser.run("page.lights.setKelvin(1, 2700); page.lights.states[1].solo = true; page.setExposure(1.5);"
+                "document.getElementById('link').click()")
     time.sleep(0.2)
     state = browser.run("return location.hash.slice(1)")
     before = browser.viewer()
@@ -516,6 +549,7 @@ def check_link(browser, page):
     power, kelvin, stops = browser.run(
         "return [page.lights.states[0].power / room.lights[0].power, page.lights.states[1].kelvin, page.stops]")
     near([power, kelvin, stops], [0.5, 2700, 1.5], 1e-3)
+    assert browser.run("return page.lights.states.map((state) => state.solo)") == [False, True]
     sound = '{"eye":[2,1.5,3],"look":[0,0,1],"ev":1,"lights":{"left":[1,1,2700]},"hour":null}'
     for old, new in (("{", "{damaged"), ("[0,0,1]", "[0,0]"), ("1,1,2700", "1e999,1,0"), ("1,1,2700", '"1",1,0'),
                      ("[1,1,2700]", "null"), ("2700", "[1,1]"), ("2700", "[1,1,1e999]"), ("2700", '"red"'),
@@ -563,17 +597,171 @@ def check_pictures(browser, folder):
     for x, y in places:
         near(picture[y, x], neutral_srgb(np.array(white) * radiance[y, x].astype(float)), 3 / 255)
     browser.press("v")
-    ends = browser.run("return [...document.querySelectorAll('#legend span')].map((e) => parseFloat(e.textContent.replace(',', '')))")
+    middles = np.array(browser.run("""
+return [...document.querySelectorAll('#legend span')].map(
+    ({textContent: text}) => parseFloat(text.replace(',', '')) * (text.endsWith('k') ? 1000 : 1));"""))
     assert not browser.run("return document.getElementById('legend').hidden")
-    near(np.array(ends) / ends[0], [1, 10, 100, 1000], 1e-6)
+    near(middles / middles[0], np.arange(1, 16, 2), 1e-6)
+    assert middles[0] == float(f"{middles[0]:.1g}"), middles  # round
     colours = saved_picture(browser, folder)
     palette = np.array(browser.run("return room.palette")) / 255
-    for x, y in places:
-        lux = browser.run(CLICK, x + 0.5, y + 0.5)["lux"]
-        place = np.clip(np.log10(lux / ends[0]) / 3, 0, 1) * 255
-        near(colours[y, x], palette[int(round(place))], 8 / 255)
+    top = 2 * (middles[3] + middles[0])
+    lux = [browser.run(CLICK, x + 0.5, y + 0.5)["lux"] for x, y in places]
+
+    def check_colours(share_of):
+        for value, (x, y) in zip(lux, places):
+            near(colours[y, x], palette[int(round(255 * np.clip(share_of(value / top), 0, 1)))], 8 / 255)
+
+    check_colours(lambda share: share)
+    choose = """
+const [field, value] = arguments;
+document.getElementById(field).value = value;
+document.getElementById(field).dispatchEvent(new Event('input'));"""
+    browser.run(choose, "contours", 1)
+    colours = saved_picture(browser, folder)
+    check_colours(lambda share: (np.floor(share * 8) + 0.5) / 8)
+    # Isolines and bands lie over the picture, around the middles of the steps.
+    top = 0.9 * top
+    browser.run(choose, "top", top)
+    share = np.array(browser.run("return page.renderer.seenLux(page.walker)"))
+    assert len(share) == 96 * 64 and 0.01 < (share > top).mean() < 0.2
+    steps = np.frombuffer(base64.b64decode(browser.run(
+        "arguments = [page.renderer.radiance(page.walker, 320, 200, 1, 2)];" + BYTES)), np.float32).reshape(200, 320, 3)
+    steps = steps[:, :, 0] * browser.run("return room.lux") / top * 8
+    off = np.abs(steps % 1 - 0.5)
+    for contours, drawn, left in ((2, None, 0.25), (3, 0.08, 0.12)):
+        browser.run(choose, "contours", contours)
+        colours = saved_picture(browser, folder)
+        changed = np.abs(colours - picture).max(axis=2) > 0.02
+        if drawn:
+            assert changed[(off < drawn) & (steps < 8)].mean() > 0.97
+        assert 0.01 < changed.mean() < 0.3 and changed[off > left].mean() < 0.01
+        on = changed & (off < 0.1)
+        near(np.abs(colours[on] - palette[np.clip(np.round(255 * steps[on] / 8), 0, 255).astype(int)]).mean(), 0, 0.02)
+    browser.run(choose, "top", "")
+    browser.run(choose, "contours", 0)
     browser.press("v")
     assert browser.run("return document.getElementById('legend').hidden")
+
+
+def saved_text(browser, folder, name, button):
+    browser.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+    browser.run("document.getElementById(arguments[0]).click()", button)
+    for _ in range(100):
+        if (folder / name).exists() and (folder / name).stat().st_size > 0:
+            return (folder / name).read_text()
+        time.sleep(0.05)
+    raise AssertionError(f"{name} was not saved")
+
+
+def check_hours(browser):
+    hour = "return [page.lights.hour.date, 60 * room.hours.times[0] + 30 * page.lights.hour.time]"
+    date, minutes = browser.run(hour)
+    browser.hold("]", 0, "BracketRight")
+    near(browser.run(hour), [date, minutes + 15], 1e-6)
+    browser.run_command("Input.dispatchKeyEvent", {"type": "rawKeyDown", "key": "{", "code": "BracketLeft",
+                                                   "windowsVirtualKeyCode": 219, "modifiers": 8})
+    near(browser.run(hour), [date, minutes - 45], 1e-6)
+    browser.press("PageDown")
+    near(browser.run(hour), [date + 1, minutes - 45], 1e-6)
+
+
+def check_points(browser, folder, scene, *options):
+    """Clicks stay as rings and rows, and `photile measure` finds the saved ones where they are, with the same lux."""
+    browser.run("page.view(0); page.wake()")
+    browser.rest()
+    places = [(150, 90), (90, 110), (240, 120)]
+    for x, y in places:
+        browser.mouse("Pressed", x, y)
+        browser.mouse("Released", x, y)
+    rings = browser.run("return [...document.querySelectorAll('#rings i')].map((ring) => [ring.textContent, "
+                        "parseFloat(ring.style.left), parseFloat(ring.style.top)])")
+    assert [ring[0] for ring in rings] == ["1", "2", "3"], rings
+    near([ring[1:] for ring in rings], places, 1)
+    rows = "return [...document.querySelectorAll('#points li')].map((row) => row.textContent)"
+    browser.run("document.querySelectorAll('#points .drop')[1].click()")
+    full = browser.run("return page.points.read(page.points.all[0]).lux[0]")
+    browser.run("""
+document.getElementById('maintenance').value = 0.8;
+document.getElementById('target').value = '';
+document.getElementById('lux').value = arguments[0];
+document.getElementById('target').dispatchEvent(new Event('input'));""", 0.9 * full)
+    first, second = browser.run(rows)
+    assert first.startswith("1") and second.startswith("3") and "below" in first, (first, second)
+    assert browser.run("return document.querySelectorAll('#rings i').length") == 2
+    table = saved_text(browser, folder, "points.csv", "save-csv").splitlines()
+    assert table[0] == ("point,x,y,z,dx,dy,dz,lux,standard_error,lux left,standard_error left,lux right,"
+                        "standard_error right,lux sky,standard_error sky"), table[0]
+    points = [list(map(float, line.split(","))) for line in table[1:]]
+    near(points[0][7], 0.8 * full, 1e-3 * full)
+    saved_text(browser, folder, "points.pts", "save-pts")
+    photile("measure", scene, "--points", folder / "points.pts", "-o", folder / "points.json", "-q", "--photons", "1M",
+            *options)
+    sensors = json.loads((folder / "points.json").read_text())["grids"][0]["sensors"]
+    for point, sensor in zip(points, sensors, strict=True):
+        print(f"lux {point[7]:.1f} +- {point[8]:.1f}, measured {0.8 * sensor['lux']:.1f}")
+        near(point[1:4], sensor["position"], 1e-6)
+        near(point[7], 0.8 * sensor["lux"], 0.03 * point[7] + 4 * np.hypot(point[8], sensor["standard_error"]))
+    browser.run("document.getElementById('no-points').click()")
+    assert browser.run(rows) == [] and browser.run("return document.getElementById('points').hidden")
+
+
+def check_lamps(browser):
+    """Solo leaves one lamp alight, and a colour keeps the power."""
+    weights = "return page.lights.weights()"
+    left, right = browser.run(weights)
+    solo = "document.querySelectorAll('.solo')[arguments[0]].click()"
+    browser.run("page.lights.states[0].on = false")
+    browser.run(solo, 0)
+    near(browser.run(weights), [left, [0, 0, 0]], 1e-12)  # though it is off
+    browser.run(solo, 0)
+    near(browser.run(weights), [[0, 0, 0], right], 1e-12)
+    browser.run("page.lights.states[0].on = true")
+    browser.run("""
+const picker = document.querySelector('input[type=color]');
+picker.value = '#ff8040';
+picker.dispatchEvent(new Event('input', {bubbles: true}));
+picker.dispatchEvent(new Event('change', {bubbles: true}));""")
+    colour = np.array([255, 128, 64]) / 255
+    linear = np.where(colour <= 0.04045, colour / 12.92, ((colour + 0.055) / 1.055) ** 2.4)
+    emitted = linear * browser.run("return room.lights[0].color")
+    near(browser.run(weights)[0], left[0] * linear / (emitted @ [0.2126, 0.7152, 0.0722]), 1e-9 * left[0])
+    assert browser.run("return document.querySelector('input[type=color]').value") == "#ff8040"
+    browser.run("document.querySelector('.colour button').click()")
+    near(browser.run(weights)[0], left, 1e-12)
+
+
+def check_undo(browser):
+    """Each change of the lamps is taken back and made again: a drag of a slider is one."""
+    browser.run("page.panel.unfold(true); document.getElementById('light0').scrollIntoView({block: 'center'})")
+    start = browser.run("return page.lights.states[0].power")
+    x, y, width = browser.run("""
+const box = document.getElementById('light0').getBoundingClientRect();
+return [box.left, box.top + box.height / 2, box.width];""")
+    browser.mouse("Pressed", x + 0.8 * width, y)
+    for share in (0.7, 0.5, 0.3):
+        browser.mouse("Moved", x + share * width, y, buttons=1)
+        time.sleep(0.05)
+    browser.mouse("Released", x + 0.3 * width, y)
+    dimmed = browser.run("return page.lights.states[0].power")
+    assert dimmed < 0.5 * start, (dimmed, start)
+    browser.run("document.querySelectorAll('.solo')[1].click(); page.canvas.focus()")
+
+    def press(key, shift=0):
+        event = {"key": key, "code": f"Key{key.upper()}", "windowsVirtualKeyCode": ord(key.upper()),
+                 "modifiers": 2 + shift}
+        browser.run_command("Input.dispatchKeyEvent", {"type": "rawKeyDown", **event})
+        browser.run_command("Input.dispatchKeyEvent", {"type": "keyUp", **event})
+        return browser.run("const {lights} = page; return [lights.states[0].power, lights.anySolo, "
+                           "document.querySelectorAll('.solo')[1].getAttribute('aria-pressed')]")
+
+    assert press("z") == [dimmed, False, "false"]
+    assert press("z") == [start, False, "false"]
+    assert press("y") == [dimmed, False, "false"]
+    assert press("z", 8) == [dimmed, True, "true"]
+    browser.run("document.querySelector('#presets button').click()")
+    assert press("z") == [dimmed, True, "true"]
+    browser.run("document.querySelector('#presets button').click(); page.panel.unfold(false)")
 
 
 def check_presets(browser):
@@ -585,12 +773,17 @@ def check_presets(browser):
 
 def test_controls(browser, folder):
     page = folder / "hall.html"
-    photile("publish", obj_room(folder), "-o", page, "--quality", "draft", "--photons", "50k", "--texel", "0.2", "-q")
+    scene, made = obj_room(folder), ["--quality", "draft", "--photons", "50k", "--texel", "0.2", "-q"]
+    photile("publish", scene, "-o", page, *made)
     browser.open(page)
-    for check in (check_keyboard, check_mouse, check_touch, check_gamepad, check_presets):
+    for check in (check_keyboard, check_mouse, check_touch, check_gamepad, check_presets, check_lamps, check_undo):
         check(browser)
     check_pictures(browser, folder)
     check_link(browser, page)
+    photile("publish", scene, "-o", page, "--set", "up=z", *made, "--sky", "patches=145", "--site", "52.5,13.4,1")
+    browser.open(page)
+    check_hours(browser)
+    check_points(browser, folder, scene, "--set", "up=z")
 
 
 # The light of a frame and what the canvas shows of it, rows from below.

@@ -15,7 +15,7 @@ import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "publish"))
 import page_test  # noqa: E402
-from page_test import SET_POWER, SIZE, channels_of, near, np, photile  # noqa: E402
+from page_test import BYTES, SET_POWER, SIZE, channels_of, near, np, photile  # noqa: E402
 from served import Served  # noqa: E402
 
 MADE = ["--quality", "draft", "--photons", "50k", "-q"]
@@ -23,12 +23,6 @@ EYE, FORWARD = [3, 1.6, 4.5], [0, 0, -1]
 # Of a power, as a light shines, a half float is off by half a unit of its eleventh bit at most.
 HALF = 2 ** -11
 
-BYTES = """
-const bytes = new Uint8Array(arguments[0].buffer);
-let text = '';
-for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
-return btoa(text);
-"""
 # The exact picture as it is mixed: linear RGB radiance, rows from below.
 RESTING = """
 const {gl, rest, unit} = page.renderer;
@@ -116,11 +110,15 @@ def check_picture(browser, folder, scene):
 def check_lux(browser, folder, scene):
     browser.stand([3, 1.6, 3.5], [0, -0.6, -0.8])
     hit = browser.run(page_test.CLICK, 160, 100)
-    browser.mouse("Pressed", 160, 100)
-    browser.mouse("Released", 160, 100)
-    early = browser.until("return page.live.repeats.length >= 2 && page.live.measured()")
-    late = browser.until("return page.live.repeats.length >= 60 && page.live.measured()")
+    read = ("const [first] = page.points.all; if (!(first.repeats.length >= {})) return null;"
+            "const {{lux, error}} = page.points.read(first); return {{lux: lux[0], error: error[0]}};")
+    for x in (160, 60):
+        browser.mouse("Pressed", x, 100)
+        browser.mouse("Released", x, 100)
+    early = browser.until(read.format(2))
+    late = browser.until(read.format(60))
     assert late["error"] < early["error"] or early["error"] == 0, (early, late)
+    browser.until("return page.points.all[1].repeats.length >= 60")
     points = folder / "click.pts"
     points.write_text(" ".join(f"{number:.7g}" for number in hit["place"] + hit["normal"]) + "\n")
     photile("measure", scene, "--points", points, "-o", folder / "click.json", "-q", "--photons", "1M")
@@ -130,7 +128,8 @@ def check_lux(browser, folder, scene):
     text = browser.run("return document.getElementById('reading').textContent")
     assert "±" in text and "left" in text and "right" in text, text
     browser.press("Escape")
-    browser.until("return page.live.repeats.length === 0")
+    assert browser.run("return document.getElementById('reading').hidden && page.points.all.length === 2")
+    browser.run("document.getElementById('no-points').click()")
 
 
 def check_walk(browser):
@@ -145,6 +144,8 @@ def check_moods(browser, scene):
     moods = scene.with_suffix(".moods.json")
     browser.run("page.lights.setKelvin(1, 3000)")
     browser.run(SET_POWER, "left", 0.25)
+    browser.run("page.lights.setColour(0, '#4080ff')")
+    tint = browser.run("return page.lights.states[0].tint")
     browser.run("""
 const form = document.getElementById('keep');
 form.elements.mood.value = 'evening';
@@ -160,6 +161,7 @@ form.querySelector('button').click();""")
     browser.run(f"{buttons}.find((one) => one.textContent === 'evening').click()")
     near(browser.run("return page.lights.states[0].power") / full, 0.25, 1e-3)
     assert browser.run("return page.lights.states[1].kelvin") == 3000
+    near(browser.run("return page.lights.states[0].tint"), tint, 1e-5)
     browser.run(f"{buttons}.find((one) => one.title === 'Remove evening').click()")
     browser.until("return !room.presets.some((preset) => preset.name === 'evening')")
     assert "evening" not in json.loads(moods.read_text())["moods"]

@@ -62,7 +62,15 @@ def posts(served):
                        ("words", {**VIEW, "eye": ["a", 0, 0]}), ("another sky", {**VIEW, "sky": [1, 2, 3]}),
                        ("more", {**VIEW, "file": "/etc/passwd"})):
         check(what, served.post("view", "a", body), 400)
-    check("a damaged point", served.post("point", "a", {"place": [0, 0, 0], "normal": [9, 0, 0]}), 400)
+    point = {"number": 1, "place": [0, 0, 0], "normal": [0, 1, 0]}
+    for what, damage in (("a damaged point", {"normal": [9, 0, 0]}), ("one without a number", {"number": None}),
+                         ("one of a negative number", {"number": -1})):
+        check(what, served.post("point", "a", {**point, **damage}), 400)
+    sent = [served.post("point", "a", {**point, "number": number}) for number in range(1, 102)]
+    check("too many points", (sent[:99].count(200), sent[99:]), (99, [400, 400]))
+    check("one in place of another", served.post("point", "a", {**point, "number": 5}), 200)
+    check("one less", served.post("point", "a", {"number": 7}), 200)
+    check("one more", served.post("point", "a", {**point, "number": 200}), 200)
     check("a mood without a name", served.post("moods", "a", {"keep": ""}), 400)
     page.close()
 
@@ -100,9 +108,14 @@ def shared(served):
         picture = served.request(f"picture?viewer={viewer}")[2]
         assert f'"width":{width}'.encode() in picture[:300], picture[:300]
     check("nobody's picture", served.request("picture?viewer=third")[0], 404)
-    check("a point", served.post("point", "first", {"place": [2, 0, 3], "normal": [0, 1, 0]}), 200)
-    while len(first.hear("point")["repeats"]) < 3:
-        pass
+    for number, place in ((4, [2, 0, 3]), (9, [3, 0, 3])):
+        check("a point", served.post("point", "first", {"number": number, "place": place, "normal": [0, 1, 0]}), 200)
+    known = {4: [], 9: []}
+    while any(len(repeats) < 3 for repeats in known.values()):
+        for point in first.hear("points"):
+            check("told so far", point["from"], len(known[point["number"]]))
+            known[point["number"]] += point["repeats"]
+    assert known[4] != known[9]
     light = served.request("light?since=0")[2]
     size = int(light[:8], 16)
     assert light[8:9] == b"{" and len(light) > 8 + size + 100

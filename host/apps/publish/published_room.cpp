@@ -13,6 +13,8 @@
 #include "common/foreign_text.hpp"
 #include "image/display.hpp"
 #include "loading/surroundings.hpp"
+#include "measuring/requirements.hpp"
+#include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/ray_scene.hpp"
@@ -64,6 +66,22 @@ json palette() {
   return table;
 }
 
+/// How places of the page become those of the scene's file.
+json world_of(const Scene& scene) {
+  json axes;
+  for (int i = 0; i < 3; ++i) axes.push_back(numbers(direction_in_world(scene, glm::dmat3(1)[i])));
+  return {{"origin", numbers(scene.origin)}, {"axes", axes}};
+}
+
+/// What `--target` knows by name.
+json targets() {
+  json list;
+  for (const measuring::Requirement& row : measuring::known_requirements()) {
+    list.push_back({{"name", row.name}, {"lux", row.mean}});
+  }
+  return list;
+}
+
 /// The display transform: the page takes all its numbers from here.
 json display_of(const ToneMapping& display) {
   const image::DisplayTransform& numbers = image::display_transform;
@@ -108,6 +126,9 @@ class PageWriter {
     d["display"] = display_of(room_.display);
     d["temperatures"] = kelvins();
     d["palette"] = palette();
+    d["legendSteps"] = defaults::legend_steps;
+    d["targets"] = targets();
+    d["world"] = world_of(scene_);
     for (const Camera& camera : scene_.cameras) {
       if (camera.projection == Projection::perspective) d["cameras"].push_back(camera_of(camera));
     }

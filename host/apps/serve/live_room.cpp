@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -33,6 +34,8 @@ constexpr auto news_wait = std::chrono::milliseconds(500);
 constexpr int most_side = 8192;
 constexpr double most_picture_bytes = 1e9;
 constexpr std::size_t longest_name = 100;
+/// Points of one viewer that are measured.
+constexpr std::size_t most_points = 99;
 /// Pixels of the view that light is computed for before a page tells its own.
 constexpr int opening_width = 1280, opening_height = 800;
 /// The largest exponent of what is sent as half floats.
@@ -77,7 +80,7 @@ class LiveRoom::News : public NewsSource {
     const std::lock_guard lock(room_.mutex_);
     Viewer& viewer = room_.viewers_[viewer_];
     if (--viewer.pages > 0) return;
-    if (viewer.point > 0) room_.points_.remove(viewer.point);
+    for (const auto& [number, point] : viewer.points) room_.points_.remove(point);
     room_.viewers_.erase(viewer_);
     room_.since_left_ = Stopwatch();
   }
@@ -106,28 +109,38 @@ class LiveRoom::News : public NewsSource {
       moods_number_ = room_.moods_number_;
       news["presets"] = room_.presets_;
     }
-    if (viewer.point > 0) {
-      for (const view::ClickedPoint& point : room_.points_.points()) {
-        if (point.number != viewer.point || point.repeats.size() == repeats_) continue;
-        repeats_ = point.repeats.size();
-        json repeats = json::array();
-        for (const auto& repeat : point.repeats) {
-          json lights = json::array();
-          for (const glm::vec3& light : repeat) lights.push_back({light.x, light.y, light.z});
-          repeats.push_back(std::move(lights));
-        }
-        news["point"] = {{"number", point.number}, {"repeats", std::move(repeats)}};
-      }
-    }
+    if (!viewer.points.empty()) tell_points(viewer, news);
     return news.empty() ? "" : news.dump(-1, ' ', false, json::error_handler_t::replace);
   }
 
  private:
+  /// The repeats of points that have not been told yet.
+  void tell_points(const Viewer& viewer, json& news) {
+    const std::vector<view::ClickedPoint> points = room_.points_.points();
+    for (const auto& [number, measured] : viewer.points) {
+      for (const view::ClickedPoint& point : points) {
+        if (point.number != measured) continue;
+        std::size_t& told = repeats_[measured];
+        if (point.repeats.size() == told) break;
+        json repeats = json::array();
+        for (std::size_t i = told; i < point.repeats.size(); ++i) {
+          json lights = json::array();
+          for (const glm::vec3& light : point.repeats[i]) {
+            lights.push_back({light.x, light.y, light.z});
+          }
+          repeats.push_back(std::move(lights));
+        }
+        news["points"].push_back({{"number", number}, {"from", told}, {"repeats", repeats}});
+        told = point.repeats.size();
+      }
+    }
+  }
+
   LiveRoom& room_;
   const std::string viewer_;
   std::map<std::string, json> told_;
   std::uint64_t changes_ = 0, lamps_number_ = 0, moods_number_ = 0;
-  std::size_t repeats_ = 0;
+  std::map<int, std::size_t> repeats_;  ///< of points
 };
 
 LiveRoom::LiveRoom(const Scene& scene, const LightMix& mix,
@@ -372,15 +385,23 @@ void LiveRoom::look(Viewer& viewer, const std::string& name, const json& body) {
   show(name);
 }
 
-/// A point that a viewer clicked, in place of the last one; none: that is forgotten.
+/// A point that a viewer clicked, by the page's number; without a place: it is removed.
 void LiveRoom::point(Viewer& viewer, const json& body) {
-  const JsonObject point(body, "point", {"place", "normal"});
-  if (viewer.point > 0) points_.remove(std::exchange(viewer.point, 0));
+  const JsonObject point(body, "point", {"number", "place", "normal"});
+  const int number = point.count("number", 1, std::numeric_limits<int>::max());
+  const auto known = viewer.points.find(number);
+  if (known != viewer.points.end()) {
+    points_.remove(known->second);
+    viewer.points.erase(known);
+  }
   if (!point.has("place")) return;
+  if (viewer.points.size() == most_points) {
+    point.refuse(fmt::format("{} points are measured at most; remove some", most_points));
+  }
   const glm::dvec3 normal = point.vector("normal");
   if (!(std::abs(glm::length(normal) - 1) < 0.01)) point.refuse("has no normal of length 1");
-  viewer.point = points_.add(position_in_world(scene_, point.vector("place")),
-                             direction_in_world(scene_, glm::normalize(normal)));
+  viewer.points[number] = points_.add(position_in_world(scene_, point.vector("place")),
+                                      direction_in_world(scene_, glm::normalize(normal)));
 }
 
 /// Keeps the lamps of a page under a name, or removes a mood.

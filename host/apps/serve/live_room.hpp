@@ -70,7 +70,7 @@ class LiveRoom {
     bool done = false;                           ///< `picture` has all samples
     std::shared_ptr<const view::Frame> picture;  ///< of that request, with layers; or null
     std::uint64_t picture_number = 0;
-    int point = 0;  ///< that was clicked; 0 = none
+    std::map<int, int> points;  ///< that were clicked: of the page's numbers those of `points_`
   };
 
   void show(const std::string& viewer);

@@ -10,11 +10,15 @@ const shaderDisplay = {
   fragment: `#version 300 es
 precision highp float;
 precision highp int;
-uniform sampler2D uPicture, uRest;
+uniform sampler2D uPicture, uRest, uLuminance, uPalette;
 uniform float uShown;         // of uRest, in place of uPicture
 uniform vec3 uToWhite;        // from light to multiples of white
-uniform bool uIsLight;        // false colours are shown as they are
+uniform int uContours;        // of false colours, as host/lighting/report/false_colour.hpp has them; -1: none
+uniform float uLux;           // of a luminance of 1, over the top of their scale
+uniform int uLineWidth;       // pixels
 out vec4 fragment;
+const int filled = 0, stepped = 1, lines = 2, bands = 3;
+const float steps = ${real(room.legendSteps)};
 const float brightest = 1e9;
 
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
@@ -63,9 +67,37 @@ vec3 encoded(vec3 c) {
   return mix(12.92 * c, 1.055 * pow(max(c, 0.0), vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
 
+// The share of the scale; below 0 where no illuminance is known.
+float shareAt(ivec2 place) {
+  vec2 luminance = texelFetch(uLuminance, place, 0).rg;
+  return luminance.g > 0.5 ? luminance.r / luminance.g * uLux : -1.0;
+}
+
+float levelsBelow(float share) { return clamp(floor(share * steps + 0.5), 0.0, steps); }
+
+bool isOnLine(ivec2 place, float share) {
+  for (int axis = 0; axis < 2; ++axis) {
+    ivec2 next = place + (axis == 0 ? ivec2(uLineWidth, 0) : ivec2(0, -uLineWidth));
+    if (next.x >= textureSize(uLuminance, 0).x || next.y < 0) continue;
+    float other = shareAt(next);
+    if (other >= 0.0 && levelsBelow(other) != levelsBelow(share)) return true;
+  }
+  return false;
+}
+
+bool isInBand(float share) { return share < 1.0 && abs(fract(share * steps) - 0.5) < 0.1; }
+
 void main() {
   ivec2 place = ivec2(gl_FragCoord.xy);
-  fragment = vec4(uIsLight ? encoded(shown(place)) : texelFetch(uPicture, place, 0).rgb, 1.0);
+  bool covered = uContours == filled || uContours == stepped;
+  vec3 colour = covered ? vec3(0.05) : encoded(shown(place));
+  float share = uContours < 0 ? -1.0 : shareAt(place);
+  if (share >= 0.0 && (covered || (uContours == lines ? isOnLine(place, share) : isInBand(share)))) {
+    share = clamp(share, 0.0, 1.0);
+    if (uContours == stepped) share = (min(floor(share * steps), steps - 1.0) + 0.5) / steps;
+    colour = textureLod(uPalette, vec2((share * 255.0 + 0.5) / 256.0, 0.5), 0.0).rgb;
+  }
+  fragment = vec4(colour, 1.0);
 }`,
 };
 
@@ -78,7 +110,8 @@ class Screen {
     this.vertices = gl.createVertexArray();
     this.width = this.height = 0;
     this.samples = gl.createFramebuffer();  // what is drawn into ...
-    this.pixels = gl.createFramebuffer();   // ... and what becomes of it
+    this.pixels = gl.createFramebuffer();   // ... and what becomes of it: the picture ...
+    this.luminance = gl.createFramebuffer();  // ... and the illuminance
     this.buffers = [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT].map((place) => {
       const buffer = gl.createRenderbuffer();
       gl.bindFramebuffer(gl.FRAMEBUFFER, this.samples);
@@ -86,12 +119,15 @@ class Screen {
       gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
       return buffer;
     });
-    this.light = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, this.light);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.pixels);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.light, 0);
+    this.textures = [this.pixels, this.luminance].map((target) => {
+      const texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+      return texture;
+    });
     // Half floats need not have samples.
     const counts = gl.getInternalformatParameter(gl.RENDERBUFFER, gl.RGBA16F, gl.SAMPLES) ?? [];
     this.count = Math.max(0, ...[...counts].filter((count) => count <= 4));
@@ -105,11 +141,13 @@ class Screen {
       gl.bindRenderbuffer(gl.RENDERBUFFER, this.buffers[i]);
       gl.renderbufferStorageMultisample(gl.RENDERBUFFER, this.count, format, width, height);
     });
-    gl.bindTexture(gl.TEXTURE_2D, this.light);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, width, height, 0, gl.RGBA, gl.HALF_FLOAT, null);
+    for (const texture of this.textures) {
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, width, height, 0, gl.RGBA, gl.HALF_FLOAT, null);
+    }
   }
 
-  /// What is drawn from here on is a frame of this size.
+  /// What is drawn from here on is a frame of this size, until `keep`.
   begin(width, height) {
     const gl = this.gl;
     this.fit(width, height);
@@ -117,29 +155,41 @@ class Screen {
     gl.viewport(0, 0, width, height);
   }
 
-  ///   exposure   of light in units of white; null where the frame is to be shown as it is
-  ///   rest       a picture that is shown in part, or null
-  show(exposure, rest) {
-    const gl = this.gl, {width, height, program: {program, uniforms}} = this;
+  ///   target   `pixels` or `luminance`
+  keep(target) {
+    const gl = this.gl, {width, height} = this;
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.samples);
-    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, this.pixels);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target);
     gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    // Without that, Chromium's software renderer keeps what is drawn next in place of this.
+    gl.invalidateFramebuffer(gl.READ_FRAMEBUFFER, [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT]);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  ///   exposure   of light in units of white
+  ///   rest       a picture that is shown in part, or null
+  ///   colours    false colours: {contours, lux, palette}, or null
+  show(exposure, rest, colours) {
+    const gl = this.gl, {width, height, program: {program, uniforms}, textures: [light, luminance]} = this;
     gl.viewport(0, 0, width, height);
     gl.useProgram(program);
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.CULL_FACE);
     gl.disable(gl.BLEND);
     gl.bindVertexArray(this.vertices);
-    [rest?.before?.texture ?? this.light, rest?.light.texture ?? this.light].forEach((texture, unit) => {
+    Object.entries({
+      uPicture: rest?.before?.texture ?? light, uRest: rest?.light.texture ?? light, uLuminance: luminance,
+      uPalette: colours?.palette ?? light,
+    }).forEach(([name, texture], unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.uniform1i(uniforms[name], unit);
     });
-    gl.uniform1i(uniforms.uPicture, 0);
-    gl.uniform1i(uniforms.uRest, 1);
     gl.uniform1f(uniforms.uShown, rest?.shown ?? 0);
-    gl.uniform1i(uniforms.uIsLight, exposure === null ? 0 : 1);
-    gl.uniform3f(uniforms.uToWhite, ...room.display.white.map((part) => (exposure ?? 1) / part));
+    gl.uniform1i(uniforms.uContours, colours?.contours ?? -1);
+    gl.uniform1f(uniforms.uLux, colours?.lux ?? 0);
+    gl.uniform1i(uniforms.uLineWidth, Math.max(1, Math.round(width / this.gl.canvas.clientWidth)));
+    gl.uniform3f(uniforms.uToWhite, ...room.display.white.map((part) => exposure / part));
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.bindVertexArray(null);
   }

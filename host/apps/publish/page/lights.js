@@ -5,25 +5,30 @@ const kelvins = {low: 1500, high: 10000, step: 100};
 class Lights {
   constructor() {
     this.states = room.lights.map((light) => ({
-      power: light.power, on: light.power > 0, kelvin: 0, tint: light.tint.slice(),
+      power: light.power, on: light.power > 0, solo: false, kelvin: 0, tint: light.tint.slice(),
     }));
     this.hour = null;  // {date, time}: indices into room.hours
   }
 
   /// What the light of each layer at power 1 is multiplied by.
   weights() {
-    const sky = this.hour ? this.skyPowers() : null;
+    const sky = this.hour ? this.skyPowers() : null, {skyFactor} = this;
     return room.lights.map((light, i) => {
       const state = this.states[i];
       if (light.patch !== undefined) {
         const power = sky ? light.scale * sky[light.patch] * light.unitPower : light.scale * light.power;
-        return scaled(light.tint, this.sky.on ? power * this.sky.factor : 0);
+        return scaled(light.tint, power * skyFactor);
       }
-      return scaled(state.tint, state.on ? light.scale * state.power : 0);
+      return scaled(state.tint, this.isLit(i) ? light.scale * state.power : 0);
     });
   }
 
   sky = {on: true, factor: 1};
+
+  /// While any light is solo, only such lights shine, whether they are on or not.
+  get anySolo() { return this.states.some(({solo}) => solo); }
+  isLit(i) { return this.anySolo ? this.states[i].solo : this.states[i].on; }
+  get skyFactor() { return this.sky.on && !this.anySolo ? this.sky.factor : 0; }
 
   /// Of a patch, in the unit of the light maps.
   skyPower(i) {
@@ -39,7 +44,7 @@ class Lights {
       luminances[(row + whole) * lights + i] * (1 - part) + luminances[(row + next) * lights + i] * part);
   }
 
-  /// Returns false where the light lacks a primary colour that the temperature has.
+  ///   kelvin   0: the light's own colour
   setKelvin(i, kelvin) {
     const state = this.states[i];
     state.kelvin = kelvin;
@@ -52,12 +57,31 @@ class Lights {
     state.tint = wanted.map((part, c) => part / Math.max(room.lights[i].color[c], 1e-30));
   }
 
+  /// Tints a light by a colour as CSS has it; the power stays (host/pictures/image/light_change.cpp). Returns false
+  /// where the light emits nothing of that colour.
+  setColour(i, hex) {
+    const linear = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255).map(
+        (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4));
+    const emitted = luminanceOf(linear.map((part, c) => part * room.lights[i].color[c]));
+    if (!(emitted > 0)) return false;
+    Object.assign(this.states[i], {kelvin: 0, tint: scaled(linear, 1 / emitted)});
+    return true;
+  }
+
   apply(preset) {
     for (const {light, power, tint, kelvin} of preset.lights) {
       Object.assign(this.states[light], {
-        power: power > 0 ? power : this.states[light].power, on: power > 0, tint: tint.slice(), kelvin});
+        power: power > 0 ? power : this.states[light].power, on: power > 0, solo: false, tint: tint.slice(), kelvin});
     }
   }
+}
+
+/// A colour as CSS has it, as bright as can be.
+function hexOf(linear) {
+  const most = Math.max(...linear, 1e-9);
+  return `#${linear.map((part) => part / most).map(
+      (part) => Math.round(255 * (part <= 0.0031308 ? 12.92 * part : 1.055 * part ** (1 / 2.4) - 0.055))).map(
+      (byte) => byte.toString(16).padStart(2, '0')).join('')}`;
 }
 
 /// How a slider from 0 to 1 becomes a power: fine steps where it is dark.

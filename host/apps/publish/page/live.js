@@ -13,7 +13,6 @@ class Live {
     this.known = this.wanted = 0;  // states of the light
     this.fading = 0;               // seconds left
     this.exposes = true;           // until the first exact picture, or the viewer's own exposure
-    this.repeats = [];             // of the clicked point: irradiance of each light
     this.ownLamps = location.hash.length > 1;  // a link has them, and they are to be everybody's
     this.work = find('#work');
     this.posts = new Promise((opened) => { this.open = opened; });
@@ -22,6 +21,7 @@ class Live {
     news.onopen = () => {
       this.open();
       this.view = null;
+      page.points.all.forEach((point) => this.measure(point));
       page.wake();
     };
     news.onmessage = ({data}) => this.hear(JSON.parse(data));
@@ -64,10 +64,10 @@ class Live {
       this.page.panel.makePresets((name) => this.post('moods', {remove: name}));
       find('#presets').hidden = false;
     }
-    if (news.point) {
-      this.repeats = news.point.repeats;
-      this.page.showReading();
+    for (const {number, from, repeats} of news.points ?? []) {
+      this.page.points.all.find((point) => point.number === number)?.repeats.splice(from, Infinity, ...repeats);
     }
+    if (news.points) this.page.points.show();
     if (news.message) tell(news.message);
     if (news.work !== undefined) this.showWork(news.work);
   }
@@ -123,7 +123,7 @@ class Live {
     this.fading = pace.light;
     page.lightIsOld = false;
     if (renderer.mode === 2) page.setScale();
-    page.showReading();
+    page.points.show();
     page.wake();
   }
 
@@ -139,7 +139,7 @@ class Live {
     // The sky's layer has the powers of the hour.
     const weigh = () => {
       const weights = lights.weights();
-      return numbers.map((i) => (i < 0 ? Array(3).fill(lights.sky.on ? lights.sky.factor : 0) : weights[i]));
+      return numbers.map((i) => (i < 0 ? Array(3).fill(lights.skyFactor) : weights[i]));
     };
     this.renderer.setRest(header, weigh, new Uint16Array(bytes.slice().buffer));
     this.renderer.rest.number = number;
@@ -189,29 +189,9 @@ class Live {
     }, pace.lamps);
   }
 
-  /// Has the light at a hit measured; null: no more.
-  point(hit) {
-    this.repeats = [];
-    if (!hit) return this.post('point', {});
-    const [a, b, c] = this.page.surfaces.corners(hit.triangle);
-    const normal = normalized(cross(subtract(b, a), subtract(c, a)));
-    return this.post('point', {place: add(hit.place, scaled(normal, 1e-4)), normal});
-  }
-
-  /// Lux of the clicked point as it is measured, with its standard error and the lux of each light; null
-  /// before there are two repeats.
-  measured() {
-    const count = this.repeats.length;
-    if (count < 2) return null;
-    const weights = this.page.lights.weights();
-    const rows = this.repeats.map((repeat) => repeat.map(
-        (light, i) => room.lux * luminanceOf(light.map((part, c) => part * weights[i][c]))));
-    const sums = rows.map((row) => row.reduce((sum, value) => sum + value, 0));
-    const lux = sums.reduce((sum, value) => sum + value, 0) / count;
-    const error = Math.sqrt(sums.reduce((sum, value) => sum + (value - lux) ** 2, 0) / (count - 1) / count);
-    const lights = weights.map((_, i) => rows.reduce((sum, row) => sum + row[i], 0) / count);
-    return {lux, error, lights};
-  }
+  /// Has the light at a point measured from now on: for each repeat the irradiance of each light. Without a place:
+  /// no more.
+  measure({number, place, normal}) { return this.post('point', {number, place, normal}); }
 
   makeMoods() {
     const form = find('#keep');
@@ -224,7 +204,7 @@ class Live {
         if (light.patch !== undefined) return [];
         const {power, on, kelvin, tint} = this.page.lights.states[i];
         const colour = tint.some((part, c) => part !== light.tint[c])
-            ? {colour: tint.map((part, c) => part * light.color[c])} : {};
+            ? {colour: tint} : {};
         return [[light.name, {power, on, ...(kelvin ? {kelvin} : colour)}]];
       });
       this.post('moods', {keep: name, lights: Object.fromEntries(lights)});

@@ -45,8 +45,12 @@ class Page {
     if (!room.live) this.errors = await archive.array('errors');
     this.surfaces = new Surfaces(this.renderer.positions, this.renderer.indices);
     this.walker = new Walker(this.surfaces);
-    this.panel = new Panel(this.lights, (what) => this.changed(what));
-    this.reading = null;
+    this.panel = new Panel(this.lights, (what, holds) => this.changed(what, holds));
+    this.points = new Points(this);
+    this.history = new LightHistory(this.lights, (what) => {
+      this.panel.show();
+      this.show(what);
+    });
     this.makeViews();
     this.makeDisplay();
     this.makeTools();
@@ -54,6 +58,7 @@ class Page {
     this.begin();
     if (room.live) this.live = new Live(this);
     this.restore();
+    this.history.settle();
     this.panel.show();
     listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.point(x, y));
     window.addEventListener('resize', () => this.wake());
@@ -102,30 +107,45 @@ class Page {
     this.wake();
   }
 
-  /// False colours over three decades, to 1, 2 or 5 times a power of ten.
+  /// False colours up to the lux that were asked for, or automatically as host/lighting/report/false_colour.cpp has
+  /// it: the uppermost 2% are beyond, and steps have round middles.
   setScale() {
-    const picture = this.renderer.radiance(this.walker, 64, 48);
-    const sorted = Array.from({length: picture.length / 3}, (_, i) =>
-      luminanceOf([picture[3 * i], picture[3 * i + 1], picture[3 * i + 2]])).sort((a, b) => a - b);
-    const lux = Math.max(1e-3, sorted[Math.floor(sorted.length * 0.9)] * Math.PI * 4 * room.lux);
-    const decade = 10 ** Math.floor(Math.log10(lux));
-    const top = [1, 2, 5, 10].map((step) => step * decade).find((step) => step >= lux * 0.999);
-    this.renderer.scale = [Math.log2(top / 1000), Math.log2(top)];
-    const legend = find('#legend');
-    const stop = (i) => `rgb(${room.palette[i].join(' ')})`;
-    legend.firstElementChild.style.background = `linear-gradient(to right, ${
-        Array.from({length: 17}, (_, i) => stop(Math.min(255, i * 16))).join(', ')})`;
-    legend.lastElementChild.replaceChildren(...[1000, 100, 10, 1].map(
-        (part) => element('span', {textContent: shortNumber(top / part)})));
-    legend.lastElementChild.lastElementChild.textContent += ' lx';
+    const {falseColours} = this.renderer, steps = room.legendSteps;
+    const lux = this.renderer.seenLux(this.walker).filter((value) => value > 0).sort((a, b) => a - b);
+    const step = (lux[lux.length - 1 - Math.floor(0.02 * lux.length)] ?? 1) / steps;
+    const decade = 10 ** Math.floor(Math.log10(step));
+    const round = [1, 1.2, 1.6, 2, 3, 4, 6, 8, 10].find((part) => part * decade >= step * 0.999) * decade;
+    falseColours.top = find('#top').validity.valid && Number(find('#top').value) || round * steps;
+    const colour = (share) => `rgb(${room.palette[Math.round(255 * share)].join(' ')})`;
+    const middles = Array.from({length: steps}, (_, i) => (i + 0.5) / steps);
+    find('#scale').style.background = `linear-gradient(to right, ${
+        falseColours.contours === 0
+            ? Array.from({length: 17}, (_, i) => colour(i / 16)).join(', ')
+            : middles.map((share, i) => `${colour(share)} ${100 * i / steps}% ${100 * (i + 1) / steps}%`).join(', ')})`;
+    const [part, unit] = falseColours.top < 1e4 ? [1, ''] : [1000, 'k'];
+    find('#legend figcaption').replaceChildren(...middles.map((share) => element('span', {
+      textContent: Number((share * falseColours.top / part).toPrecision(4)).toLocaleString('en') + unit})));
   }
 
-  changed(what) {
+  ///   holds   whether a control is held that goes on changing
+  changed(what, holds = false) {
+    this.history.note(what, holds);
+    this.show(what);
+  }
+
+  /// Shows lights that have changed.
+  show(what) {
     this.lightIsOld = true;
     this.live?.lampsChanged();
     if (what === 'hour' || what === 'preset') this.adapt();
     this.wake();
-    this.showReading();
+    this.points.show();
+  }
+
+  mixLight() {
+    if (!this.lightIsOld) return;
+    this.renderer.mix(this.lights.weights());
+    this.lightIsOld = false;
   }
 
   wake() {
@@ -142,14 +162,11 @@ class Page {
     const passed = clamp((time - this.lastTime) / 1000, 0, 0.1);
     const moved = this.walker.advance(passed);
     this.lastTime = time;
-    if (this.lightIsOld) {
-      this.renderer.mix(this.lights.weights());
-      this.lightIsOld = false;
-    }
+    this.mixLight();
     const fades = this.live?.advance(passed);
     if (moved || fades || this.dirty) {
       this.renderer.draw(this.walker);
-      this.placeReading();
+      this.points.place();
       this.live?.look();
     }
     this.dirty = fades;
@@ -182,6 +199,12 @@ class Page {
       this.setExposure(Number(event.target.value));
     });
     find('#adapt').addEventListener('click', () => this.adapt());
+    const kind = find('#contours');
+    kind.addEventListener('input', () => {
+      this.renderer.falseColours.contours = Number(kind.value);
+      this.setMode(2);
+    });
+    find('#top').addEventListener('input', () => this.setMode(2));
     document.querySelectorAll('[name=shown]').forEach((button) => {
       button.addEventListener('input', () => this.setMode(Number(button.value)));
     });
@@ -204,7 +227,10 @@ class Page {
       }],
       P: ['#picture', () => this.save()],
       C: ['#link', () => this.share()],
-      H: ['#help', () => find('#about').showModal()],
+      H: ['#help', () => {
+        this.tellFrames();
+        find('#about').showModal();
+      }],
       X: ['#adapt', () => this.adapt()],
       V: [null, () => this.setMode(this.renderer.mode === 2 ? 0 : 2)],
       L: [null, () => this.point(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2, true)],
@@ -214,11 +240,15 @@ class Page {
     }
     window.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || find('#about').open) return;
-      if (event.target.matches('input[type=text], select')) return;
+      if (isWriting(event.target)) return;
       const key = event.key.toUpperCase();
-      if (tools[key]) tools[key][1]();
+      if (event.code === 'F2') {
+        event.preventDefault();
+        find('#panel').hidden = !find('#panel').hidden;
+      } else if (this.panel.takeHourKey(event)) event.preventDefault();
+      else if (tools[key]) tools[key][1]();
       else if (/^[1-9]$/.test(key)) this.view(Number(key) - 1);
-      else if (key === 'ESCAPE') this.forgetReading();
+      else if (key === 'ESCAPE') this.points.close();
     });
     const {used, texel} = room.atlas;
     find('#facts').textContent =
@@ -226,6 +256,13 @@ class Page {
             shortNumber(used)} texels, ${shortNumber(100 * texel)} cm apart; ${
             shortNumber(this.renderer.indices.length / 3)} triangles. Made by photile ${room.version}.`;
     find('#simplified').textContent = `Simplified here: ${room.simplified.join('; ')}.`;
+  }
+
+  tellFrames() {
+    const {drawCalls, rest, screen, canvas: {width, height}} = this.renderer;
+    const samples = rest ? `${rest.samples} samples, rendered by photile` : `${Math.max(1, screen.count)} samples`;
+    find('#frames').textContent = `The last frame: ${width} × ${height} pixels of ${samples}; draw calls: ${
+        drawCalls}; ${this.frameTime.toFixed(1)} ms of JavaScript.`;
   }
 
   /// The triangle at a place of the page.
@@ -247,84 +284,35 @@ class Page {
     return room.parts.find(({first, count}) => 3 * triangle >= first && 3 * triangle < first + count);
   }
 
-  /// Illuminance at a point of a triangle: lux, its standard error, and the part of each light.
+  /// Illuminance at a point of a triangle: lux, its standard error, and those of each light.
   illuminance({triangle, u, v}) {
     const uv = [0, 1].map((axis) => [1 - u - v, u, v].reduce((sum, weight, i) =>
       sum + weight * this.renderer.lightUvs[2 * this.renderer.indices[3 * triangle + i] + axis], 0) / 65535);
     const lux = this.renderer.lightAt(uv).map((light) => luminanceOf(light) * room.lux);
-    if (room.live) return {lux: lux.reduce((sum, value) => sum + value, 0), error: null, lights: lux};
+    const all = lux.reduce((sum, value) => sum + value, 0);
+    if (room.live) return {lux: all, error: null, lights: lux, errors: null};
     const {width, height, block} = room.atlas;
     const columns = Math.ceil(width / block), rows = Math.ceil(height / block);
     const cell = Math.min(rows - 1, Math.floor(uv[1] * height / block)) * columns +
                  Math.min(columns - 1, Math.floor(uv[0] * width / block));
-    // Lights err apart: their variances add.
-    const variance = lux.reduce((sum, value, i) => {
+    const errors = lux.map((value, i) => {
       const code = this.errors[i * columns * rows + cell];
-      return sum + (value * (code ? 2 ** ((code - 255) / room.atlas.errorSteps) : 0)) ** 2;
-    }, 0);
-    return {lux: lux.reduce((sum, value) => sum + value, 0), error: Math.sqrt(variance), lights: lux};
+      return value * (code ? 2 ** ((code - 255) / room.atlas.errorSteps) : 0);
+    });
+    return {lux: all, error: Math.hypot(...errors), lights: lux, errors};
   }
 
   point(x, y, middle = false) {
     const hit = this.meet(x, y);
     find('#cross').hidden = !middle;
-    if (!hit) {
-      this.forgetReading();
-      return;
-    }
-    this.reading = hit;
-    this.live?.point(hit);
-    this.showReading();
-    this.placeReading();
-  }
-
-  showReading() {
-    if (!this.reading) return;
-    if (this.lightIsOld) {
-      this.renderer.mix(this.lights.weights());
-      this.lightIsOld = false;
-    }
-    if (!this.renderer.isLit) return;
-    const {lux, error, lights} = this.live?.measured() ?? this.illuminance(this.reading);
-    const box = find('#reading');
-    const parts = lights.map((value, i) => [value, room.lights[i].patch === undefined
-                                            ? room.lights[i].name.replaceAll('_', ' ') : 'daylight']);
-    const sums = new Map();
-    for (const [value, name] of parts) sums.set(name, (sums.get(name) ?? 0) + value);
-    const most = [...sums].sort((a, b) => b[1] - a[1]).filter(([, value]) => value > 0.005 * lux).slice(0, 4);
-    box.replaceChildren(
-        element('b', {textContent: `${shortNumber(lux)} lx`}), error === null ? ' …' : ` ± ${shortNumber(error)}`,
-        ...(most.length > 1 ? most.map(([name, value]) => `\n${shortNumber(value)}  ${name}`) : []));
-    box.hidden = false;
-  }
-
-  placeReading() {
-    if (!this.reading) return;
-    const {forward, right, eye, angle} = this.walker;
-    const offset = subtract(this.reading.place, eye), depth = dot(offset, forward);
-    const box = find('#reading');
-    const {clientWidth: width, clientHeight: height} = this.canvas;
-    const scale = height / 2 / Math.tan(angle / 2) / Math.max(depth, 1e-6);
-    const x = width / 2 + dot(offset, right) * scale;
-    const y = height / 2 - dot(offset, cross(right, forward)) * scale;
-    box.style.visibility = depth > 0 && x > 0 && x < width && y > 0 && y < height ? '' : 'hidden';
-    box.style.left = `${x}px`;
-    box.style.top = `${y}px`;
-  }
-
-  forgetReading() {
-    if (this.reading) this.live?.point(null);
-    this.reading = null;
-    find('#reading').hidden = true;
-    find('#cross').hidden = true;
+    if (hit) this.points.add(hit);
+    else this.points.close();
   }
 
   save() {
     this.renderer.draw(this.walker);
     this.canvas.toBlob((blob) => {
-      const link = element('a', {href: URL.createObjectURL(blob), download: `${room.title}.png`});
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+      saveFile(`${room.title}.png`, blob);
       tell('The picture is saved.');
     });
   }
@@ -344,11 +332,11 @@ class Page {
     const short = (value) => Number(value.toPrecision(5));
     return {
       lights: Object.fromEntries(room.lights.flatMap((light, i) => {
-        const {power, on, kelvin, tint} = this.lights.states[i];
+        const {power, on, solo, kelvin, tint} = this.lights.states[i];
         const same = tint.every((part, c) => part === light.tint[c]);
         if (light.patch !== undefined) return [];
-        if (power === light.power && on === light.power > 0 && same) return [];
-        return [[light.name, [short(power), on ? 1 : 0, kelvin || (same ? 0 : tint.map(short))]]];
+        if (power === light.power && on === light.power > 0 && same && !solo) return [];
+        return [[light.name, [short(power), on ? 1 : 0, kelvin || (same ? 0 : tint.map(short)), solo ? 1 : 0]]];
       })),
       sky: this.lights.sky.on ? 1 : 0,
       hour: this.lights.hour ? [this.lights.hour.date, this.lights.hour.time] : null,
@@ -357,11 +345,11 @@ class Page {
 
   /// What `lamps` has written, its lights as a list; throws where it has not.
   lampsOf(state) {
-    const lights = Object.entries(state.lights ?? {}).map(([name, [power, on, colour]]) => {
+    const lights = Object.entries(state.lights ?? {}).map(([name, [power, on, colour, solo]]) => {
       const sound = areNumbers([power], 1) && power >= 0 &&
           (Array.isArray(colour) ? areNumbers(colour, 3) : areNumbers([colour ?? 0], 1));
       if (!sound) throw new Error('light');
-      return {name, power, on: Boolean(on), colour};
+      return {name, power, on: Boolean(on), colour, solo: Boolean(solo)};
     });
     if (state.hour && !areNumbers(state.hour, 2)) throw new Error('hour');
     return {...state, lights};
@@ -392,15 +380,16 @@ class Page {
     this.takeLamps(state);
     this.live?.lampsChanged();
     this.setExposure(clamp(state.ev, -12, 14));
+    this.history.settle();
     this.panel.show();
     this.wake();
   }
 
   takeLamps(state) {
-    for (const {name, power, on, colour} of state.lights) {
+    for (const {name, power, on, colour, solo} of state.lights) {
       const i = room.lights.findIndex((light) => light.name === name);
       if (i < 0) continue;
-      Object.assign(this.lights.states[i], {power, on});
+      Object.assign(this.lights.states[i], {power, on, solo});
       if (Array.isArray(colour)) this.lights.states[i].tint = colour;
       else if (colour) this.lights.setKelvin(i, clamp(colour, kelvins.low, kelvins.high));
     }
@@ -416,9 +405,10 @@ class Page {
   setLamps(lamps) {
     this.lights.states = new Lights().states;
     this.takeLamps(this.lampsOf(lamps));
+    this.history.settle();
     this.panel.show();
     this.wake();
-    this.showReading();
+    this.points.show();
   }
 
   async share() {

@@ -6,16 +6,17 @@ const element = (name, properties = {}, ...children) => {
   return made;
 };
 const find = (selector) => document.querySelector(selector);
+/// Whether keys belong to what has the focus.
+const isWriting = (target) => target.matches('input[type=text], input[type=number], select');
 
-/// A dot's colour: that of the light, as bright as can be.
-function cssColour(light) {
-  const most = Math.max(...light, 1e-9);
-  const encode = (part) => Math.round(255 * (part / most) ** (1 / 2.2));
-  return `rgb(${light.map(encode).join(' ')})`;
+function saveFile(download, blob) {
+  const link = element('a', {href: URL.createObjectURL(blob), download});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
 class Panel {
-  ///   changed(what)   'light', 'view' or 'hour'
+  ///   changed(what, holds)   'light', 'preset' or 'hour'; whether the same control goes on changing it
   constructor(lights, changed) {
     this.lights = lights;
     this.changed = changed;
@@ -53,7 +54,10 @@ class Panel {
       sky.on = toggle.checked;
       this.changed('light');
     });
-    this.skyToggle = toggle;
+    this.rows.push(() => {
+      toggle.checked = sky.on;
+      row.classList.toggle('off', this.lights.skyFactor === 0);
+    });
     return row;
   }
 
@@ -65,24 +69,31 @@ class Panel {
     toggle.setAttribute('role', 'switch');
     toggle.setAttribute('aria-label', `${name} on`);
     const dot = element('span', {className: 'dot'});
-    const more = element('button', {type: 'button', className: 'more', title: 'Colour temperature'}, dot);
-    more.setAttribute('aria-label', `Colour temperature of ${name}`);
+    const more = element('button', {type: 'button', className: 'more', title: 'Colour'}, dot);
+    more.setAttribute('aria-label', `Colour of ${name}`);
     more.setAttribute('aria-expanded', false);
+    const solo = element('button', {type: 'button', className: 'solo', textContent: 'S',
+                                    title: 'Solo: the other lights are dark'});
+    solo.setAttribute('aria-label', `${name} solo`);
+    const picker = element('input', {type: 'color', title: 'Colour of a filter before the light'});
+    picker.setAttribute('aria-label', `Colour of ${name}`);
     const colour = element('input', {type: 'range', min: kelvins.low, max: kelvins.high, step: kelvins.step});
     colour.setAttribute('aria-label', `Colour temperature of ${name}, kelvin`);
     const kelvin = element('output');
-    const colourRow = element('div', {className: 'colour', hidden: true}, colour, kelvin);
+    const own = element('button', {type: 'button', textContent: '↺', title: 'Colour as made'});
+    own.setAttribute('aria-label', `Colour of ${name} as made`);
+    const colourRow = element('div', {className: 'colour', hidden: true}, picker, colour, kelvin, own);
     const label = element('label', {textContent: name, htmlFor: slider.id, title: name});
     const row = element('div', {className: 'light'},
-                        element('div', {className: 'name'}, more, label, power, toggle), slider, colourRow);
+                        element('div', {className: 'name'}, more, label, power, solo, toggle), slider, colourRow);
     const full = light.power > 0 ? light.power : 1000;
     // A light without red or blue cannot have every temperature.
-    more.disabled = light.color.some((part) => part < 0.02);
+    colour.disabled = light.color.some((part) => part < 0.02);
     const state = () => this.lights.states[i];
     slider.addEventListener('input', () => {
       state().power = powerOfSlider(Number(slider.value), full);
       state().on = state().power > 0;
-      this.changed('light');
+      this.changed('light', true);
       show();
     });
     toggle.addEventListener('input', () => {
@@ -97,24 +108,41 @@ class Panel {
     });
     colour.addEventListener('input', () => {
       this.lights.setKelvin(i, Number(colour.value));
-      this.changed('light');
+      this.changed('light', true);
       show();
     });
-    colour.addEventListener('dblclick', () => {
+    picker.addEventListener('input', () => {
+      if (!this.lights.setColour(i, picker.value)) {
+        tell(`${name} emits nothing of that colour.`);
+        return;
+      }
+      this.changed('light', true);
+      show();
+    });
+    own.addEventListener('click', () => {
       this.lights.setKelvin(i, 0);
       this.changed('light');
       show();
     });
+    solo.addEventListener('click', () => {
+      state().solo = !state().solo;
+      this.changed('light');
+      this.show();
+    });
     const show = () => {
-      const {on, power: now, kelvin: temperature, tint} = state();
-      slider.value = on ? sliderOfPower(now, full) : 0;
-      slider.setAttribute('aria-valuetext', `${shortNumber(on ? now : 0)} ${light.unit}`);
-      power.textContent = on ? `${shortNumber(now)} ${light.unit}` : 'off';
+      const {on, solo: alone, power: now, kelvin: temperature, tint} = state();
+      const shines = on || alone, made = tint.every((part, c) => part === light.tint[c]);
+      slider.value = shines ? sliderOfPower(now, full) : 0;
+      slider.setAttribute('aria-valuetext', `${shortNumber(shines ? now : 0)} ${light.unit}`);
+      power.textContent = shines ? `${shortNumber(now)} ${light.unit}` : 'off';
       toggle.checked = on;
-      row.classList.toggle('off', !on);
+      solo.setAttribute('aria-pressed', alone);
+      row.classList.toggle('off', !this.lights.isLit(i));
       colour.value = temperature || 4000;
-      kelvin.textContent = temperature ? `${temperature} K` : 'as made';
-      dot.style.setProperty('--light', cssColour(tint.map((part, c) => part * light.color[c])));
+      picker.value = hexOf(tint);
+      kelvin.textContent = temperature ? `${temperature} K` : made ? 'as made' : picker.value;
+      own.disabled = made;
+      dot.style.setProperty('--light', hexOf(tint.map((part, c) => part * light.color[c])));
     };
     this.rows.push(show);
     show();
@@ -146,13 +174,27 @@ class Panel {
     section.hidden = false;
     room.hours.dates.forEach((text, i) => date.append(element('option', {value: i, textContent: text})));
     Object.assign(hour, {min: 0, max: room.hours.times.length - 1, step: 0.25});
-    const change = () => {
-      this.lights.hour = {date: Number(date.value), time: Number(hour.value)};
-      this.showHour();
-      this.changed('hour');
-    };
+    const change = ({target}) => this.setHour(Number(date.value), Number(hour.value), target === hour);
     date.addEventListener('input', change);
     hour.addEventListener('input', change);
+  }
+
+  ///   date, time   indices into room.hours
+  setHour(date, time, holds) {
+    this.lights.hour = {date: clamp(date, 0, room.hours.dates.length - 1),
+                        time: clamp(time, 0, room.hours.times.length - 1)};
+    this.showHour();
+    this.changed('hour', holds);
+  }
+
+  /// Returns whether a key sets the hour or the month.
+  takeHourKey({code, shiftKey}) {
+    const hours = (code === 'BracketRight') - (code === 'BracketLeft');
+    const months = (code === 'PageDown') - (code === 'PageUp');
+    if (!room.hours || (!hours && !months)) return false;
+    const {date, time} = this.lights.hour, {times} = room.hours;
+    this.setHour(date + months, time + hours * (shiftKey ? 1 : 0.25) / (times[1] - times[0]), true);
+    return true;
   }
 
   showHour() {
@@ -170,7 +212,6 @@ class Panel {
 
   show() {
     this.rows.forEach((show) => show());
-    if (this.skyToggle) this.skyToggle.checked = this.lights.sky.on;
     this.showHour();
   }
 }

@@ -19,7 +19,7 @@ class Renderer {
     this.gl = gl;
     this.exposure = 1;
     this.mode = 0;  // 0 the picture, 1 its light, 2 lux
-    this.scale = [Math.log2(1), Math.log2(1000)];
+    this.falseColours = {contours: 0, top: 1000};  // filled, in steps, isolines, bands; lux
     this.unit = 1 / room.display.exposure;  // luminance of white when the page was opened
     this.drawCalls = 0;
     this.isLit = !room.live;  // else an even light stands for that which is to come
@@ -399,14 +399,6 @@ class Renderer {
     gl.uniform1i(location, unit);
   }
 
-  setFalseColours(uniforms, mode) {
-    const gl = this.gl;
-    gl.uniform1i(uniforms.uMode, mode);
-    gl.uniform2f(uniforms.uScale, ...this.scale);
-    gl.uniform1f(uniforms.uLux, room.lux * this.unit);
-    this.bind(7, gl.TEXTURE_2D, this.palette, uniforms.uPalette);
-  }
-
   /// Draws into the bound framebuffer.
   ///   camera   {eye, right, up, forward, projection}
   drawView({eye, right, up, forward, projection}, mode) {
@@ -419,7 +411,7 @@ class Renderer {
     const room_ = this.roomProgram;
     gl.useProgram(room_.program);
     const u = room_.uniforms;
-    this.setFalseColours(u, mode);
+    gl.uniform1i(u.uMode, mode);
     gl.uniformMatrix4fv(u.uCamera, false, product(projection, viewMatrix(eye, right, up, back)));
     gl.uniform3f(u.uEye, ...eye);
     gl.uniform3f(u.uProbe, ...(this.probePlace ?? [0, 0, 0]));
@@ -471,7 +463,7 @@ class Renderer {
     const gl = this.gl;
     const {program, uniforms: u} = this.skyProgram;
     gl.useProgram(program);
-    this.setFalseColours(u, mode);
+    gl.uniform1i(u.uMode, mode);
     const across = scaled(right, 1 / projection[0]), high = scaled(up, 1 / projection[5]);
     gl.uniformMatrix4fv(u.uRays, false, new Float32Array([...across, 0, ...high, 0, ...forward, 0,
                                                           0, 0, 0, 0]));
@@ -558,17 +550,33 @@ class Renderer {
     this.drawCalls = 0;
     this.updateProbe();
     this.fit();
-    const {width, height} = this.canvas, rest = this.mode === 0 ? this.rest : null;
-    this.screen.begin(width, height);
-    if (!rest || (rest.shown < 1 && !rest.before)) {
-      this.drawView(this.cameraOf(walker, width / height), this.mode);
-    }
-    this.screen.show(this.mode === 2 ? null : this.exposure, rest);
+    const {width, height} = this.canvas, {screen, falseColours: {contours, top}, rest} = this;
+    const camera = this.cameraOf(walker, width / height), showsLux = this.mode === 2;
+    const drawInto = (target, mode) => {
+      screen.begin(width, height);
+      this.drawView(camera, mode);
+      screen.keep(target);
+    };
+    const isSeen = !showsLux || contours >= 2;  // between lines and bands
+    if (isSeen && (!rest || (rest.shown < 1 && !rest.before))) drawInto(screen.pixels, 0);
+    if (showsLux) drawInto(screen.luminance, 2);
+    screen.fit(width, height);
+    screen.show(this.exposure, rest,
+                showsLux ? {contours, lux: room.lux * this.unit / top, palette: this.palette} : null);
     ++this.drawCalls;
   }
 
+  /// Lux of what is seen of matt surface, some thousand samples.
+  seenLux(walker) {
+    const picture = this.radiance(walker, 96, 64, 1, 2), lux = [];
+    for (let i = 0; i < picture.length; i += 3) {
+      if (picture[i + 1] > 0) lux.push(room.lux * this.unit * picture[i] / picture[i + 1]);
+    }
+    return lux;
+  }
+
   /// Radiance of each pixel, linear RGB, row 0 at the top, from `samples` x `samples` samples each.
-  radiance(walker, width, height, samples = 1) {
+  radiance(walker, width, height, samples = 1, mode = 1) {
     const gl = this.gl;
     const [columns, rows] = [width * samples, height * samples];
     const colour = this.texture(columns, rows, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, null,
@@ -582,7 +590,7 @@ class Renderer {
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, colour, 0);
     gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
     gl.viewport(0, 0, columns, rows);
-    this.drawView(this.cameraOf(walker, width / height), 1);
+    this.drawView(this.cameraOf(walker, width / height), mode);
     const texels = new Float32Array(4 * columns * rows);
     gl.readPixels(0, 0, columns, rows, gl.RGBA, gl.FLOAT, texels);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);

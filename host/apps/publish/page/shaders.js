@@ -1,19 +1,11 @@
 // The programs of the graphics processor. Colours are linear with Rec.709 primaries; light is in
 // units of white on the display at the exposure that the page was opened with. The room is drawn as
-// light, or as false colours, and Screen (display.js) shows it.
+// light, or as its illuminance, and Screen (display.js) shows it.
 
-/// What the fragments of the room and of the sky are.
-const shaderFalseColour = `
+/// What the fragments of the room and of the sky are: light, or its luminance on matt surface and 1, elsewhere 0.
+const shaderMode = `
 const int asIlluminance = 2;
 uniform int uMode;
-uniform vec2 uScale;          // lux at the ends of the false colours' scale, logarithms to 2
-uniform float uLux;           // of a light of luminance 1
-uniform sampler2D uPalette;
-
-vec3 falseColour(float lux) {
-  float place = (log2(max(lux, 1e-9)) - uScale.x) / (uScale.y - uScale.x);
-  return texture(uPalette, vec2(clamp(place, 0.0, 1.0), 0.5)).rgb;
-}
 `;
 
 const shaderRoom = {
@@ -57,7 +49,7 @@ uniform int uTextured;                    // 1 colour, 2 emission
 uniform int uInteraction;                 // 0 opaque, 1 mirror, 2 glass
 uniform int uLayer;                       // 0 what is there, 1 what passes it, 2 all but that
 out vec4 fragment;
-${shaderFalseColour}
+${shaderMode}
 const float largest = 60000.0;            // that half floats hold
 // What comes from a direction, from a cube map that stands for a box (Lagarde and Zanuttini, "Local
 // image-based lighting with parallax-corrected cubemaps", 2012).
@@ -83,8 +75,9 @@ void main() {
   float alpha = vAlbedo.a < 0.0 ? texel.a * -vAlbedo.a : 1.0;
   if (vAlbedo.a > 0.0 && texel.a < vAlbedo.a) discard;
   vec3 light = texture(uLight, vLightUv).rgb;
-  if (uMode == asIlluminance && uInteraction == 0) {
-    fragment = vec4(falseColour(dot(light, vec3(0.2126, 0.7152, 0.0722)) * uLux), alpha);
+  if (uMode == asIlluminance) {
+    float known = uInteraction == 0 ? 1.0 : 0.0;
+    fragment = vec4(known * min(dot(light, vec3(0.2126, 0.7152, 0.0722)), largest), known, 0.0, alpha);
     return;
   }
   vec3 albedo = vAlbedo.rgb * (uTextured == 1 ? texel.rgb : vec3(1.0));
@@ -96,9 +89,7 @@ void main() {
     if (dot(normal, view) < 0.0) normal = -normal;
     float facing = clamp(dot(normal, view), 0.0, 1.0);
     vec3 direction = reflect(-view, normal);
-    if (uInteraction == 1 && uMode == asIlluminance) {
-      radiance = vec3(0.05);
-    } else if (uInteraction == 1) {
+    if (uInteraction == 1) {
       radiance = vSpecular.rgb * reflected(direction, 0.0);
     } else if (uInteraction == 2) {
       float part = fresnel(max(facing, 1e-4), vGlass.x);
@@ -142,7 +133,7 @@ uniform vec3 uEnvironmentLight;
 uniform vec4 uSuns[4];          // direction to it, cosine of its radius
 uniform vec3 uSunLights[4];
 out vec4 fragment;
-${shaderFalseColour}
+${shaderMode}
 void main() {
   vec3 d = normalize(vDirection);
   vec2 place = vec2(atan(d.x, -d.z) * 0.15915494309 + 0.5, acos(clamp(d.y, -1.0, 1.0)) * 0.31830988618);
@@ -151,7 +142,7 @@ void main() {
   for (int i = 0; i < 4; ++i) {
     if (dot(d, uSuns[i].xyz) > uSuns[i].w) radiance += uSunLights[i];
   }
-  fragment = vec4(uMode == asIlluminance ? vec3(0.05) : min(radiance, 60000.0), 1.0);
+  fragment = vec4(uMode == asIlluminance ? vec3(0.0) : min(radiance, 60000.0), 1.0);
 }`,
 };
 

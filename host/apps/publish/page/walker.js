@@ -1,6 +1,7 @@
 // Where the viewer stands and looks, and how keys, mouse, fingers and gamepads move them.
 
-const walking = {speed: 1.4, fast: 2.5, radius: 0.22, step: 0.45, headroom: 0.12};
+const walking = {speed: 1.4, fast: 2.5, radius: 0.22, step: 0.45, headroom: 0.12,
+                 orbit: 0.005, ahead: 2};  // radians a pixel; metres, of what is turned around where nothing is ahead
 
 class Walker {
   constructor(surfaces) {
@@ -26,9 +27,13 @@ class Walker {
   /// Stands where a camera of the scene does.
   stand(camera) {
     this.standAt(camera.position);
-    this.yaw = Math.atan2(camera.forward[0], -camera.forward[2]);
-    this.pitch = Math.asin(clamp(camera.forward[1], -1, 1));
+    this.lookAlong(camera.forward);
     this.angle = camera.angle;
+  }
+
+  lookAlong(forward) {
+    this.yaw = Math.atan2(forward[0], -forward[2]);
+    this.pitch = Math.asin(clamp(forward[1], -1, 1));
   }
 
   /// With the eye as high above the ground as it is there.
@@ -58,7 +63,7 @@ class Walker {
     const axis = (i) => (pad && Math.abs(pad.axes[i] ?? 0) > 0.15 ? pad.axes[i] : 0);
     let across = this.stick[0] + axis(0) + held('KeyD') - held('KeyA');
     let ahead = this.stick[1] - axis(1) + held('KeyW', 'ArrowUp') - held('KeyS', 'ArrowDown');
-    const rise = held('KeyE', 'PageUp') - held('KeyQ', 'PageDown');
+    const rise = held('KeyE') - held('KeyQ');
     this.turn((axis(2) + held('ArrowRight') - held('ArrowLeft')) * 1.6 * seconds,
               -axis(3) * 1.2 * seconds);
     const length = Math.max(1, Math.hypot(across, ahead));
@@ -77,21 +82,40 @@ class Walker {
     return before !== [...this.eye, this.yaw, this.pitch].join();
   }
 
+  /// Turns around a place. Who walks stays on the floor and within the walls, and looks at the place all the same.
+  orbit(place, across, up) {
+    const from = subtract(place, this.eye), distance = Math.hypot(...from);
+    this.turn(across, up);
+    const wanted = subtract(place, scaled(this.forward, distance));
+    if (this.flies) {
+      this.eye = wanted;
+      return;
+    }
+    this.step([wanted[0] - this.eye[0], 0, wanted[2] - this.eye[2]]);
+    this.height = clamp(this.height + wanted[1] - this.eye[1], 0.5, 2.2);
+    this.eye[1] = (this.ground(this.eye) ?? this.eye[1] - this.height) + this.height;
+    this.lookAlong(normalized(subtract(place, this.eye)));
+  }
+
+  /// Goes so far over the floor, if nothing is in the way. Returns whether it is not.
+  step(offset) {
+    const from = this.eye.slice();
+    const next = this.pushed(add(this.eye, offset));
+    // The viewer cannot walk off the edge of the floor, or through a wall in one long step.
+    const way = subtract(next, from), length = Math.hypot(...way);
+    const blocked = length > 0 &&
+        (this.surfaces.meet(from, scaled(way, 1 / length))?.distance ?? Infinity) < length;
+    if (blocked || this.ground(next) === null) return false;
+    this.eye = next;
+    return true;
+  }
+
   move(offset, seconds) {
     if (this.flies) {
       this.eye = add(this.eye, offset);
       return;
     }
-    if (offset[0] !== 0 || offset[2] !== 0) {
-      const from = this.eye.slice();
-      const next = this.pushed(add(this.eye, [offset[0], 0, offset[2]]));
-      // The viewer cannot walk off the edge of the floor, or through a wall in one long step.
-      const way = subtract(next, from), length = Math.hypot(...way);
-      const blocked = length > 0 &&
-          (this.surfaces.meet(from, scaled(way, 1 / length))?.distance ?? Infinity) < length;
-      if (!blocked && this.ground(next) !== null) this.eye = next;
-      else this.speed = [0, 0, 0];
-    }
+    if ((offset[0] !== 0 || offset[2] !== 0) && !this.step([offset[0], 0, offset[2]])) this.speed = [0, 0, 0];
     const ground = this.ground(this.eye);
     if (ground === null) return;
     const target = ground + this.height;
@@ -135,9 +159,9 @@ function listen(walker, canvas, pad, changed, pointed) {
   const typing = (event) => event.target.matches?.('input, select, textarea, button, summary, dialog *');
   window.addEventListener('keydown', (event) => {
     if (typing(event) || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (/^(Key[WASDQE]|Arrow|Page|Shift)/.test(event.code)) {
+    if (/^(Key[WASDQE]|Arrow|Shift)/.test(event.code)) {
       walker.keys.add(event.code);
-      if (/^(Arrow|Page)/.test(event.code)) event.preventDefault();
+      if (event.code.startsWith('Arrow')) event.preventDefault();
       changed();
     }
   });
@@ -146,12 +170,17 @@ function listen(walker, canvas, pad, changed, pointed) {
 
   const fingers = new Map();
   let travelled = 0;
+  let pivot = null;  // that the right button turns around
   canvas.addEventListener('pointerdown', (event) => {
     canvas.focus({preventScroll: true});
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, [event.clientX, event.clientY]);
     if (fingers.size === 1) travelled = 0;
+    if (event.button !== 2) return;
+    const ahead = walker.surfaces.meet(walker.eye, walker.forward)?.distance ?? walking.ahead;
+    pivot = add(walker.eye, scaled(walker.forward, ahead));
   });
+  canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('pointermove', (event) => {
     const before = fingers.get(event.pointerId);
     if (!before) return;
@@ -160,7 +189,8 @@ function listen(walker, canvas, pad, changed, pointed) {
     travelled += Math.hypot(...moved);
     if (fingers.size === 1) {
       const radians = walker.angle / canvas.clientHeight;
-      walker.turn(-moved[0] * radians, moved[1] * radians);
+      if (pivot) walker.orbit(pivot, -moved[0] * walking.orbit, moved[1] * walking.orbit);
+      else walker.turn(-moved[0] * radians, moved[1] * radians);
     } else {  // two fingers walk
       const metres = 2.5 / canvas.clientHeight;
       const level = [Math.sin(walker.yaw), 0, -Math.cos(walker.yaw)];
@@ -172,13 +202,15 @@ function listen(walker, canvas, pad, changed, pointed) {
   const lift = (event) => {
     const was = fingers.size;
     if (!fingers.delete(event.pointerId)) return;
-    if (event.type === 'pointerup' && was === 1 && travelled < 6) {
+    if (event.type === 'pointerup' && was === 1 && travelled < 6 && !pivot) {
       pointed(event.clientX, event.clientY);
     }
+    pivot = null;
   };
   canvas.addEventListener('pointerup', lift);
   canvas.addEventListener('pointercancel', lift);
   canvas.addEventListener('wheel', (event) => {
+    if (event.ctrlKey) return;  // the browser zooms
     event.preventDefault();
     walker.angle = clamp(walker.angle * Math.exp(event.deltaY * 0.0008), 0.25, 1.9);
     changed();
