@@ -483,6 +483,8 @@ def check_mouse(browser):
         browser.mouse(kind, 160, 100)
     text = browser.run("return document.getElementById('reading').textContent")
     assert " lx" in text and "±" in text and "left" in text and "right" in text, text
+    lux, luminance = (float(line.split()[0].replace(",", "")) for line in text.split("\n")[:2])
+    near(luminance / lux, 0.5 / np.pi, 0.01 * luminance / lux)  # as the walls reflect half
     browser.press("Escape")
     assert browser.run("return document.getElementById('reading').hidden")
 
@@ -604,7 +606,7 @@ return [...document.querySelectorAll('#legend span')].map(
     near(middles / middles[0], np.arange(1, 16, 2), 1e-6)
     assert middles[0] == float(f"{middles[0]:.1g}"), middles  # round
     colours = saved_picture(browser, folder)
-    palette = np.array(browser.run("return room.palette")) / 255
+    palette = np.array(browser.run("return page.renderer.colours")) / 255
     top = 2 * (middles[3] + middles[0])
     lux = [browser.run(CLICK, x + 0.5, y + 0.5)["lux"] for x, y in places]
 
@@ -617,6 +619,11 @@ return [...document.querySelectorAll('#legend span')].map(
 const [field, value] = arguments;
 document.getElementById(field).value = value;
 document.getElementById(field).dispatchEvent(new Event('input'));"""
+    browser.run(choose, "palette", browser.run("return room.palettes.findIndex(({name}) => name === 'viridis')"))
+    colours = saved_picture(browser, folder)
+    palette = np.array(browser.run("return page.renderer.colours")) / 255
+    assert np.abs(palette[[0, 255]] - [[0.267, 0.005, 0.329], [0.993, 0.906, 0.144]]).max() < 0.01  # of matplotlib
+    check_colours(lambda share: share)
     browser.run(choose, "contours", 1)
     colours = saved_picture(browser, folder)
     check_colours(lambda share: (np.floor(share * 8) + 0.5) / 8)
@@ -638,6 +645,7 @@ document.getElementById(field).dispatchEvent(new Event('input'));"""
         assert 0.01 < changed.mean() < 0.3 and changed[off > left].mean() < 0.01
         on = changed & (off < 0.1)
         near(np.abs(colours[on] - palette[np.clip(np.round(255 * steps[on] / 8), 0, 255).astype(int)]).mean(), 0, 0.02)
+    browser.run(choose, "palette", 0)
     browser.run(choose, "top", "")
     browser.run(choose, "contours", 0)
     browser.press("v")

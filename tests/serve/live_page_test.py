@@ -171,12 +171,14 @@ form.querySelector('button').click();""")
 def check_two(browser, url):
     """A second page has the lamps of the first, and its own eye; one that a link opened gives everybody its lamps."""
     browser.run(SET_POWER, "left", 0.5)
+    browser.run("document.querySelectorAll('.solo')[1].click()")
     time.sleep(0.3)
     first = browser.driver.current_window_handle
     browser.driver.switch_to.new_window("tab")
     browser.visit(url)
     half = "return Math.abs(page.lights.states[0].power / room.lights[0].power - {}) < 0.01"
     browser.until(half.format(0.5))
+    assert browser.run("return page.lights.states.map((state) => state.solo)") == [False, True]
     state = {"eye": [2, 1.5, 3], "look": [0.3, 0, 1], "ev": 0.5, "lights": {"left": [browser.run(
         "return 0.75 * room.lights[0].power"), 1, 2700]}, "hour": None}
     browser.driver.get("about:blank")

@@ -59,11 +59,16 @@ json kelvins() {
   return table;
 }
 
-json palette() {
-  const report::Palette turbo("turbo");
-  json table;
-  for (int i = 0; i < 256; ++i) table.push_back(turbo.at(i / 255.0));
-  return table;
+/// Each palette's colours from low to high: six hexadecimal digits each.
+json palettes() {
+  json tables;
+  for (const std::string& name : report::Palette::names()) {
+    const report::Palette palette(name);
+    std::string digits;
+    for (int i = 0; i < 256; ++i) digits += palette.hex(i / 255.0).substr(1);
+    tables.push_back({{"name", name}, {"colours", digits}});
+  }
+  return tables;
 }
 
 /// How places of the page become those of the scene's file.
@@ -125,7 +130,7 @@ class PageWriter {
                   {"block", error_block},         {"errorSteps", error_steps}};
     d["display"] = display_of(room_.display);
     d["temperatures"] = kelvins();
-    d["palette"] = palette();
+    d["palettes"] = palettes();
     d["legendSteps"] = defaults::legend_steps;
     d["targets"] = targets();
     d["world"] = world_of(scene_);

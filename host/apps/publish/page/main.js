@@ -116,7 +116,7 @@ class Page {
     const decade = 10 ** Math.floor(Math.log10(step));
     const round = [1, 1.2, 1.6, 2, 3, 4, 6, 8, 10].find((part) => part * decade >= step * 0.999) * decade;
     falseColours.top = find('#top').validity.valid && Number(find('#top').value) || round * steps;
-    const colour = (share) => `rgb(${room.palette[Math.round(255 * share)].join(' ')})`;
+    const colour = (share) => `rgb(${this.renderer.colours[Math.round(255 * share)].join(' ')})`;
     const middles = Array.from({length: steps}, (_, i) => (i + 0.5) / steps);
     find('#scale').style.background = `linear-gradient(to right, ${
         falseColours.contours === 0
@@ -124,7 +124,7 @@ class Page {
             : middles.map((share, i) => `${colour(share)} ${100 * i / steps}% ${100 * (i + 1) / steps}%`).join(', ')})`;
     const [part, unit] = falseColours.top < 1e4 ? [1, ''] : [1000, 'k'];
     find('#legend figcaption').replaceChildren(...middles.map((share) => element('span', {
-      textContent: Number((share * falseColours.top / part).toPrecision(4)).toLocaleString('en') + unit})));
+      textContent: Number((share * falseColours.top / part).toPrecision(4)) + unit})));
   }
 
   ///   holds   whether a control is held that goes on changing
@@ -202,6 +202,12 @@ class Page {
     const kind = find('#contours');
     kind.addEventListener('input', () => {
       this.renderer.falseColours.contours = Number(kind.value);
+      this.setMode(2);
+    });
+    const palette = find('#palette');
+    palette.append(...room.palettes.map(({name}, value) => element('option', {value, textContent: name})));
+    palette.addEventListener('input', () => {
+      this.renderer.setPalette(Number(palette.value));
       this.setMode(2);
     });
     find('#top').addEventListener('input', () => this.setMode(2));

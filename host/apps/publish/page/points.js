@@ -49,7 +49,8 @@ class Points {
     const number = ++this.clicked;
     const [a, b, c] = this.page.surfaces.corners(hit.triangle);
     const normal = normalized(cross(subtract(b, a), subtract(c, a)));
-    const point = {number, hit, normal, place: add(hit.place, scaled(normal, sensorHeight)), repeats: []};
+    const point = {number, hit, normal, place: add(hit.place, scaled(normal, sensorHeight)), repeats: [],
+                   eye: this.page.walker.eye.slice()};
     point.ring = element('i', {textContent: number});
     const open = element('button', {type: 'button', className: 'ring', textContent: number,
                                     title: 'Show in the picture'});
@@ -130,6 +131,7 @@ class Points {
           .filter(([lux]) => lux > 0.005 * all).slice(0, 4);
       find('#reading').replaceChildren(
           ...value.map((part) => part.cloneNode?.(true) ?? part),
+          `\n${shortNumber(page.renderer.luminance(point.eye, point.hit.place))} cd/m²`,
           ...(most.length > 1 ? most.map(([lux, name]) => `\n${shortNumber(lux)}  ${name}`) : []));
     }
   }

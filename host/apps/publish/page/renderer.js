@@ -44,13 +44,21 @@ class Renderer {
     await this.loadTextures(archive);
     await this.loadLightMaps(archive);
     await this.loadSky(archive);
-    this.palette = this.texture(room.palette.length, 1, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE,
-                                Uint8Array.from(room.palette.flatMap((c) => [...c, 255])),
-                                gl.LINEAR);
+    this.setPalette(0);
     if (room.parts.some((part) => part.interaction > 0) ||
         room.materials.some((material) => material.specular.some((part) => part > 0))) {
       this.makeProbe();
     }
+  }
+
+  /// Of false colours, by its number in room.palettes.
+  setPalette(i) {
+    const gl = this.gl, {colours} = room.palettes[i];
+    const bytes = colours.match(/../g).map((digits) => parseInt(digits, 16));
+    this.colours = Array.from({length: bytes.length / 3}, (_, colour) => bytes.slice(3 * colour, 3 * colour + 3));
+    gl.deleteTexture(this.palette ?? null);
+    this.palette = this.texture(this.colours.length, 1, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE,
+                                Uint8Array.from(this.colours.flatMap((c) => [...c, 255])), gl.LINEAR);
   }
 
   program({vertex, fragment}) {
@@ -608,6 +616,12 @@ class Renderer {
       }
     }
     return picture;
+  }
+
+  /// What is seen of a place from another: cd/m2.
+  luminance(eye, place) {
+    const forward = normalized(subtract(place, eye)), right = normalized(cross(forward, [1e-6, 1, 0]));
+    return room.lux * luminanceOf(this.radiance({eye, forward, right, angle: 1e-3}, 1, 1));
   }
 
   /// Light of each lamp, linear RGB at its power, at a place of the light maps.
