@@ -46,7 +46,7 @@ page.frame = (time) => {
   frame(time);
 };
 """
-KEY_CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27, "Tab": 9,
+KEY_CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27, "Tab": 9, "Delete": 46,
              "Shift": 16, "F2": 113, "[": 219, "]": 221, "PageDown": 34}
 
 BYTES = """
@@ -139,10 +139,11 @@ class Browser:
         text = self.run(RADIANCE, *SIZE)
         return np.frombuffer(base64.b64decode(text), np.float32).reshape(SIZE[1], SIZE[0], 3)
 
-    def hold(self, key, seconds, code=None):
+    def hold(self, key, seconds, code=None, modifiers=0):
         """Holds a key down; `code` is its place on the keyboard, where that is not its name."""
-        event = {"key": key, "code": code or key, "windowsVirtualKeyCode": KEY_CODES.get(key, ord(key[0].upper()))}
-        if len(key) == 1:
+        event = {"key": key, "code": code or key, "windowsVirtualKeyCode": KEY_CODES.get(key, ord(key[0].upper())),
+                 "modifiers": modifiers}
+        if len(key) == 1 and not modifiers:
             event["text"] = key
         self.run_command("Input.dispatchKeyEvent", {"type": "keyDown", **event})
         if seconds > 0:

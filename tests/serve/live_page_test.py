@@ -8,6 +8,9 @@ import base64
 import json
 import math
 import pathlib
+import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -158,6 +161,15 @@ form.querySelector('button').click();""")
     buttons = "[...document.querySelectorAll('#presets button')]"
     browser.run(f"{buttons}[0].click()")
     near(browser.run("return page.lights.states[0].power") / full, 1, 1e-6)
+    browser.run(f"{buttons}.find((one) => one.title.startsWith('Write')).click()")
+    copy = scene.with_name(f"{scene.stem}.evening.obj")
+    for _ in range(200):
+        if copy.exists():
+            break
+        time.sleep(0.05)
+    left, written = (next(light["lumens"] for light in json.loads(photile("info", file, "--json"))["lights"]
+                          if light["name"] == "left") for file in (scene, copy))
+    near(written / left, 0.25, 1e-3)
     browser.run(f"{buttons}.find((one) => one.textContent === 'evening').click()")
     near(browser.run("return page.lights.states[0].power") / full, 0.25, 1e-3)
     assert browser.run("return page.lights.states[1].kelvin") == 3000
@@ -194,6 +206,181 @@ def check_two(browser, url):
     assert browser.viewer()["eye"] != [2, 1.5, 3]
 
 
+def check_exr(browser, folder, scene):
+    """The saved picture is the file of `photile render`, also with a lamp moved."""
+    browser.stand()
+    browser.exact()
+    browser.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+    saved, rendered = folder / f"{scene.stem}.exr", folder / "rendered.exr"
+    angle = math.degrees(browser.run("return page.walker.angle"))
+    photile("render", scene, "-o", rendered, "--size", "%dx%d" % SIZE, "--field-of-view", angle, "--eye",
+            ",".join(map(str, EYE)), "--look-at", ",".join(str(e + f) for e, f in zip(EYE, FORWARD)), "--light",
+            "left=x0.5", *MADE)
+    browser.run(SET_POWER, "left", 0.5)
+    saved.unlink(missing_ok=True)
+    browser.hold("s", 0, "KeyS", modifiers=2)
+    for _ in range(600):
+        if saved.exists():
+            break
+        time.sleep(0.05)
+    found, expected = (page_test.oiio.ImageInput.open(str(file)) for file in (saved, rendered))
+    assert list(found.spec().channelnames) == list(expected.spec().channelnames)
+    assert found.spec().getattribute("photile.white") == expected.spec().getattribute("photile.white")
+    difference = np.abs(np.asarray(found.read_image("float")) - np.asarray(expected.read_image("float")))
+    print(f"EXR: {len(found.spec().channelnames)} channels, off by {difference.max():.2g}")
+    assert difference.max() <= 1e-5 * np.asarray(expected.read_image("float")).max()  # a slider is not exact
+    browser.run(SET_POWER, "left", 1)
+
+
+def check_photons(browser):
+    """A click tints the triangle and shows its photons; without the mode it measures."""
+    browser.stand([3, 1.6, 3.5], [0, -0.6, -0.8])
+    browser.exact()
+    pixel = """
+page.renderer.draw(page.walker);
+const {gl, canvas} = page.renderer, texel = new Uint8Array(4 * 40 * 40);
+gl.readPixels(140, canvas.height - 120, 40, 40, gl.RGBA, gl.UNSIGNED_BYTE, texel);
+return [...texel];"""
+    plain = np.array(browser.run(pixel)).reshape(-1, 4)[:, :3].astype(float)
+    toggle = "[...document.querySelectorAll('#display button')].find((one) => one.textContent.includes('Photons'))"
+    browser.run(f"{toggle}.click()")
+    browser.mouse("Pressed", 160, 100)
+    browser.mouse("Released", 160, 100)
+    browser.until("return page.live.photons.parts")
+    assert browser.run("return page.points.all.length === 0"), "a click measures, too"
+    shown = np.array(browser.run(pixel)).reshape(-1, 4)[:, :3].astype(float)
+    tinted = np.abs(shown - (0.6 * plain + 0.4 * np.array([230, 60, 40]))).max(axis=1) < 3
+    yellow = np.abs(shown - [255, 230, 0]).max(axis=1) < 3
+    print(f"photons: tinted {tinted.mean():.0%}, photons {yellow.mean():.0%}")
+    assert tinted.mean() > 0.1 and yellow.mean() > 0.1 and tinted.mean() + yellow.mean() > 0.9
+    assert "photons on it" in browser.run("return document.querySelector('#display .legend').textContent")
+    browser.run(f"{toggle}.click()")
+    assert np.array_equal(np.array(browser.run(pixel)).reshape(-1, 4)[:, :3], plain)
+
+
+def check_settings(browser):
+    """Fewer photons: the picture at rest is that of the new maps."""
+    browser.stand()
+    before = browser.exact()
+    number = browser.run("return page.live.picture")
+    browser.run("""
+const input = document.getElementById('setting-photons_emitted');
+input.value = 20000;
+input.dispatchEvent(new Event('change'));""")
+    browser.until(f"return page.live.picture > {number} && page.renderer.rest?.number === page.live.picture")
+    after = browser.exact()
+    difference = np.abs(after - before).mean() / before.mean()
+    print(f"fewer photons: the picture differs by {difference:.2g}")
+    assert 1e-4 < difference < 0.2
+    browser.until("return document.getElementById('setting-photons_emitted').value === '20000'")
+
+
+def check_glare(browser, folder):
+    """Reflections are marked as `photile render --glare` marks them."""
+    for end in ("gltf", "bin"):
+        shutil.copy(page_test.SOURCE / f"scenes/gallery/glossy-floor.{end}", folder)
+    scene = folder / "glossy-floor.gltf"
+    limit = 0.2  # of the mean
+    result = subprocess.run([page_test.PHOTILE, "render", scene, "-o", folder / "floor.exr", "--glare",
+                             folder / "glare.png", "--set", f"glare_limit={limit}", "--size", "%dx%d" % SIZE, *MADE[:-1]],
+                            capture_output=True, text=True, check=True)
+    expected = [float(part) for part in re.search(
+        r"glare: \S+: (\S+)% of the picture above (\S+) .*, up to (\S+)", result.stdout + result.stderr).groups()]
+    with Served(page_test.PHOTILE, scene, *MADE) as served:
+        browser.visit(served.url)
+        browser.run("document.querySelector('[name=shown][value=glare]').click()")
+        browser.run("const limit = document.getElementById('glare-limit'); limit.value = arguments[0]; "
+                    "limit.dispatchEvent(new Event('change'))", limit)
+        browser.exact()
+        browser.until("return page.live.glare.marks?.rest === page.renderer.rest")
+        text = browser.run("return page.live.glare.section.textContent")
+        colours = np.array(browser.run("""
+page.renderer.draw(page.walker);
+const {gl, canvas: {width, height}} = page.renderer, texels = new Uint8Array(4 * width * height);
+gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, texels);
+return [...texels];""")).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
+        shown = np.abs(colours - browser.run("return page.live.glare.marks.colours[0]")).max(axis=2) < 2
+        print(f"glare: {expected}; {text}; marked {shown.mean():.2%}")
+        assert abs(100 * shown.mean() - expected[0]) < 0.02 * expected[0], (shown.mean(), expected)
+        browser.driver.get("about:blank")
+
+
+def check_luminaires(browser, folder):
+    """Lamps are placed by a click, dragged and copied; the page goes on where it was with each new scene."""
+    for name in ("sun-and-sky.gltf", "sun-and-sky.bin", "downlight.ies"):
+        shutil.copy(page_test.SOURCE / "scenes/gallery" / name, folder)
+    lamps = folder / "lamps.json"
+    lamp = "page.live?.luminaires?.state.entries"
+
+    def loaded(condition):
+        browser.until(f"return typeof page === 'object' && document.getElementById('loading') === null && "
+                      f"page.live?.luminaires?.state && !page.live.luminaires.state.loading && ({condition})")
+
+    def entries():
+        browser.run("return page.live.luminaires.save()")
+        browser.until("return !page.live.luminaires.state.unsaved")
+        return json.loads(lamps.read_text())
+
+    with Served(page_test.PHOTILE, folder / "sun-and-sky.gltf", "--luminaires", lamps, *MADE) as served:
+        browser.visit(served.url)
+        loaded("page.renderer.isLit")
+        browser.run("page.setExposure(1)")
+        browser.mouse("Pressed", 40, 120)
+        browser.mouse("Released", 40, 120)
+        browser.until("return page.points.all.length === 1")
+        point = browser.run("return page.points.all[0].place")
+        before = browser.viewer()
+        hit = browser.run("return page.meet(140, 100)")
+        browser.press("b")
+        browser.mouse("Pressed", 140, 100)
+        browser.mouse("Released", 140, 100)
+        loaded("room.lights.length === 1 && room.lights[0].name === 'downlight'")
+        after = browser.viewer()
+        near([*after["eye"], after["yaw"], after["pitch"]], [*before["eye"], before["yaw"], before["pitch"]], 1e-3)
+        assert browser.run("return page.stops") == 1
+        near(browser.run("return page.points.all[0].place"), point, 1e-3)
+        assert not lamps.exists()
+        assert browser.run("const event = new Event('beforeunload', {cancelable: true}); window.dispatchEvent(event); "
+                           "return event.defaultPrevented"), "unsaved changes are not asked about"
+        placed, = entries()
+        near(browser.run(f"return {lamp}[0].middles[0]"), hit["place"], 0.01)
+        box = browser.run("const {x, y, width, height} = document.querySelector('#outlines .selected')"
+                          ".getBoundingClientRect(); return [x + width / 2, y + height / 2]")
+        browser.mouse("Pressed", *box)
+        browser.mouse("Moved", box[0] - 20, box[1] + 10, buttons=1)
+        browser.mouse("Moved", box[0] - 30, box[1] + 15, buttons=1)
+        browser.mouse("Released", box[0] - 30, box[1] + 15)
+        browser.until(f"return Math.hypot(...subtract({lamp}[0].middles[0], arguments[0])) > 0.1".replace(
+            "arguments[0]", json.dumps(hit["place"])))
+        near(browser.viewer()["yaw"], before["yaw"], 1e-3)  # what moves is the lamp
+        loaded("page.live.luminaires.state.unsaved")
+        moved, = entries()
+        kept = [here == there for here, there in zip(moved["position"], placed["position"])]
+        assert sum(kept) == 1, (placed, moved)
+        browser.hold("d", 0, "KeyD", modifiers=2)
+        loaded("room.lights.length === 2")
+        browser.press("r")
+        browser.until(f"return Math.abs({lamp}[1].rotation - 15) < 1e-6")
+        browser.press("Delete")
+        loaded("room.lights.length === 1")
+        browser.run("[...document.querySelectorAll('#luminaires button')].find((one) => one.textContent === '↶').click()")
+        loaded("room.lights.length === 2")
+        # A click on a lamp selects it; elsewhere it measures.
+        browser.press("Escape")
+        browser.until("return document.querySelector('#outlines .selected') === null")
+        box = browser.run("const {x, y, width, height} = document.querySelector('#outlines polygon')"
+                          ".getBoundingClientRect(); return [x + width / 2, y + height / 2]")
+        browser.mouse("Pressed", *box)
+        browser.mouse("Released", *box)
+        browser.until("return page.live.luminaires.state.selected === 0")
+        assert browser.run("return page.points.all.length") == 1
+        browser.mouse("Pressed", 60, 120)
+        browser.mouse("Released", 60, 120)
+        browser.until("return page.points.all.length === 2")
+        assert len(entries()) == 2
+        browser.driver.get("about:blank")
+
+
 def test_page(browser, folder):
     scene = page_test.obj_room(folder)
     with Served(page_test.PHOTILE, scene, *MADE) as served:
@@ -202,10 +389,16 @@ def test_page(browser, folder):
         check_picture(browser, folder, scene)
         check_lux(browser, folder, scene)
         check_walk(browser)
+        check_exr(browser, folder, scene)
+        check_photons(browser)
         check_moods(browser, scene)
         check_two(browser, served.url)
-        messages = browser.messages()
-        assert not messages, messages
+        check_settings(browser)
+        browser.driver.get("about:blank")  # before its server ends
+    check_glare(browser, folder)
+    check_luminaires(browser, folder)
+    messages = browser.messages()
+    assert not messages, messages
 
 
 def main():

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """What `photile serve` lets in, and when it ends.
 
-Usage: server_test.py attacks|ends PHOTILE SOURCE_FOLDER
+Usage: server_test.py attacks|ends|luminaires|maps|year PHOTILE SOURCE_FOLDER
 """
 
+import json
 import pathlib
+import re
+import shutil
 import signal
 import socket
 import sys
@@ -62,6 +65,27 @@ def posts(served):
                        ("words", {**VIEW, "eye": ["a", 0, 0]}), ("another sky", {**VIEW, "sky": [1, 2, 3]}),
                        ("more", {**VIEW, "file": "/etc/passwd"})):
         check(what, served.post("view", "a", body), 400)
+    check("luminaires where none are edited", served.post("luminaires", "a", {"save": True}), 404)
+    check("a year without weather", served.post("year", "a", {}), 404)
+    check("light for nobody", served.request("light?viewer=b&since=0")[0], 404)
+    mix, ray = [[1, 1, 1, 1]], {"eye": [2, 1, 3], "direction": [0, -1, 0]}
+    served.post("view", "a", {**VIEW, "glare": True})
+    while served.post("glare", "a", {"mix": mix, "limit": 3}) == 404:
+        time.sleep(0.1)
+    for what, body, status in (
+            ("exr", {"mix": mix}, 200), ("glare", {"mix": mix, "limit": 3}, 200), ("photons", ray, 200),
+            ("exr", {}, 400), ("exr", {"mix": [*mix, *mix]}, 400), ("exr", {"mix": [[1, 1, 1]]}, 400),
+            ("exr", {"mix": [["a", 1, 1, 1]]}, 400), ("exr", {"mix": [[-1, 1, 1, 1]]}, 400),
+            ("exr", {"mix": mix, "file": "/etc/passwd"}, 400), ("glare", {"mix": mix, "limit": 0}, 400),
+            ("glare", {"mix": mix}, 400), ("photons", {}, 400), ("photons", {**ray, "direction": [0, 0, 0]}, 400),
+            ("photons", {**ray, "eye": [1e30, 0, 0]}, 400), ("photons", {**ray, "direction": [0, 1, 0]}, 404),
+            ("settings", {"neighbours": 0}, 400), ("settings", {"neighbours": "many"}, 400),
+            ("settings", {"photons_emitted": 1e30}, 400), ("settings", {"radius": -1}, 400),
+            ("settings", {"maps": "none"}, 400), ("settings", {"maps": "naive"}, 400),
+            ("settings", {"light_maps": "off"}, 400), ("settings", {"statistics": "/tmp/file"}, 400),
+            ("moods", {"write": "../../outside"}, 200), ("moods", {"write": 7}, 400)):
+        check(f"{what} {body}", served.post(what, "a", body), status)
+    check("no copy of a mood that is not there", list(FOLDER.glob("hall.*.obj")), [])
     point = {"number": 1, "place": [0, 0, 0], "normal": [0, 1, 0]}
     for what, damage in (("a damaged point", {"normal": [9, 0, 0]}), ("one without a number", {"number": None}),
                          ("one of a negative number", {"number": -1})):
@@ -116,7 +140,7 @@ def shared(served):
             check("told so far", point["from"], len(known[point["number"]]))
             known[point["number"]] += point["repeats"]
     assert known[4] != known[9]
-    light = served.request("light?since=0")[2]
+    light = served.request("light?viewer=first&since=0")[2]
     size = int(light[:8], 16)
     assert light[8:9] == b"{" and len(light) > 8 + size + 100
     for page in (first, second, third):
@@ -160,7 +184,117 @@ def test_ends(folder):
         check("after the last page", served.process.wait(20), 0)
 
 
+def room_of_gallery(folder):
+    for name in ("sun-and-sky.gltf", "sun-and-sky.bin", "downlight.ies"):
+        shutil.copy(SOURCE / "scenes/gallery" / name, folder)
+    return folder / "sun-and-sky.gltf"
+
+
+def hear_until(page, what, condition):
+    while True:
+        news = page.hear(what)
+        if condition(news):
+            return news
+
+
+def test_luminaires(folder):
+    """They are placed into a room that has no lamp, by a file that does not exist yet."""
+    scene, lamps = room_of_gallery(folder), folder / "lamps.json"
+    outside = folder.parent / "outside.ies"
+    with Served(PHOTILE, scene, "--luminaires", lamps, *QUICK[:-1]) as served:
+        page, other = Page(served, "a"), Page(served, "b")
+        check("photometric files", page.hear("luminaires")["files"], ["downlight.ies"])
+        post = lambda **edit: served.post("luminaires", "a", edit)
+        for what, edit in (
+                ("another file", {"file": str(outside)}), ("a file above", {"file": "../outside.ies"}),
+                ("no file", {"file": 7}), ("more", {"path": "/etc/passwd"}), ("no entry", {"select": 1e9}),
+                ("a ray", {"pick": [1, 2]}), ("a crooked ray", {"pick": {"eye": [0, 0, 0], "direction": [9, 0, 0],
+                                                                         "farthest": 1}}),
+                ("far away", {"place": {"place": [1e30, 0, 0], "normal": [0, 1, 0]}}), ("words", {"rotate": "a"}),
+                ("beyond a circle", {"rotate": 1e9}), ("less than none", {"lumens": -1}),
+                ("no pairs", {"array": {"count": [1], "spacing": [1, 1]}}), ("no object", {"drag": True})):
+            check(f"luminaires: {what}", post(**edit), 400)
+        check("nothing is selected", post(remove=True, duplicate=True, rotate=15), 200)
+        check("a lamp", post(place={"place": [0.5, 2.9, 0.25], "normal": [0, -1, 0]}), 200)
+        heard = hear_until(other, "luminaires", lambda news: news["entries"])
+        check("the other page hears", heard["entries"][0]["name"], "downlight")
+        check("many of it", post(array={"count": [101, 1], "spacing": [1, 1]}), 400)
+        check("numbers", post(lumens=500, array={"count": [2, 1], "spacing": [0.8, 0]}, rotate=30), 200)
+        check("no file yet", lamps.exists(), False)
+        check("the room with it", page.hear("reload"), True)
+        check("what the old page asks for", served.request("light?viewer=a&since=0")[0], 404)
+        text = served.request()[2].decode()
+        names = [light["name"] for light in json.loads(re.search('id="room">(.*?)</script>', text).group(1))["lights"]]
+        check("its lights", names, ["downlight"])
+        number = re.search('"live":(\\d+)', text).group(1)
+        page = Page(served, f"c&since={number}")
+        check("what a new page hears", page.hear("luminaires")["unsaved"], True)
+        post = lambda **edit: served.post("luminaires", "c", edit)
+        check("a copy", post(duplicate=True), 200)
+        check("two", hear_until(page, "luminaires", lambda news: len(news["entries"]) == 2)["selected"], 1)
+        check("undone", post(undo=True), 200)
+        check("one", len(hear_until(page, "luminaires", lambda news: len(news["entries"]) == 1)["entries"]), 1)
+        check("saved", post(save=True), 200)
+        entry, = json.loads(lamps.read_text())
+        check("the file", entry, {**entry, "name": "downlight", "file": "downlight.ies", "lumens": 500, "rotation": 30,
+                                  "count": [2, 1], "spacing": [0.8, 0]})
+        check("done again", post(redo=True), 200)
+        hear_until(page, "luminaires", lambda news: news["unsaved"])
+        served.process.send_signal(signal.SIGINT)
+        check("by Ctrl-C", served.process.wait(20), 130)
+    time.sleep(0.2)
+    assert any("changes of luminaires are not saved" in line for line in served.said), served.said
+
+
+def test_maps(folder):
+    """A room whose maps are saved opens with its light, from where options say."""
+    scene, maps = write_hall(folder), folder / "hall.maps"
+    with Served(PHOTILE, scene, "--save-maps", maps, *QUICK) as served:
+        page = Page(served, "a")
+        served.post("view", "a", VIEW)
+        hear_until(page, "work", lambda work: work is None)
+        served.process.send_signal(signal.SIGINT)
+        check("by Ctrl-C", served.process.wait(20), 130)
+    assert maps.stat().st_size > 20_000 * 12, maps.stat().st_size
+    opening = ["--eye", "1,1.25,3", "--look-at", "1,1.25,0"]
+    with Served(PHOTILE, scene, "--load-maps", maps, *opening, *QUICK) as served:
+        page = Page(served, "a")
+        served.post("view", "a", VIEW)
+        stages = []
+        hear_until(page, "work", lambda work: stages.append(work and work["stage"]) or work is None)
+        print(f"stages: {stages}")
+        assert "trace photons" not in stages, stages
+        room = json.loads(re.search('id="room">(.*?)</script>', served.request()[2].decode()).group(1))
+        check("the eye", room["cameras"][0]["position"], [1, 1.25, 3])
+        check("its direction", [round(part, 6) + 0.0 for part in room["cameras"][0]["forward"]], [0, 0, -1])
+
+
+def test_year(folder):
+    """Figures of a year come when they are asked for, and get finer; the hours are those of the weather."""
+    weather = folder / "year.epw"
+    days = (31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31)
+    rows = "".join(f"2005,{month + 1},{day + 1},{hour},60,?9,10.0,5.5,70,101300,0,0,300,0,{400 * (8 < hour < 17)},"
+                   f"{150 * (8 < hour < 17)},0,0,0\n" for month in range(12) for day in range(days[month])
+                   for hour in range(1, 25))
+    weather.write_text("LOCATION,Somewhere,-,ZZZ,test,000000,52.50,13.40,1.0,34.0\n" + "".join(
+        f"{line}\n" for line in ("DESIGN CONDITIONS,0", "TYPICAL/EXTREME PERIODS,0", "GROUND TEMPERATURES,0",
+                                 "HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0", "COMMENTS 1,", "COMMENTS 2,",
+                                 "DATA PERIODS,1,1,Data,Sunday, 1/ 1,12/31")) + rows)
+    with Served(PHOTILE, room_of_gallery(folder), "--weather", weather, *QUICK) as served:
+        page = Page(served, "a")
+        check("before it is asked for", page.hear("year"), {"running": False, "lines": []})
+        check("asked for", served.post("year", "a", {}), 200)
+        first = hear_until(page, "year", lambda year: year["lines"])
+        print(first)
+        assert first["running"] and any("sDA" in line for line in first["lines"]), first
+        second = hear_until(page, "year", lambda year: year["lines"] != first["lines"])
+        print(second)
+        room = json.loads(re.search('id="room">(.*?)</script>', served.request()[2].decode()).group(1))
+        check("days", len(room["hours"]["dates"]), 12)
+
+
 if __name__ == "__main__":
-    PHOTILE = sys.argv[2]
+    PHOTILE, SOURCE = sys.argv[2], pathlib.Path(sys.argv[3])
     with tempfile.TemporaryDirectory() as name:
-        globals()[f"test_{sys.argv[1]}"](pathlib.Path(name))
+        FOLDER = pathlib.Path(name)
+        globals()[f"test_{sys.argv[1]}"](FOLDER)

@@ -22,7 +22,9 @@ namespace {
 
 constexpr std::array all_integrators{Integrator::photon_map, Integrator::path};
 
-void add_view_group(const OptionGroup& picture, RenderOptions& options) {
+}  // namespace
+
+void add_view_options(const OptionGroup& picture, RenderOptions& options) {
   picture.add("--camera", options.camera, "NAME|INDEX|FILE.vf",
               "camera by name or index, or a Radiance view file (.vf); default: the first");
   const auto add_point = [&](const char* name, std::vector<double>& point, const char* help) {
@@ -37,14 +39,7 @@ void add_view_group(const OptionGroup& picture, RenderOptions& options) {
             "extents; default: that of --camera");
   add_point("--look-at", options.look_at,
             "point that the camera looks at; default: straight ahead");
-  picture.add("--size", options.size, "WxH",
-              fmt::format("width and height, pixels; default: {} high with the camera's aspect "
-                          "ratio, otherwise {}x{}",
-                          defaults::image_height, defaults::image_width, defaults::image_height),
-              picture_size());
 }
-
-}  // namespace
 
 void add_run_group(CLI::App& command, RenderOptions& options) {
   const OptionGroup run(command, "Run");
@@ -76,7 +71,13 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
 void add_picture_settings(CLI::App& command, RenderOptions& options, const Settings& more) {
   add_quality_preset(command, options.quality_options());  // before the settings that override it
   add_setting_options(command, options, {}, more);
-  add_view_group(OptionGroup(command, "Picture"), options);
+  const OptionGroup picture(command, "Picture");
+  add_view_options(picture, options);
+  picture.add("--size", options.size, "WxH",
+              fmt::format("width and height, pixels; default: {} high with the camera's aspect "
+                          "ratio, otherwise {}x{}",
+                          defaults::image_height, defaults::image_width, defaults::image_height),
+              picture_size());
 }
 
 void add_integrator_option(CLI::App& command, RenderOptions& options) {

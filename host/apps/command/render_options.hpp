@@ -70,6 +70,9 @@ void add_setting_options(CLI::App& command, RenderOptions& options,
                          std::initializer_list<std::string_view> without = {},
                          const Settings& more = {});
 
+/// Adds --camera, --eye and --look-at.
+void add_view_options(const OptionGroup& picture, RenderOptions& options);
+
 /// Adds these and those of the camera, but not those of outputs.
 void add_picture_settings(CLI::App& command, RenderOptions& options, const Settings& more = {});
 

@@ -8,23 +8,30 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "command/command_line.hpp"
+#include "command/daylight_results.hpp"
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
 #include "command/render_options.hpp"
+#include "command/saved_maps_option.hpp"
 #include "command/setting_options.hpp"
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
+#include "publish/published_room.hpp"
+#include "serve/live_luminaires.hpp"
 #include "serve/live_room.hpp"
 #include "serve/web_server.hpp"
 #include "view/moods.hpp"
 #include "view/moving_sky.hpp"
+#include "view/year_worker.hpp"
 
 namespace photile::app {
 namespace {
@@ -32,6 +39,9 @@ namespace {
 constexpr auto step_time = std::chrono::milliseconds(4);
 /// By which the priority is lowered: what is drawn in the browser goes before what is computed.
 constexpr int lowered_priority = 10;
+
+constexpr const char* year_plane = "floor+0.85";  // EN 17037
+constexpr double year_seconds = 30;               // for which figures of the year are refined
 
 struct ServeOptions {
   RenderOptions render;
@@ -55,33 +65,88 @@ void open_browser(const std::string& url) {
   posix_spawn_file_actions_destroy(&actions);
 }
 
+/// Lights that options name may not exist any longer by then.
+LightMix mix_again(const Scene& scene, const RenderOptions& options) {
+  try {
+    return mix_of(scene, options);
+  } catch (const UsageError&) {
+    return LightMix::of(scene, options.load.lumen_per_watt);
+  }
+}
+
+/// The camera that options name, where it has a perspective.
+Camera opening_camera(const Scene& scene, const RenderOptions& options) {
+  const Camera camera = camera_of(scene, options);
+  return camera.projection == Projection::perspective ? camera : publish::opening_camera(scene);
+}
+
+/// Whether the sky is that of a weather file, so that a year of it can be measured.
+bool has_year(const SceneLoadOptions& load) {
+  return !load.situation.weather.empty() && !load.sky && !load.sun && load.environment.file.empty();
+}
+
+view::YearWorker::Measure year_of(const RenderOptions& render) {
+  if (!has_year(render.load)) return {};
+  DaylightOptions year;
+  year.render = render;
+  year.render.load.situation.time.reset();
+  year.places.plane.height = year_plane;
+  year.seconds = year_seconds;
+  return [year](const auto& tell, Progress& stop) { refine_year(year, tell, stop); };
+}
+
 void run_serve(ServeOptions& options) {
   handle_signals();
   [[maybe_unused]] const int priority = nice(lowered_priority);
   RenderOptions& render = options.render;
   check(render.parameters);
+  // The file may be written, and a new one does not exist yet.
+  const std::filesystem::path luminaires = std::exchange(render.load.luminaires, {});
   note_inputs_of(render);
+  if (!luminaires.empty()) {
+    render.load.luminaires = luminaires;
+    render.load.luminaires_text = loading::read_own_luminaires(luminaires).text();
+  }
+  if (!render.save_maps.empty()) {
+    const std::filesystem::path file = render.save_maps;
+    check_outputs(std::span(&file, 1));
+  }
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
+  const view::YearWorker::Measure measure_year = year_of(render);
   const SkySituation situation = view::take_moving_sky(render.load);
-  const Scene scene = loading::load_scene(render.scene, render.load, progress);
+  const loading::SourcedScene sourced =
+      loading::load_sourced_scene(render.scene, render.load, progress);
+  const Scene& scene = sourced.scene;
   render.mood.edited = true;
-  const LightMix mix = mix_of(scene, render);
-  tell_scene(scene, mix, render.load, progress);
+  tell_scene(scene, mix_of(scene, render), render.load, progress);
+  std::shared_ptr<serve::LiveLuminaires> edited;
+  if (!luminaires.empty()) {
+    edited =
+        std::make_shared<serve::LiveLuminaires>(luminaires, sourced.luminaires, scene, render.load);
+  }
   const std::filesystem::path file = render.scene, moods = render.mood.file;
-  serve::LiveRoom room(scene, mix, [&render] { return open_devices(render.device); },
-                       {.render = render.parameters,
-                        .situation = situation,
-                        .moods = moods.empty() ? view::Moods::file_of(file) : moods,
-                        .light_map_bytes = render.device.memory_bytes,
-                        .white = render.pictures.white.white,
-                        .white_balance = render.pictures.white_balance,
-                        .view = render.pictures.tone_mapping.view,
-                        .title = options.title.empty() ? file.stem().string() : options.title,
-                        .version = version_number()});
+  serve::LiveRoom room(
+      scene, [&render] { return open_devices(render.device); },
+      {.render = render.parameters,
+       .mix_of = [&render](const Scene& loaded) { return mix_again(loaded, render); },
+       .camera_of = [&render](const Scene& loaded) { return opening_camera(loaded, render); },
+       .load = render.load,
+       .situation = situation,
+       .prepared = load_maps(scene, render, progress),
+       .keep = keep_maps(scene, render, Progress::none()),
+       .luminaires = edited,
+       .measure_year = measure_year,
+       .moods = moods.empty() ? view::Moods::file_of(file) : moods,
+       .light_map_bytes = render.device.memory_bytes,
+       .white = render.pictures.white.white,
+       .white_balance = render.pictures.white_balance,
+       .view = render.pictures.tone_mapping.view,
+       .title = options.title.empty() ? file.stem().string() : options.title,
+       .version = version_number()});
   const serve::WebServer server(
       options.address, [&room](const serve::WebRequest& request) { return room.answer(request); },
-      [&room](const std::string& viewer) { return room.listen(viewer); });
+      [&room](const serve::WebRequest& request) { return room.listen(request); });
   std::cout << server.url() << std::endl;  // at once, also where it is read by a program
   if (!options.no_browser) open_browser(server.url());
   room.make_page();
@@ -89,6 +154,10 @@ void run_serve(ServeOptions& options) {
     room.step();
     std::this_thread::sleep_for(step_time);
   }
+  if (edited) edited->tell_unsaved(progress);
+  room.finish([&](const LightMapContents& light_maps) {
+    if (!render.save_maps.empty()) keep_light_maps(light_maps, render, progress);
+  });
   throw_if_stop_requested();
 }
 
@@ -117,6 +186,8 @@ void add_serve_command(CLI::App& photile) {
   add_setting_options(*command, options->render, {"light_maps"},
                       {display_view_setting(options->render.pictures.tone_mapping),
                        white_balance_setting(options->render.pictures)});
+  add_view_options(OptionGroup(*command, "Picture"), options->render);
+  add_saved_maps_options(*command, options->render);
   command->callback([options] { run_serve(*options); });
 }
 

@@ -98,7 +98,8 @@ json display_of(const ToneMapping& display) {
           {"f90", numbers.f90},
           {"ks", numbers.ks},
           {"kd", numbers.kd},
-          {"leastOfLight", numbers.least_of_light}};
+          {"leastOfLight", numbers.least_of_light},
+          {"glareLimit", defaults::glare_limit}};
 }
 
 json camera_of(const Camera& camera) {
@@ -121,7 +122,7 @@ class PageWriter {
     add_hours();
     json& d = document_;
     d["title"] = room_.title;
-    d["live"] = room_.light == nullptr;
+    d["live"] = room_.edition;
     d["version"] = room_.version;
     d["lux"] = in_unit(1, room_.mix.unit(), PowerUnit::lumen, room_.mix.lumen_per_watt);
     d["coding"] = {{"steps", steps_per_octave}, {"octaves", octaves}, {"chroma", chroma_steps}};
@@ -134,10 +135,13 @@ class PageWriter {
     d["legendSteps"] = defaults::legend_steps;
     d["targets"] = targets();
     d["world"] = world_of(scene_);
+    const Camera& opening = room_.opening ? *room_.opening : opening_camera(scene_);
+    d["cameras"] = {camera_of(opening)};
     for (const Camera& camera : scene_.cameras) {
-      if (camera.projection == Projection::perspective) d["cameras"].push_back(camera_of(camera));
+      if (camera.projection != Projection::perspective) continue;
+      const json entry = camera_of(camera);
+      if (entry != d["cameras"][0]) d["cameras"].push_back(entry);
     }
-    if (!d.contains("cameras")) d["cameras"] = {camera_of(opening_camera(scene_))};
     d["probe"] = d["cameras"][0]["position"];
     d["presets"] = to_json(room_.presets);
     d["simplified"] = simplified();

@@ -48,8 +48,10 @@ const Camera& opening_camera(const Scene& scene);
 
 struct PublishedRoom {
   const Scene& scene;
+  const Camera* opening = nullptr;  ///< that the page opens with; null = the first of the scene
   const bake::LightAtlas& atlas;
   const bake::BakedLight* light;  ///< of the atlas; null where a server sends it (serve/)
+  int edition = 0;                ///< of a page whose light a server sends, from 1
   const LightMix& mix;            ///< as the page opens
   const LightTable* node_errors;  ///< as GatheredNodes::errors; null where photons value nodes ...
   double relative_error = 0;      ///< ... which all err by this part

@@ -97,6 +97,11 @@ std::vector<std::uint32_t> LiveLight::parts_in_view(const Camera& camera) const 
 void LiveLight::take(const Camera& camera, const view::MapGeneration& maps, bool last) {
   if (!last && since_taken_.seconds() < (seldom - 1) * cost_) return;
   const Stopwatch watch;
+  // What other maps gave is not final, but for those of a first picture.
+  if (maps_ && maps_ != &maps && maps_ != maps.coarser.get()) {
+    std::fill(parts_.begin(), parts_.end(), Part());
+  }
+  maps_ = &maps;
   std::vector<std::uint32_t> chosen;
   std::size_t texels = 0;
   const auto choose = [&](std::uint32_t i) {

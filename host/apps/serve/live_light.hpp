@@ -26,6 +26,7 @@ class LiveLight {
   LiveLight(const Scene& scene, std::size_t layers, std::function<void()> changed);
 
   const bake::LightAtlas& atlas() const { return atlas_; }
+  const RayScene& rays() const { return rays_; }
 
   /// Takes the light of what a camera sees, as frames show it by now, and of a little more surface,
   /// unless that was done a moment ago. One thread, which may call FrameRenderer::light_at.
@@ -64,6 +65,7 @@ class LiveLight {
   std::vector<std::uint32_t> part_of_chart_;   ///< into parts_, or none
   std::vector<Part> parts_;                    ///< by the number of a chart in the atlas
   std::vector<std::vector<glm::vec3>> light_;  ///< per layer and texel, at power 1
+  const view::MapGeneration* maps_ = nullptr;  ///< those of the last time
   Stopwatch since_taken_;
   double cost_ = 0;  ///< of the last time, seconds
 

@@ -1,14 +1,11 @@
 #include "serve/live_room.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
-#include <glm/gtc/packing.hpp>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -20,8 +17,10 @@
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "render/setting.hpp"
 #include "view/light_board.hpp"
 #include "view/moving_sky.hpp"
+#include "view/snapshots.hpp"
 
 namespace photile::serve {
 namespace {
@@ -38,8 +37,6 @@ constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_points = 99;
 /// Pixels of the view that light is computed for before a page tells its own.
 constexpr int opening_width = 1280, opening_height = 800;
-/// The largest exponent of what is sent as half floats.
-constexpr int half_exponent = 14;
 
 json parsed(const std::string& body) {
   check_json_depth(body, "request");
@@ -60,6 +57,9 @@ glm::vec3 srgb_of(const glm::dvec3& linear) {
   return colour;
 }
 
+/// Settings that pages change.
+constexpr std::array page_settings{"photons_emitted", "neighbours", "radius", "maps", "area"};
+
 bool is_same(const Camera& a, const Camera& b) {
   return a.position == b.position && a.forward == b.forward &&
          a.vertical_field_of_view == b.vertical_field_of_view;
@@ -70,9 +70,11 @@ bool is_same(const Camera& a, const Camera& b) {
 /// What one page has been told.
 class LiveRoom::News : public NewsSource {
  public:
-  News(LiveRoom& room, std::string viewer) : room_(room), viewer_(std::move(viewer)) {
+  News(LiveRoom& room, std::string viewer, int edition) : room_(room), viewer_(std::move(viewer)) {
     const std::lock_guard lock(room_.mutex_);
-    ++room_.viewers_[viewer_].pages;
+    Viewer& listening = room_.viewers_[viewer_];
+    ++listening.pages;
+    listening.edition = edition;
     room_.visited_ = true;
   }
 
@@ -96,7 +98,17 @@ class LiveRoom::News : public NewsSource {
       told_[what] = value;
       news[what] = std::move(value);
     };
-    if (room_.light_) tell("light", room_.light_->version());
+    const std::shared_ptr<LiveLight>& light = room_.edition_.light;
+    if (viewer.edition != room_.edition_.number) {  // the page shows what it has until then
+      if (light->version() > 0) tell("reload", true);
+      return news.empty() ? "" : news.dump();
+    }
+    if (light) tell("light", light->version());
+    tell("settings", room_.settings());
+    if (room_.parameters_.luminaires) tell("luminaires", room_.parameters_.luminaires->state());
+    if (room_.year_.possible()) {
+      tell("year", {{"running", room_.year_.running()}, {"lines", room_.year_.lines()}});
+    }
     if (viewer.picture) tell("picture", viewer.picture_number);
     if (room_.white_is_known_) tell("white", room_.white_);
     tell("work", room_.work_of(viewer));
@@ -143,61 +155,152 @@ class LiveRoom::News : public NewsSource {
   std::map<int, std::size_t> repeats_;  ///< of points
 };
 
-LiveRoom::LiveRoom(const Scene& scene, const LightMix& mix,
-                   view::PhotonWorker::OpenDevices open_devices, LiveRoomParameters parameters)
-    : scene_(scene),
-      shared_scene_(std::shared_ptr<void>(), &scene),
-      mix_(mix),
+LiveRoom::LiveRoom(const Scene& scene, view::PhotonWorker::OpenDevices open_devices,
+                   LiveRoomParameters parameters)
+    : first_scene_(std::shared_ptr<void>(), &scene),
       parameters_(std::move(parameters)),
-      points_(shared_scene_),
+      points_(first_scene_),
+      year_(parameters_.measure_year),
       moods_(parameters_.moods),
       frames_(parameters_.render.film.samples_per_pixel, defaults::view_frames_per_second,
               [this](const Camera& camera, view::MapGeneration& maps, const DrawnFrame& drawn) {
                 std::shared_ptr<LiveLight> light;
                 {
                   const std::lock_guard lock(mutex_);
-                  light = light_;
+                  if (maps.scene == edition_.scene) light = edition_.light;
                 }
                 if (light) light->take(camera, maps, drawn.lacking == 0);
               }),
       photons_(std::move(open_devices), parameters_.light_map_bytes) {
   publish::check_materials(scene);
-  presets_ = presets();
+  edition_.scene = first_scene_;
+  edition_.mix = parameters_.mix_of(scene);
+  find_presets();
   std::vector<double> powers;
-  for (const MixedLight& light : mix_.lights) powers.push_back(mix_.lumens_of(light));
-  if (parameters_.white_balance) {
-    white_ = parameters_.white ? *parameters_.white : image::white_of_light(powers, mix_);
+  for (const MixedLight& light : edition_.mix.lights) {
+    powers.push_back(edition_.mix.lumens_of(light));
   }
-  photons_.trace(shared_scene_, parameters_.render, std::nullopt, {});
+  if (parameters_.white_balance) {
+    white_ = parameters_.white ? *parameters_.white : image::white_of_light(powers, edition_.mix);
+  }
+  photons_.trace(first_scene_, parameters_.render,
+                 std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
+}
+
+LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene) {
+  Edition edition{number, std::move(scene), {}, nullptr, {}};
+  edition.mix = parameters_.mix_of(*edition.scene);
+  edition.light =
+      std::make_shared<LiveLight>(*edition.scene, edition.mix.lights.size(), [this] { changed(); });
+  ToneMapping display;
+  display.view = parameters_.view;
+  {
+    const std::lock_guard lock(mutex_);
+    display.white = white_;
+  }
+  const Camera opening = parameters_.camera_of(*edition.scene);
+  edition.page =
+      publish::page_text({.scene = *edition.scene,
+                          .opening = &opening,
+                          .atlas = edition.light->atlas(),
+                          .light = nullptr,
+                          .edition = number,
+                          .mix = edition.mix,
+                          .node_errors = nullptr,
+                          .presets = {},
+                          .hours = publish::sky_hours(edition.mix, parameters_.situation),
+                          .display = display,
+                          .title = parameters_.title,
+                          .version = parameters_.version});
+  return edition;
 }
 
 void LiveRoom::make_page() {
-  const auto light = std::make_shared<LiveLight>(scene_, mix_.lights.size(), [this] { changed(); });
-  ToneMapping display;
-  display.view = parameters_.view;
-  display.white = white_;
-  std::string page = publish::page_text({.scene = scene_,
-                                         .atlas = light->atlas(),
-                                         .light = nullptr,
-                                         .mix = mix_,
-                                         .node_errors = nullptr,
-                                         .presets = {},
-                                         .hours = publish::sky_hours(mix_, parameters_.situation),
-                                         .display = display,
-                                         .title = parameters_.title,
-                                         .version = parameters_.version});
+  Edition edition = made(1, first_scene_);
   const std::lock_guard lock(mutex_);
-  light_ = light;
-  page_ = std::move(page);
+  edition_ = std::move(edition);
   moods_number_ = 1;
   if (shown_.empty()) {  // light for the first page, before it tells where it looks
     view::FrameRequest request;
-    request.camera = publish::opening_camera(scene_);
+    request.camera = parameters_.camera_of(*first_scene_);
     request.width = opening_width;
     request.height = opening_height;
-    request.powers = view::scales_of(mix_);
+    request.powers = view::scales_of(edition_.mix);
     frames_.show(request);
   }
+  ++changes_;
+  news_.notify_all();
+}
+
+/// Has photons traced in a scene that was loaded again.
+void LiveRoom::take_scene() {
+  if (!parameters_.luminaires) return;
+  std::shared_ptr<const Scene> scene;
+  try {
+    {
+      const std::lock_guard lock(mutex_);
+      scene = parameters_.luminaires->take_scene();
+    }
+    if (!scene) return;
+    publish::check_materials(*scene);
+    next_ = made((next_ ? next_->number : edition_.number) + 1, std::move(scene));
+  } catch (const Error& error) {
+    const std::lock_guard lock(mutex_);
+    message_ = error.what();
+    ++changes_;
+    return;
+  }
+  retrace();
+}
+
+/// By the newest settings.
+void LiveRoom::retrace() {
+  RenderParameters parameters;
+  {
+    const std::lock_guard lock(mutex_);
+    parameters = parameters_.render;
+    settings_changed_ = false;
+  }
+  photons_.trace(next_ ? next_->scene : edition_.scene, parameters, std::nullopt, {});
+}
+
+/// Another scene is shown from its first maps on; until then, the last is.
+void LiveRoom::take_maps() {
+  std::shared_ptr<view::MapGeneration> maps = photons_.take();
+  if (!maps) return;
+  if (!maps->renderer->reads_light_maps()) {
+    constexpr const char* problem = "a live page needs light maps, which these settings do without";
+    if (!seen_) throw UsageError(problem);
+    const std::lock_guard lock(mutex_);
+    message_ = problem;
+    ++changes_;
+    return;
+  }
+  const std::lock_guard lock(mutex_);
+  if (!next_ || maps->scene != next_->scene) {
+    for (auto& [name, viewer] : viewers_) viewer.done = viewer.request.moving;
+    frames_.use(std::move(maps));
+    return;
+  }
+  const auto looking = viewers_.find(shown_);
+  view::FrameRequest request;
+  if (looking != viewers_.end()) request = looking->second.request;
+  edition_ = *std::exchange(next_, std::nullopt);
+  if (request.width == 0) {
+    request.camera = parameters_.camera_of(*edition_.scene);
+    request.width = opening_width;
+    request.height = opening_height;
+  }
+  request.moving = true;  // no exact picture before pages show the new scene
+  request.powers = view::scales_of(edition_.mix);
+  request.mixdown = nullptr;
+  frames_.use(std::move(maps), request);
+  points_.use(edition_.scene);
+  find_presets();
+  ++moods_number_;
+  shown_.clear();
+  frame_ = nullptr;
+  white_is_known_ = false;
   ++changes_;
   news_.notify_all();
 }
@@ -209,18 +312,21 @@ void LiveRoom::changed() {
 }
 
 void LiveRoom::step() {
-  if (std::shared_ptr<view::MapGeneration> maps = photons_.take()) {
-    if (!maps->renderer->reads_light_maps()) {
-      throw UsageError("a live page needs light maps, which these settings do without");
-    }
-    frames_.use(std::move(maps));
+  take_scene();
+  bool changed = false;
+  {
+    const std::lock_guard lock(mutex_);
+    changed = settings_changed_;
   }
+  if (changed) retrace();
+  take_maps();
   take_errors();
   const std::lock_guard lock(mutex_);
   take_frame();
   const auto current = viewers_.find(shown_);
   if (current != viewers_.end() && !current->second.done) return;
   for (auto& [name, viewer] : viewers_) {
+    if (viewer.edition != edition_.number) continue;
     if (!viewer.done && viewer.request.width > 0) return show(name);
   }
 }
@@ -233,8 +339,9 @@ void LiveRoom::show(const std::string& viewer) {
 
 void LiveRoom::take_frame() {
   const std::shared_ptr<const view::Frame> latest = frames_.latest();
-  if (!latest || latest == frame_) return;
+  if (!latest || latest == frame_ || latest->scene != edition_.scene) return;
   frame_ = latest;
+  seen_ = true;
   ++changes_;
   news_.notify_all();
   const auto found = viewers_.find(shown_);
@@ -251,13 +358,14 @@ void LiveRoom::take_frame() {
   if (white_is_known_ || asked.mixdown) return;
   white_is_known_ = true;
   if (parameters_.white || !parameters_.white_balance) return;
-  white_ = image::white_of(latest->layers, LightMix::of(scene_, mix_.lumen_per_watt));
+  white_ =
+      image::white_of(latest->layers, LightMix::of(*edition_.scene, edition_.mix.lumen_per_watt));
 }
 
 void LiveRoom::take_errors() {
   for (const std::exception_ptr& error : {photons_.take_error(), frames_.take_error()}) {
     if (!error) continue;
-    if (!frame_) std::rethrow_exception(error);
+    if (!seen_) std::rethrow_exception(error);
     try {
       std::rethrow_exception(error);
     } catch (const std::exception& told) {
@@ -285,42 +393,54 @@ json LiveRoom::work_of(const Viewer& viewer) const {
           {"share", lacking > 0 ? std::round(100 * (1 - lacking)) / 100 : 0.0}};
 }
 
-json LiveRoom::presets() const {
-  std::vector<publish::Preset> presets{{"As opened", mix_, {}}};
+/// Moods that name lights which are gone are left out.
+void LiveRoom::find_presets() {
+  const LightMix& mix = edition_.mix;
+  std::vector<publish::Preset> presets{{"As opened", mix, {}}};
   for (const std::string& name : moods_.names()) {
-    presets.push_back(publish::preset_of(name, mix_, moods_.changes(name, mix_)));
+    try {
+      presets.push_back(publish::preset_of(name, mix, moods_.changes(name, mix)));
+    } catch (const UsageError& error) {
+      message_ = error.what();
+    }
   }
-  return publish::to_json(presets);
+  presets_ = publish::to_json(presets);
 }
 
-std::unique_ptr<NewsSource> LiveRoom::listen(const std::string& viewer) {
-  return std::make_unique<News>(*this, viewer.substr(0, longest_name));
+void LiveRoom::finish(const std::function<void(const LightMapContents&)>& keep) {
+  photons_.stop();
+  const std::shared_ptr<view::MapGeneration> maps = frames_.stop();
+  if (!keep || !maps || !maps->whole || maps->scene != first_scene_ || !traced_as_asked_) return;
+  if (const auto contents = maps->renderer->light_map_contents()) keep(*contents);
+}
+
+std::unique_ptr<NewsSource> LiveRoom::listen(const WebRequest& request) {
+  return std::make_unique<News>(*this, request.viewer.substr(0, longest_name),
+                                parse_number<int>(request.since).value_or(1));
 }
 
 std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
   constexpr const char* bytes = "application/octet-stream";
   std::unique_lock lock(mutex_);
+  if (!request.posts && request.what.empty()) {
+    news_.wait_for(lock, std::chrono::seconds(30), [&] { return !edition_.page.empty(); });
+    return WebReply{"text/html; charset=utf-8", edition_.page};
+  }
+  const auto viewer = viewers_.find(request.viewer);
+  if (viewer == viewers_.end() || viewer->second.edition != edition_.number) return std::nullopt;
   if (!request.posts) {
-    if (request.what.empty()) {
-      news_.wait_for(lock, std::chrono::seconds(30), [&] { return !page_.empty(); });
-      return WebReply{"text/html; charset=utf-8", page_};
-    }
-    if (request.what == "light" && light_) {
-      const std::shared_ptr<const LiveLight> light = light_;
+    if (request.what == "light" && edition_.light) {
+      const std::shared_ptr<const LiveLight> light = edition_.light;
       lock.unlock();
       return WebReply{bytes, light->since(parse_number<std::uint64_t>(request.since).value_or(0))};
     }
-    const auto viewer = viewers_.find(request.viewer);
-    if (request.what != "picture" || viewer == viewers_.end() || !viewer->second.picture) {
-      return std::nullopt;
-    }
-    const std::shared_ptr<const view::Frame> frame = viewer->second.picture;
+    const std::shared_ptr<const view::Frame> picture = viewer->second.picture;
+    if (request.what != "picture" || !picture) return std::nullopt;
     lock.unlock();
-    return WebReply{bytes, picture_bytes(*frame)};
+    return WebReply{bytes, picture_bytes(*picture)};
   }
-  const auto viewer = viewers_.find(request.viewer);
-  if (viewer == viewers_.end()) return std::nullopt;
   const json body = parsed(request.body);
+  json answer = json::object();
   if (request.what == "view") {
     look(viewer->second, viewer->first, body);
   } else if (request.what == "lamps") {
@@ -329,20 +449,62 @@ std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
     ++lamps_number_;
   } else if (request.what == "point") {
     point(viewer->second, body);
+  } else if (request.what == "moods" && body.contains("write")) {
+    const std::string name = JsonObject(body, "mood", {"write"}).text("write", "");
+    SceneLoadOptions load = parameters_.load;
+    if (parameters_.luminaires) load.luminaires_text = parameters_.luminaires->text();
+    const view::Moods moods = moods_;
+    const std::shared_ptr<const Scene> scene = edition_.scene;
+    const view::LightBoard board(edition_.mix,
+                                 view::MovingSky::of(edition_.mix, parameters_.situation));
+    lock.unlock();
+    answer["message"] = view::write_mood(*scene, load, board, moods, name);
+    return WebReply{"application/json", json_text(answer, -1)};
   } else if (request.what == "moods") {
     change_moods(body);
+  } else if (request.what == "luminaires" && parameters_.luminaires) {
+    answer = parameters_.luminaires->edit(body);
+  } else if (request.what == "year" && year_.possible()) {
+    year_.start();
+  } else if (request.what == "settings") {
+    change_settings(body);
+  } else if (request.what == "exr" || request.what == "glare") {
+    const JsonObject asked(body, request.what, {"mix", "limit"});
+    const std::shared_ptr<const view::Frame> picture = viewer->second.picture;
+    const bool marks = request.what == "glare";
+    if (!picture || (marks && !picture->reflections)) return std::nullopt;
+    const LightMix mix = mix_of_layers(picture->layers, edition_.mix, lights_in(body));
+    const double limit = marks ? asked.number("limit", 0, limits::max_light_power) : 0;
+    if (marks && !(limit > 0)) asked.refuse("'limit' is not above 0");
+    lock.unlock();
+    if (marks) return WebReply{bytes, glare_bytes(*picture, mix, limit)};
+    const image::White white = parameters_.white.value_or(
+        white_of_scene(picture->layers, *picture->scene, mix.lumen_per_watt));
+    return WebReply{"image/x-exr", exr_of(*picture, mix, white)};
+  } else if (request.what == "photons") {
+    const JsonObject ray(body, "photons", {"eye", "direction"});
+    const glm::dvec3 eye = ray.vector("eye"), direction = ray.vector("direction");
+    if (!(std::abs(glm::length(direction) - 1) < 0.01)) ray.refuse("has no direction of length 1");
+    const auto photons = frame_ ? frame_->photons : nullptr;
+    const std::shared_ptr<const Scene> scene = edition_.scene;
+    const std::shared_ptr<const LiveLight> light = edition_.light;
+    if (!photons || !light) return std::nullopt;
+    lock.unlock();
+    std::string found = photon_bytes(light->rays(), *photons, eye, glm::normalize(direction));
+    if (found.empty()) return std::nullopt;
+    return WebReply{bytes, std::move(found)};
   } else {
     return std::nullopt;
   }
   ++changes_;
   news_.notify_all();
-  return WebReply{"application/json", "{}"};
+  return WebReply{"application/json", json_text(answer, -1)};
 }
 
 /// Where a viewer looks from now on.
 void LiveRoom::look(Viewer& viewer, const std::string& name, const json& body) {
   const JsonObject view(body, "view",
-                        {"eye", "forward", "angle", "width", "height", "moving", "sky"});
+                        {"eye", "forward", "angle", "width", "height", "moving", "sky", "glare"});
   const glm::dvec3 eye = view.vector("eye"), forward = view.vector("forward");
   if (!(glm::length(forward) > 0.5)) view.refuse("looks nowhere");
   view::FrameRequest& request = viewer.request;
@@ -350,11 +512,12 @@ void LiveRoom::look(Viewer& viewer, const std::string& name, const json& body) {
   request.width = view.count("width", 1, most_side);
   request.height = view.count("height", 1, most_side);
   request.moving = body.value("moving", json()) == true;
-  request.powers = view::scales_of(mix_);
+  request.reflections = body.value("glare", json()) == true;
+  request.powers = view::scales_of(edition_.mix);
   request.mixdown = nullptr;
-  std::size_t layers = mix_.lights.size();
+  std::size_t layers = edition_.mix.lights.size();
   if (view.has("sky")) {
-    const std::vector<std::uint32_t> patches = loading::patch_of_layers(mix_);
+    const std::vector<std::uint32_t> patches = loading::patch_of_layers(edition_.mix);
     const json& sky = body["sky"];
     if (!sky.is_array() || sky.size() != patches.size()) view.refuse("has another sky");
     auto mixdown = std::make_shared<LayerMixdown>();
@@ -367,7 +530,7 @@ void LiveRoom::look(Viewer& viewer, const std::string& name, const json& body) {
         continue;
       }
       mixdown->layer_of[i] = static_cast<std::uint32_t>(mixdown->layers.size());
-      mixdown->layers.push_back(mix_.lights[i].name);
+      mixdown->layers.push_back(edition_.mix.lights[i].name);
     }
     for (std::size_t i = 0; i < patches.size(); ++i) {
       if (patches[i] != none) {
@@ -400,8 +563,8 @@ void LiveRoom::point(Viewer& viewer, const json& body) {
   }
   const glm::dvec3 normal = point.vector("normal");
   if (!(std::abs(glm::length(normal) - 1) < 0.01)) point.refuse("has no normal of length 1");
-  viewer.points[number] = points_.add(position_in_world(scene_, point.vector("place")),
-                                      direction_in_world(scene_, glm::normalize(normal)));
+  viewer.points[number] = points_.add(position_in_world(*edition_.scene, point.vector("place")),
+                                      direction_in_world(*edition_.scene, glm::normalize(normal)));
 }
 
 /// Keeps the lamps of a page under a name, or removes a mood.
@@ -413,7 +576,7 @@ void LiveRoom::change_moods(const json& body) {
   if (!keeps) {
     moods_.remove(name);
   } else {
-    view::LightBoard board(mix_, view::MovingSky::of(mix_, parameters_.situation));
+    view::LightBoard board(edition_.mix, view::MovingSky::of(edition_.mix, parameters_.situation));
     for (view::LightControl& control : board.controls()) {
       const json lights = body.value("lights", json::object());
       if (!lights.is_object() || !lights.contains(control.name)) continue;
@@ -429,48 +592,68 @@ void LiveRoom::change_moods(const json& body) {
     }
     moods_.keep(name, board);
   }
-  presets_ = presets();
+  find_presets();
   ++moods_number_;
 }
 
-/// For page/live.js: the length of a JSON text, that text, and half floats: the radiance of each
-/// layer, times a power of two, rows from below.
-std::string LiveRoom::picture_bytes(const view::Frame& frame) const {
-  const LightLayers dense = frame.layers.sparse() ? frame.layers.dense() : LightLayers();
-  const LightLayers& layers = frame.layers.sparse() ? dense : frame.layers;
-  const auto width = static_cast<std::size_t>(layers.width);
-  const auto height = static_cast<std::size_t>(layers.height);
-  std::vector<int> exponents;
-  for (const LightLayers::Layer& layer : layers.layers) {
-    float most = 0;
-    for (const glm::vec3& pixel : layer.radiance) {
-      most = std::max({most, pixel.x, pixel.y, pixel.z});
+/// What a page sets of the settings; photons are traced again.
+void LiveRoom::change_settings(const json& body) {
+  RenderParameters changed = parameters_.render;
+  for (const auto& [name, value] : body.items()) {
+    if (std::find(page_settings.begin(), page_settings.end(), name) == page_settings.end()) {
+      throw InputError(fmt::format("settings: '{}' is none that pages change", one_line(name)));
     }
-    exponents.push_back(most > 0 ? half_exponent - std::ilogb(most) : 0);
+    const Setting& setting = setting_named(name);
+    SettingValue asked = std::string_view();
+    const std::string word = value.is_string() ? value.get<std::string>() : "";
+    if (value.is_number_unsigned() && std::holds_alternative<WholeNumbers>(setting.range)) {
+      asked = value.get<std::uint64_t>();
+    } else if (value.is_number()) {
+      asked = value.get<double>();
+    } else {
+      asked = word;
+    }
+    check_value(name, asked, setting.range);
+    setting.set(changed, asked);
   }
-  json header{{"width", width},
-              {"height", height},
-              {"samples", frame.samples_per_pixel},
-              {"exponents", exponents}};
-  for (const LightLayers::Layer& layer : layers.layers) header["layers"].push_back(layer.light);
-  std::string text = json_text(header, -1);
-  if (text.size() % 2 != 0) text += ' ';  // what follows lies at an even place
-  const std::string start = fmt::format("{:08x}", text.size()) + text;
-  std::string bytes(start.size() + layers.layers.size() * height * width * 6, '\0');
-  std::copy(start.begin(), start.end(), bytes.begin());
-  tbb::parallel_for(std::size_t{0}, layers.layers.size() * height, [&](std::size_t row) {
-    const std::size_t layer = row / height, y = height - 1 - row % height;
-    const float scale = std::ldexp(1.0f, exponents[layer]);
-    char* to = bytes.data() + start.size() + row * width * 6;
-    for (std::size_t x = 0; x < width; ++x) {
-      const glm::vec3& pixel = layers.layers[layer].radiance[y * width + x];
-      for (int c = 0; c < 3; ++c, to += 2) {
-        const auto half = std::bit_cast<std::array<char, 2>>(glm::packHalf1x16(scale * pixel[c]));
-        std::copy(half.begin(), half.end(), to);
-      }
+  check(changed);
+  if (changed.maps == MapMode::naive) throw UsageError("maps: naive ones have no light maps");
+  parameters_.render = changed;
+  settings_changed_ = true;
+  traced_as_asked_ = false;
+  for (auto& [name, viewer] : viewers_) viewer.done = viewer.request.moving;
+}
+
+/// As pages show them.
+json LiveRoom::settings() const {
+  json list = json::array();
+  for (const char* const name : page_settings) {
+    const Setting& setting = setting_named(name);
+    json& entry = list.emplace_back(json{{"name", name}, {"help", setting.help}});
+    entry["value"] =
+        setting.is_given(parameters_.render) ? text_of(setting.value(parameters_.render)) : "";
+    if (const auto* words = std::get_if<Words>(&setting.range)) entry["words"] = words->words;
+  }
+  return list;
+}
+
+/// The lights of a page, in the order of the mix: power, and the tint's parts.
+std::vector<ShownLight> LiveRoom::lights_in(const json& body) const {
+  std::vector<ShownLight> lights;
+  const json rows = body.value("mix", json());
+  const auto refuse = [] { throw InputError("mix: is not four numbers for each light"); };
+  if (!rows.is_array() || rows.size() != edition_.mix.lights.size()) refuse();
+  for (const json& row : rows) {
+    if (!row.is_array() || row.size() != 4) refuse();
+    for (const json& number : row) {
+      if (!number.is_number()) refuse();
+      const double value = number.get<double>();
+      if (!(value >= 0 && value <= limits::max_light_power)) refuse();
     }
-  });
-  return bytes;
+    lights.push_back(
+        {row[0].get<double>(), {row[1].get<float>(), row[2].get<float>(), row[3].get<float>()}});
+  }
+  return lights;
 }
 
 }  // namespace photile::serve

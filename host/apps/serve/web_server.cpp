@@ -100,7 +100,7 @@ WebServer::WebServer(const WebAddress& address, Answer answer, Listen listen)
                            request.get_param_value("since"), request.body};
     if (!asked.posts && what == "events") {
       response.set_chunked_content_provider(
-          "text/event-stream", [this, news = std::shared_ptr<NewsSource>(listen_(asked.viewer))](
+          "text/event-stream", [this, news = std::shared_ptr<NewsSource>(listen_(asked))](
                                    std::size_t, httplib::DataSink& sink) {
             const std::string message = news->next();
             if (ends_) return false;

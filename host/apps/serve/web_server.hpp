@@ -28,7 +28,7 @@ struct WebRequest {
   bool posts = false;
   std::string what;    ///< what follows the token in the address; "" = the page
   std::string viewer;  ///< that the page calls itself
-  std::string since;   ///< number of the newest state that it knows
+  std::string since;   ///< number of the newest state that it knows; of news: of the page
   std::string body;    ///< of a post: JSON
 };
 
@@ -51,7 +51,7 @@ class NewsSource {
 class WebServer {
  public:
   using Answer = std::function<std::optional<WebReply>(const WebRequest&)>;
-  using Listen = std::function<std::unique_ptr<NewsSource>(const std::string& viewer)>;
+  using Listen = std::function<std::unique_ptr<NewsSource>(const WebRequest&)>;
 
   ///   answer   none: there is no such thing. An Error that it throws is told to the page
   ///   listen   called when a page asks for news

@@ -2,15 +2,11 @@
 // and the scene that is loaded again with them.
 #pragma once
 
-#include <condition_variable>
-#include <exception>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "loading/load_scene.hpp"
@@ -19,41 +15,9 @@
 #include "photile/progress.hpp"
 #include "view/luminaire_editor.hpp"
 #include "view/photon_map.hpp"
+#include "view/scene_loader.hpp"
 
 namespace photile::view {
-
-class SceneLoader {
- public:
-  ///   options   with the file of luminaires
-  SceneLoader(std::filesystem::path scene, SceneLoadOptions options);
-  ~SceneLoader();
-
-  /// Loads it with these entries (LuminaireList::text); earlier requests are cancelled.
-  void load(const std::string& luminaires);
-
-  struct Loaded {
-    std::string luminaires;
-    std::shared_ptr<const loading::SourcedScene> scene;
-  };
-  /// The newest scene that is loaded, once.
-  std::optional<Loaded> take();
-  /// Why the newest list cannot be loaded, or null; each is returned once.
-  std::exception_ptr take_error();
-  bool busy() const;
-
- private:
-  void work(const std::stop_token& stop);
-
-  const std::filesystem::path scene_;
-  SceneLoadOptions options_;
-  mutable std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::optional<std::string> requested_;
-  bool loading_ = false;
-  std::optional<Loaded> loaded_;
-  std::exception_ptr error_;
-  std::jthread thread_;  // last: it uses all of the above
-};
 
 class LuminaireTool {
  public:

@@ -147,6 +147,12 @@ VisiblePoint seen_along(const RayScene& rays, const glm::dvec3& from, const glm:
 
 }  // namespace
 
+std::uint32_t face_along(const RayScene& rays, const glm::dvec3& from,
+                         const glm::dvec3& direction) {
+  const trace::FlushDenormals flush_denormals;
+  return seen_along(rays, from, direction).oriented_face;
+}
+
 VisibleSurfaces visible_surfaces(const RayScene& rays, const Camera& camera, int width,
                                  int height) {
   VisibleSurfaces seen{width, height, {}, {}};

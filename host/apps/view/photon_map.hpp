@@ -37,6 +37,10 @@ struct PhotonMapView {
   std::vector<glm::vec3> group_photons;  ///< on its group, at most the radius from it
 };
 
+/// The oriented face that a ray meets first; none = nothing.
+///   direction   unit
+std::uint32_t face_along(const RayScene& rays, const glm::dvec3& from, const glm::dvec3& direction);
+
 /// Looks at one oriented face; time grows with the triangles of the scene.
 PhotonMapView view_of_map(const Scene& scene, const InspectablePhotons& photons,
                           std::uint32_t oriented_face);

@@ -5,6 +5,14 @@
 /// in which light and pictures fade.
 const pace = {moving: 150, rest: 250, lamps: 60, light: 0.5, picture: 0.35};
 
+/// What a page keeps for the text that follows it: the server has loaded the scene again.
+const kept = room.live ? JSON.parse(sessionStorage.getItem('kept')) : null;
+if (kept) {
+  sessionStorage.removeItem('kept');
+  find('#loading').style.background = `center / cover url(${kept.picture})`;
+  find('#loading').replaceChildren(find('#loading progress'));
+}
+
 class Live {
   constructor(page) {
     this.page = page;
@@ -13,11 +21,19 @@ class Live {
     this.known = this.wanted = 0;  // states of the light
     this.fading = 0;               // seconds left
     this.exposes = true;           // until the first exact picture, or the viewer's own exposure
-    this.ownLamps = location.hash.length > 1;  // a link has them, and they are to be everybody's
+    // A link has them, and they are to be everybody's.
+    this.ownLamps = location.hash.length > 1;
+    if (kept && !kept.exposes) {
+      this.exposes = false;
+      this.renderer.unit = kept.unit;
+    }
     this.work = find('#work');
     this.posts = new Promise((opened) => { this.open = opened; });
     this.makeMoods();
-    const news = new EventSource(`events?viewer=${this.name}`);
+    this.photons = new PhotonMap(this);
+    this.glare = new Glare(this);
+    this.makeExr();
+    const news = new EventSource(`events?viewer=${this.name}&since=${room.live}`);
     news.onopen = () => {
       this.open();
       this.view = null;
@@ -28,19 +44,31 @@ class Live {
     news.onerror = () => this.showWork('photile does not answer any more');
   }
 
-  /// Posts follow each other.
+  /// Asks the server for something that depends on what is posted.
+  async ask(what, body) {
+    const answer = await fetch(`${what}?viewer=${this.name}`, {
+      method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)});
+    if (answer.status === 400) tell(await answer.text());
+    return answer;
+  }
+
+  /// Posts follow each other. Returns the answer; null where there is none.
   post(what, body) {
-    this.posts = this.posts.then(async () => {
-      const answer = await fetch(`${what}?viewer=${this.name}`, {
-        method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)});
-      if (answer.status === 400) tell(await answer.text());
-    }).catch(() => {});
-    return this.posts;
+    const answered = this.posts.then(async () => {
+      const answer = await this.ask(what, body);
+      if (!answer.ok) return null;
+      const told = await answer.json();
+      if (told.message) tell(told.message);
+      return told;
+    }).catch(() => null);
+    this.posts = answered;
+    return answered;
   }
 
   /// A header and the bytes behind it; null where there is no such thing any more.
-  async load(what) {
-    const answer = await fetch(what);
+  ///   body   that is posted to ask for it
+  async load(what, body) {
+    const answer = await (body ? this.ask(what, body) : fetch(what));
     if (!answer.ok) return null;
     const bytes = new Uint8Array(await answer.arrayBuffer());
     const text = new TextDecoder();
@@ -49,6 +77,10 @@ class Live {
   }
 
   hear(news) {
+    if (news.reload) {
+      this.reload();
+      return;
+    }
     if (news.light > this.wanted) {
       this.wanted = news.light;
       this.takeLight();
@@ -61,19 +93,40 @@ class Live {
     if (news.lamps && !this.ownLamps) this.page.setLamps(news.lamps);
     if (news.presets) {
       room.presets = news.presets;
-      this.page.panel.makePresets((name) => this.post('moods', {remove: name}));
+      this.page.panel.makePresets((name) => this.post('moods', {remove: name}),
+                                  (name) => this.post('moods', {write: name}));
       find('#presets').hidden = false;
     }
     for (const {number, from, repeats} of news.points ?? []) {
       this.page.points.all.find((point) => point.number === number)?.repeats.splice(from, Infinity, ...repeats);
     }
     if (news.points) this.page.points.show();
+    if (news.luminaires) (this.luminaires ??= new Luminaires(this)).show(news.luminaires);
+    if (news.settings) (this.settings ??= new Settings(this)).show(news.settings);
+    if (news.year) (this.year ??= new Year(this)).show(news.year);
     if (news.message) tell(news.message);
     if (news.work !== undefined) this.showWork(news.work);
   }
 
+  /// Loads the page of the scene as it is by now; this one's picture stays until that has light.
+  reload() {
+    if (this.luminaires?.drags) {
+      setTimeout(() => this.reload(), pace.rest);
+      return;
+    }
+    const {page, renderer} = this, {canvas, unit} = renderer;
+    renderer.draw(page.walker);
+    const exposes = this.exposes || room.lights.some(({name}) => name === 'work_light');
+    this.reloads = true;
+    sessionStorage.setItem('kept', JSON.stringify({
+      state: page.state, mode: renderer.mode, exposes, unit, folded: find('#controls').hidden,
+      points: page.points.all.map(({place, normal}) => ({place, normal})), scroll: find('#controls').scrollTop, picture: canvas.toDataURL('image/jpeg')}));
+    location.reload();
+  }
+
   showWork(work) {
     this.work.hidden = !work;
+    if (work === null && this.savesExr) this.saveExr();
     if (!work) return;
     const [bar, text] = this.work.children;
     text.textContent = work.stage
@@ -86,7 +139,7 @@ class Live {
     if (this.takes) return;
     this.takes = true;
     while (this.wanted > this.known) {
-      const loaded = await this.load(`light?since=${this.known}`).catch(() => null);
+      const loaded = await this.load(`light?viewer=${this.name}&since=${this.known}`).catch(() => null);
       if (!loaded) break;
       const {header, bytes} = loaded;
       if (!this.renderer.isLit) {
@@ -119,8 +172,10 @@ class Live {
       renderer.unit = 1 / page.seenExposure(opening);
       [renderer.light, renderer.fresh] = [renderer.fresh, renderer.light];
     }
-    renderer.mix(weights, true);
-    this.fading = pace.light;
+    renderer.mix(weights, !find('#loading'));
+    this.fading = find('#loading') ? 0 : pace.light;
+    if (find('#loading')) find('#controls').scrollTop = kept.scroll;
+    find('#loading')?.remove();
     page.lightIsOld = false;
     if (renderer.mode === 2) page.setScale();
     page.points.show();
@@ -143,6 +198,7 @@ class Live {
     };
     this.renderer.setRest(header, weigh, new Uint16Array(bytes.slice().buffer));
     this.renderer.rest.number = number;
+    this.glare.find();
     this.page.wake();
   }
 
@@ -157,11 +213,16 @@ class Live {
     return this.fading > 0 || (rest && rest.shown < 1);
   }
 
+  /// Whether a click at a place of the page is for one of the tools.
+  async click(x, y) { return await this.photons.click(x, y) || Boolean(await this.luminaires?.click(x, y)); }
+
   /// Tells where the viewer looks, if that has changed.
   look() {
+    this.luminaires?.outline();
     const {walker, lights} = this.page, {canvas} = this.renderer;
     const view = {eye: walker.eye, forward: walker.forward, angle: walker.angle, width: canvas.width,
                   height: canvas.height};
+    if (this.glare.on) view.glare = true;
     if (lights.hour) {
       view.sky = room.lights.map((light, i) => (light.patch === undefined ? 0 : lights.skyPower(i)));
     }
@@ -181,6 +242,7 @@ class Live {
   lampsChanged() {
     if (this.renderer.rest) this.renderer.rest.shown = 1;
     this.fading = 0;
+    this.glare.find();
     this.ownLamps = true;  // those of others that are under way are older
     clearTimeout(this.lamps);
     this.lamps = setTimeout(async () => {
@@ -192,6 +254,42 @@ class Live {
   /// Has the light at a point measured from now on: for each repeat the irradiance of each light. Without a place:
   /// no more.
   measure({number, place, normal}) { return this.post('point', {number, place, normal}); }
+
+  /// Power and tint of each light as it shines, for pictures that the server makes.
+  mix() {
+    const {lights} = this.page, weights = lights.weights();
+    return room.lights.map((light, i) => {
+      const {power, tint} = light.patch === undefined ? lights.states[i] : light;
+      return [weights[i].some((part) => part > 0) ? power : 0, ...tint];
+    });
+  }
+
+  makeExr() {
+    const save = () => {
+      this.savesExr = true;
+      if (this.work.hidden) this.saveExr();
+      else tell('The picture is saved as soon as it is complete.');
+    };
+    const button = element('button', {type: 'button', textContent: 'EXR',
+                                      title: 'Save the exact picture with a layer for each light (Ctrl+S)'});
+    button.addEventListener('click', save);
+    find('#picture').after(button);
+    window.addEventListener('keydown', (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.key.toUpperCase() !== 'S') return;
+      event.preventDefault();
+      this.luminaires?.save();
+      save();
+    });
+  }
+
+  async saveExr() {
+    this.savesExr = false;
+    const answer = await this.ask('exr', {mix: this.mix()});
+    if (answer.status === 404) tell('There is no exact picture to save.');
+    if (!answer.ok) return;
+    saveFile(`${room.title}.exr`, await answer.blob());
+    tell('The picture is saved.');
+  }
 
   makeMoods() {
     const form = find('#keep');

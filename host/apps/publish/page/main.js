@@ -60,14 +60,28 @@ class Page {
     this.restore();
     this.history.settle();
     this.panel.show();
-    listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.point(x, y));
+    listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.click(x, y));
     window.addEventListener('resize', () => this.wake());
     window.addEventListener('hashchange', () => this.restore());
     window.addEventListener('gamepadconnected', () => this.wake());
     this.dirty = true;
     this.wake();
-    loading.remove();
+    if (kept) this.resume();
+    else loading.remove();
     this.canvas.focus({preventScroll: true});
+  }
+
+  /// Goes on as the page before was left.
+  resume() {
+    this.setMode(kept.mode);
+    this.panel.unfold(!kept.folded);
+    for (const {place, normal} of kept.points) {
+      const from = add(place, scaled(normal, 0.01)), down = scaled(normal, -1);
+      const hit = this.surfaces.meet(from, down);
+      if (hit) this.points.add({...hit, place: add(from, scaled(down, hit.distance))});
+    }
+    this.points.close();
+    setTimeout(() => find('#loading')?.remove(), 5000);
   }
 
   /// Shows the published light as `photile render` does. The light of an hour has its own exposure.
@@ -271,14 +285,19 @@ class Page {
         drawCalls}; ${this.frameTime.toFixed(1)} ms of JavaScript.`;
   }
 
-  /// The triangle at a place of the page.
-  meet(x, y) {
-    const {forward, right, eye, angle} = this.walker;
+  /// From the eye to a place of the page.
+  directionTo(x, y) {
+    const {forward, right, angle} = this.walker;
     const up = cross(right, forward), tangent = Math.tan(angle / 2);
     const aspect = this.canvas.clientWidth / this.canvas.clientHeight;
-    const direction = normalized(add(forward, add(
+    return normalized(add(forward, add(
         scaled(right, (2 * x / this.canvas.clientWidth - 1) * tangent * aspect),
         scaled(up, (1 - 2 * y / this.canvas.clientHeight) * tangent))));
+  }
+
+  /// The triangle at a place of the page.
+  meet(x, y) {
+    const {eye} = this.walker, direction = this.directionTo(x, y);
     const hit = this.surfaces.meet(eye, direction, (triangle, facing) => {
       const part = this.partOf(triangle);
       return !part.clear && (part.interaction === 1 || facing < 0);
@@ -308,11 +327,25 @@ class Page {
     return {lux: all, error: Math.hypot(...errors), lights: lux, errors};
   }
 
+  async click(x, y) {
+    if (!await this.live?.click(x, y)) this.point(x, y);
+  }
+
   point(x, y, middle = false) {
     const hit = this.meet(x, y);
     find('#cross').hidden = !middle;
     if (hit) this.points.add(hit);
     else this.points.close();
+  }
+
+  /// Where the page shows a point; null where it lies behind the eye.
+  placeOf(point) {
+    const {forward, right, eye, angle} = this.walker;
+    const offset = subtract(point, eye), depth = dot(offset, forward);
+    if (!(depth > 1e-6)) return null;
+    const {clientWidth: width, clientHeight: height} = this.canvas;
+    const scale = height / 2 / Math.tan(angle / 2) / depth;
+    return [width / 2 + dot(offset, right) * scale, height / 2 - dot(offset, cross(right, forward)) * scale];
   }
 
   save() {
@@ -370,10 +403,11 @@ class Page {
   }
 
   restore() {
-    if (location.hash.length < 2) return;
+    const text = kept?.state ?? location.hash.slice(1);
+    if (!text) return;
     let state;
     try {
-      state = this.stateOf(location.hash.slice(1));
+      state = this.stateOf(text);
     } catch {
       tell('The link is damaged: this is the room as it was published.');
       if (this.live) this.live.ownLamps = false;

@@ -149,8 +149,8 @@ class Panel {
     return row;
   }
 
-  ///   remove   of a mood by its name; none where they are not to be removed
-  makePresets(remove) {
+  ///   remove, write   a mood by its name; none where that is not offered
+  makePresets(remove, write) {
     const section = find('#presets');
     section.querySelectorAll('.preset').forEach((button) => button.remove());
     for (const [i, preset] of room.presets.entries()) {
@@ -160,10 +160,16 @@ class Panel {
         this.show();
         this.changed('preset');
       });
-      const drop = element('button', {type: 'button', textContent: '×', title: `Remove ${preset.name}`});
-      drop.setAttribute('aria-label', drop.title);
-      drop.addEventListener('click', () => remove(preset.name));
-      find('#keep').before(element('span', {className: 'preset'}, button, ...(remove && i > 0 ? [drop] : [])));
+      const more = Object.entries({
+        '→': [write, `Write a copy of the scene with the lights of ${preset.name}`],
+        '×': [remove, `Remove ${preset.name}`],
+      }).filter(([, [act]]) => act && i > 0).map(([textContent, [act, title]]) => {
+        const made = element('button', {type: 'button', textContent, title});
+        made.setAttribute('aria-label', title);
+        made.addEventListener('click', () => act(preset.name));
+        return made;
+      });
+      find('#keep').before(element('span', {className: 'preset'}, button, ...more));
     }
     section.hidden = room.presets.length < 2;
   }

@@ -138,14 +138,10 @@ class Points {
 
   /// Puts the rings where their points are in the picture.
   place() {
-    const {forward, right, eye, angle} = this.page.walker;
     const {clientWidth: width, clientHeight: height} = this.page.canvas;
-    const up = cross(right, forward);
     const put = (box, {hit}) => {
-      const offset = subtract(hit.place, eye), depth = dot(offset, forward);
-      const scale = height / 2 / Math.tan(angle / 2) / Math.max(depth, 1e-6);
-      const x = width / 2 + dot(offset, right) * scale, y = height / 2 - dot(offset, up) * scale;
-      box.style.visibility = depth > 0 && x > 0 && x < width && y > 0 && y < height ? '' : 'hidden';
+      const [x, y] = this.page.placeOf(hit.place) ?? [-1, -1];
+      box.style.visibility = x > 0 && x < width && y > 0 && y < height ? '' : 'hidden';
       box.style.left = `${x}px`;
       box.style.top = `${y}px`;
     };

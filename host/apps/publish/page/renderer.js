@@ -24,6 +24,7 @@ class Renderer {
     this.drawCalls = 0;
     this.isLit = !room.live;  // else an even light stands for that which is to come
     this.rest = null;         // an exact picture of where the viewer rests
+    this.overlays = new Set();  // that draw over each frame, given its camera
   }
 
   async load(archive) {
@@ -571,6 +572,7 @@ class Renderer {
     screen.fit(width, height);
     screen.show(this.exposure, rest,
                 showsLux ? {contours, lux: room.lux * this.unit / top, palette: this.palette} : null);
+    for (const draw of this.overlays) draw(camera);
     ++this.drawCalls;
   }
 
