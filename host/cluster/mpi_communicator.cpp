@@ -308,7 +308,7 @@ class MpiCommunicator final : public Communicator {
     std::fprintf(
         stderr,
         "photile: error: rank %d of %u has been silent for %d s: its process or its machine "
-        "is stopped; all are ended (PHOTILE_MPI_PATIENCE sets the seconds)\n",
+        "has stopped; all ranks are ended (PHOTILE_MPI_PATIENCE sets the seconds)\n",
         silent_rank, size_, patience());
     std::this_thread::sleep_for(3 * watch_period);  // until they know
     const std::lock_guard lock(calls());

@@ -30,11 +30,12 @@ struct Camera;
 /// The rays through a film of some size: what all of its pixels share, computed once.
 class FilmDirections {
  public:
-  /// Errors: UsageError for a camera whose position, axes or field of view are no numbers in range.
+  /// Errors: UsageError for a camera whose position, axes or field of view are out of range or not
+  /// finite.
   FilmDirections(const Camera& camera, int width, int height);
 
   /// Unit direction through film position (x, y) in pixels, (0,0) the upper left corner of the
-  /// picture. Zero beyond the circle of a fisheye: nothing is seen there.
+  /// picture. Zero outside the circle of a fisheye, where nothing is visible.
   glm::dvec3 operator()(double x, double y) const {
     if (projection_ != Projection::perspective) return curved(x, y);
     return glm::normalize(forward_ + (2.0 * x / width_ - 1.0) * half_right_ +
@@ -66,7 +67,7 @@ struct Camera {
   double vertical_field_of_view = glm::radians(defaults::vertical_field_of_view);
   double aspect_ratio = 0;  ///< width / height as the file states it; 0 = follow the picture
   Projection projection = Projection::perspective;
-  /// Metres that a picture of parallel rays is high.
+  /// Height of a picture of parallel rays, metres.
   double orthographic_height = defaults::orthographic_height;
 
   /// A camera at `position` that looks at `target` with `up_hint` upwards in the picture.

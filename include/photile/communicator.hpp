@@ -19,9 +19,9 @@ struct OtherProcessFailed : Error {
 };
 
 /// Processes that make the same calls in the same order, each with its own data: ranks, from 0.
-/// photile has one over MPI (host/cluster); a program may bring its own. All functions but the
-/// first two are collective, and throw OtherProcessFailed once a process has called `conclude` with
-/// a failure in place of them.
+/// photile has an implementation over MPI (host/cluster); a program may bring its own. All
+/// functions but the first two are collective, and throw OtherProcessFailed once a process has
+/// called `conclude` with a failure instead.
 class Communicator {
  public:
   using Bytes = std::vector<std::byte>;
@@ -60,8 +60,9 @@ class Communicator {
     std::uint32_t rank = 0;  ///< the first that failed; 0 where none did
     int code = 0;            ///< its exit code
   };
-  /// The last call of each: its own exit code, 0 where it did not fail.
-  ///   tell   called in the first that failed, before any ends: a launcher ends all with the first
+  /// The last call of each rank, with its own exit code, 0 where it did not fail.
+  ///   tell   called in the first rank that failed, before any rank ends: a launcher ends all
+  ///          of them with the first
   virtual Conclusion conclude(int code, const std::function<void()>& tell) = 0;
 
   /// The bytes that this rank has sent to others so far, and the time that it has waited for them.

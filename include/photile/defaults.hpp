@@ -14,16 +14,16 @@ inline constexpr int samples_per_pixel = 4;           ///< primary hits a pixel
 inline constexpr double exposure = 0.0;               ///< stops, on top of the automatic exposure
 inline constexpr double vertical_field_of_view = 40;  ///< degrees, for a camera photile places
 inline constexpr double fisheye_field_of_view = 180;  ///< degrees across the circle
-inline constexpr double orthographic_height = 4;      ///< metres that parallel rays are high
+inline constexpr double orthographic_height = 4;  ///< metres, height of a picture of parallel rays
 
 // Photons
 inline constexpr std::uint64_t emitted_photons = 1'000'000;  ///< over all lights
 inline constexpr std::uint64_t seed = 1;
-inline constexpr int max_path_length = 1'000'000;  ///< surfaces; roulette ends paths before
+inline constexpr int max_path_length = 1'000'000;  ///< surfaces; roulette ends paths earlier
 inline constexpr int roulette_start = 1;           ///< first bounce at which a path may end
-/// Paths of photons from this surface on, and all of the integrator "path", go on with this chance
-/// at most: between perfect mirrors they end as well, and in white rooms their number stays
-/// bounded.
+/// From this surface on, paths of photons, and all paths of the integrator "path", survive with at
+/// most this probability: so they end between perfect mirrors as well, and their number in white
+/// rooms stays bounded.
 inline constexpr int long_path = 64;
 inline constexpr float largest_survival = 0.99f;
 
@@ -67,20 +67,22 @@ inline constexpr int light_map_levels = 4;         ///< the finest is an eighth
 inline constexpr double no_detail = 10;
 inline constexpr double light_map_contrast = 0.25;  ///< of the corners of a cell that is not split
 inline constexpr double published_texel = 0.02;     ///< metres, of the light maps of a page
-inline constexpr double light_map_near = 0.5;       ///< cells larger than this part of the distance
+inline constexpr double light_map_near = 0.5;  ///< cells larger than this fraction of the distance
 
 // Nodes that gather
-/// Surface closer than this to a node that gathers, in radii of the photon estimates, is not read:
-/// the blur of the estimates, and what hides within their radius, would show at the node.
+/// Estimates on surface closer than this to a node that gathers, in radii of the photon estimates,
+/// are not used: the blur of the estimates, and what hides within their radius, would show at the
+/// node.
 inline constexpr double near_radii = 2;
-/// Estimates where their rays end use neighbours / `neighbours_over_ends` neighbours, and at least
-/// `least_neighbours_at_ends`.
+/// Estimates at the ends of their rays use neighbours / `neighbours_over_ends` neighbours, and at
+/// least `least_neighbours_at_ends`.
 inline constexpr int neighbours_over_ends = 4, least_neighbours_at_ends = 12;
-/// The distance between nodes that gather is the reach of an estimate by this many times the
+/// The distance between nodes that gather is the radius of an estimate with this many times the
 /// neighbours.
 inline constexpr int photons_between_nodes = 3;
-inline constexpr int most_near_surfaces = 3;  ///< in a row, that a ray goes on from
-/// From near surface that reflects less than the inverse of this, rays go on by chance.
+inline constexpr int most_near_surfaces = 3;  ///< in a row that a ray continues from
+/// From near surface that reflects less than the inverse of this, rays continue by Russian
+/// roulette.
 inline constexpr float survival_of_reflectance = 1.5f;
 /// At ray ends whose lobe reflects more than this towards the ray, the direction of light counts.
 inline constexpr float strong_lobe = 0.2f;
@@ -99,8 +101,8 @@ inline constexpr float largest_sun = 0.02f;
 /// that covers 0.2% of it is detected. Where part of it is hidden, `hidden_sun_samples` directions
 /// on the disc are used.
 inline constexpr int sun_rim_samples = 16, sun_samples = 16, hidden_sun_samples = 256;
-/// The factor on the rays where a sun or a sky shines: the light that they find, of a sunlit floor
-/// or a window, varies more.
+/// The factor on the rays where a sun or a sky shines: the light that they find, such as that of a
+/// sunlit floor or a window, varies more.
 inline constexpr int times_in_the_open = 4;
 /// Where the surface of a scene has room for fewer nodes of the coarsest level than this, each node
 /// gets proportionally more rays, up to `most_times_where_few` times as many: a node then covers
@@ -122,30 +124,31 @@ inline constexpr int averaged_window = 2, averaged_rounds = 2, averaged_fine_win
 /// Standard errors by which points may differ, and how many times as large the standard errors of
 /// direct light may be.
 inline constexpr double tolerated_errors = 2.5, tolerated_error_ratio = 2;
-/// Points whose light differs by less than this part of the brighter one's are averaged without a
-/// look at what stands between them.
+/// Points whose light differs by less than this fraction of the brighter one's are averaged without
+/// a test of what stands between them.
 inline constexpr double parting_contrast = 0.5;
-/// A light is judged apart from the others where its squared difference exceeds this many squares
-/// of the tolerated one: 4.3 standard errors, which the scatter of eight batches seldom reaches.
+/// A light is judged separately from the others where its squared difference exceeds this many
+/// times the square of the tolerated one: 4.3 standard errors, which the scatter of eight batches
+/// seldom reaches.
 inline constexpr double parting_difference = 3;
 /// Errors above this fraction of their own light count as unknown: few rays found any of that
 /// light.
 inline constexpr double known_error = 0.5;
-/// Shadow rays between points of one surface run above it by this part of their length:
-/// roundings and what lies flat on it hide nothing. They end short of a node by
+/// Shadow rays between points of one surface run above it by this fraction of their length, so that
+/// rounding and what lies flat on it hide nothing. They end short of a node by
 /// `visibility_left_out` of their length, which is less than the distance of a node from the foot
 /// of a wall.
 inline constexpr float visibility_ray_offset = 0x1p-9f, visibility_left_out = 0x1p-9f;
 /// The distance of nodes from the borders of triangles, over the finest spacing, so that each node
 /// is clearly on one side of what stands there.
 inline constexpr double node_inset = 0x1p-5;
-/// Lines of sight from a hit to the photons of its estimate run above the surface by this part of
+/// Shadow rays from a hit to the photons of its estimate run above the surface by this fraction of
 /// the radius.
 inline constexpr float photon_ray_offset = 0x1p-2f;
 
 // Filter of gloss (docs/method/gloss.md)
-/// A pixel is averaged with those of one row on each side for each `filter_rows` rows that the
-/// picture has, and with `filter_most_reach` at most: what is reflected grows with the picture.
+/// A pixel is averaged with pixels within one row on each side per `filter_rows` rows of the
+/// picture, and within at most `filter_most_reach`: what is reflected grows with the picture.
 inline constexpr int filter_rows = 48, filter_most_reach = 8;
 /// Pixels on each side by which two pixels are compared, and that show how noisy a pixel is.
 inline constexpr int filter_patch = 1, filter_noise_reach = 3;
@@ -157,11 +160,11 @@ inline constexpr float filter_shown_noise = 0.002f;
 inline constexpr float filter_least_noise = 0.001f;
 
 // Edges
-/// Pixels that show an edge have this many samples, but at most so many times those of others: a
-/// sample at an edge errs by all that the surfaces differ.
+/// Pixels that show an edge have this many samples, but at most `most_times_at_edges` times as many
+/// as others: a sample at an edge errs by the whole difference of the surfaces.
 inline constexpr int edge_samples = 64, most_times_at_edges = 4;
-/// The first samples of a pixel, which tell whether it shows an edge; pixels of fewer samples are
-/// not asked.
+/// The first samples of a pixel, which tell whether it shows an edge; pixels with fewer samples are
+/// not tested.
 inline constexpr int edge_probes = 8;
 /// Two hits are of different surfaces where their normals differ by more than 10 degrees, where one
 /// lies above the plane of the other by more than this part of their distance, or where their
@@ -174,10 +177,10 @@ inline constexpr float edge_cosine = 0.985f, edge_slope = 0.2f, edge_contrast = 
 inline constexpr float least_glass_fraction = 0.02f;
 
 // Gloss by rays
-/// A path whose weight in its sample is less than this goes on by Russian roulette, with this
+/// A path whose weight in its sample is less than this continues by Russian roulette, with this
 /// weight. A smooth dielectric seen from the front reflects 0.04, and is always followed.
 inline constexpr float least_lobe_weight = 0.02f;
-/// Runs of a pixel's samples, whose scatter is their error.
+/// Runs into which the samples of a pixel are divided; their scatter gives the error.
 inline constexpr int runs_of_samples = 4;
 
 // Uniform grid
@@ -187,8 +190,8 @@ inline constexpr float photons_per_cell = 4.0f;  ///< aimed at; about 4 is best 
 inline constexpr int max_specular_depth = 16;  ///< mirrors and glass followed by a primary ray
 
 // Denoising
-inline constexpr int denoising_samples = 16;  ///< primary rays a pixel that guides are traced by
-inline constexpr float denoising_errors = 3;  ///< known standard errors that a value may move by
+inline constexpr int denoising_samples = 16;  ///< primary rays per pixel for the guides
+inline constexpr float denoising_errors = 3;  ///< known standard errors by which a value may change
 inline constexpr const char* denoising_library = "libOpenImageDenoise.so.2";
 
 // The trade between time and error
@@ -216,10 +219,10 @@ inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that n
 /// it needs beside the photons.
 inline constexpr std::uint64_t exchange_round_bytes = std::uint64_t{1} << 24;
 inline constexpr int rank_patience =
-    120;  ///< seconds without a sign of a rank, after which all end
+    120;  ///< seconds without a sign of a rank, after which all ranks end
 
 // Trade
-inline constexpr int trade_neighbours = 200;  ///< others around them are tried, too
+inline constexpr int trade_neighbours = 200;  ///< numbers around it are tried as well
 
 // Validation: most readings are within the tolerance of 1% after the fewest seeds
 inline constexpr std::uint64_t validation_photons = 1'000'000;  ///< of each seed
@@ -244,16 +247,16 @@ inline constexpr double lamp_efficacy = 100;       ///< lm/W, of luminaires that
 inline constexpr int daylight_rays = 256;          ///< of each sensor and repeat
 inline constexpr int daylight_repeats = 4;
 
-// Measuring: a mean of repeats with photons of their own, whose scatter tells the standard error
+// Measuring: a mean of repeats, each with its own photons, whose scatter gives the standard error
 inline constexpr int measuring_rays = 1'024;  ///< of each sensor and repeat
 inline constexpr int measuring_repeats = 8;
-inline constexpr double wall_band = 0.5;           ///< metres that EN 12464-1 lets grids leave out
+inline constexpr double wall_band = 0.5;  ///< metres that EN 12464-1 allows grids to leave out
 inline constexpr double maintenance_factor = 1.0;  ///< none: the light of a new installation
 
 /// Limits beyond which a warning is printed: no paint reflects as much, and a candle emits 12 lm.
 inline constexpr double doubtful_reflectance = 0.95, doubtful_lumens = 5;
 
-// False colour, as Radiance's falsecolor has them
+// False colour, as in Radiance's falsecolor
 inline constexpr int legend_steps = 8;
 
 // Reflections that are marked
@@ -267,7 +270,7 @@ inline constexpr int samples_of_luminaire = 256;    ///< at the luminous opening
 inline constexpr double small_source_area = 0.005;  ///< m2 projected: CIE 147, small sources
 inline constexpr double large_source_area = 1.5;    ///< m2: CIE 147, large sources
 /// cd/m2 of a glare source in a picture, the angle (radians) within which its pixels are one
-/// source, and the luminance of peaks that are sources of their own: those of evalglare 3.
+/// source, and the luminance of peaks that are separate sources: those of evalglare 3.
 inline constexpr double glare_source_luminance = 2'000;
 inline constexpr double glare_source_angle = 0.1;
 inline constexpr double glare_peak_luminance = 50'000;

@@ -1,4 +1,4 @@
-// OpenCL devices, as a user chooses them.
+// OpenCL devices and how a user chooses them.
 #pragma once
 
 #include <cstdint>
@@ -25,17 +25,17 @@ struct DeviceInfo {
   std::string platform_version;
   DeviceType type = DeviceType::other;
   std::uint32_t compute_units = 0;
-  std::uint32_t clock_mhz = 0;  ///< the highest, as the device says
+  std::uint32_t clock_mhz = 0;  ///< the highest, as the device reports
   std::string extensions;       ///< names, separated by spaces
   std::uint64_t global_memory_bytes = 0;
   std::uint64_t max_allocation_bytes = 0;  ///< largest single buffer
   std::uint64_t local_memory_bytes = 0;
   std::uint64_t max_work_group_size = 0;
   std::uint32_t native_float_width = 0;  ///< the device's native vector width for float
-  std::uint32_t lanes = 0;  ///< work-items that it runs in step, where it says so; else 0
-  /// Work-items that it runs in step can read each other's registers by instructions that kernels
-  /// know: those of NVIDIA's processors of compute capability 8.0 and later, or sub-groups of a
-  /// size that is asked for, as Intel's runtimes have them.
+  std::uint32_t lanes = 0;  ///< work-items that it runs in lockstep, where it reports them; else 0
+  /// Work-items that it runs in lockstep can read each other's registers by instructions that the
+  /// kernels use: those of NVIDIA's processors of compute capability 8.0 and later, or sub-groups
+  /// of a requested size, as Intel's runtimes offer.
   bool shuffles = false;
   /// Single-precision numbers below 1.2e-38 are kept, and quotients and roots are correctly
   /// rounded. Without these, only the last bits of results are wrong.
@@ -54,12 +54,12 @@ struct DeviceOptions {
   /// "" = the best (a GPU that has passed its test before PoCL before other CPUs); else
   /// "platform:device", an index into list_devices(), "cpu", "gpu", or a part of the device's or
   /// platform's name. A suffix takes sub-devices in place of the whole: "cpu/2" splits it into two
-  /// of equal size, "cpu=3" is one of 3 compute units, "cpu=2+1" are two. Several, separated by
+  /// of equal size, "cpu=3" is one of 3 compute units, "cpu=2+1" takes two. Several, separated by
   /// commas, or "all" (every device but Oclgrind's simulator) are for open_devices.
   std::string selector;
   bool use_program_cache = true;
   bool profile = false;            ///< keep event times of every kernel
-  std::uint64_t memory_bytes = 0;  ///< that live buffers may take together; 0 = all the device has
+  std::uint64_t memory_bytes = 0;  ///< bound of all live buffers together; 0 = the device's memory
 };
 
 class Device;
@@ -71,8 +71,8 @@ Context& context_of(Device& device);
 /// An open device: context, queue and program cache. Movable.
 class Device {
  public:
-  /// Errors: DeviceError when there is no device, none matches the selector (the message lists
-  /// those there are), or the selector means several.
+  /// Errors: DeviceError when there is no device, none matches the selector (the message lists the
+  /// devices), or the selector means several.
   explicit Device(const DeviceOptions& options = {});
   ~Device();
   Device(Device&&) noexcept;
@@ -82,7 +82,8 @@ class Device {
   double compile_seconds() const;  ///< spent building programs so far
   std::uint64_t programs_built() const;
   std::uint64_t programs_from_cache() const;
-  std::uint64_t peak_allocated_bytes() const;  ///< most that live buffers took together so far
+  std::uint64_t peak_allocated_bytes()
+      const;  ///< the most that live buffers have taken together so far
 
  private:
   friend std::vector<Device> open_devices(const DeviceOptions& options);
@@ -98,9 +99,9 @@ std::vector<Device> open_devices(const DeviceOptions& options = {});
 
 /// Builds photon maps of 20,000 uniform photons on a square metre and asks the device for the 50
 /// nearest of a thousand hits and for their irradiance. Both are compared with a search of all
-/// photons in double precision, and the mean irradiance with that which the photons were made for.
-/// Takes seconds, most of them for compiling kernels. Returns "" where all agree, else what does
-/// not, in one line; an error of the device is such a line, too.
+/// photons in double precision, and the mean irradiance with that for which the photons were made.
+/// Takes seconds, most of them for compiling kernels. Returns "" where all agree, else one line
+/// about what does not; an error of the device is returned as such a line, too.
 std::string test_device(Device& device);
 
 /// Tests the device, as test_device does, and keeps the result for later runs

@@ -37,7 +37,7 @@ struct DeviceError : Error {
 };
 
 /// The device's memory, or the part of it that may be used, does not suffice. Work in batches is
-/// tried again with smaller ones.
+/// tried again with smaller batches.
 struct DeviceMemoryError : DeviceError {
   using DeviceError::DeviceError;
 };

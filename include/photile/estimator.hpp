@@ -40,19 +40,20 @@ struct EstimateTuning {
   int hits_per_item = 1;
   /// Work-items; fewer where their private memory would be too much. That of `lanes` is the width.
   int work_group_size = 64;
-  /// `lanes` of 16 or 32 on devices with shuffles: whether they exchange values by these in place
-  /// of local memory and barriers. The same bits.
+  /// `lanes` of 16 or 32 on devices with shuffles: whether they exchange values by these instead of
+  /// local memory and barriers. Results have the same bits.
   bool shuffles = false;
 
   friend bool operator==(const EstimateTuning&, const EstimateTuning&) = default;
 };
 
-/// The tuning that estimators use by default: vector width 16 on every CPU, whatever its own width,
-/// so that pictures agree in every bit between CPUs; elsewhere `lanes`: of 16 work-items where they
-/// have shuffles, else of as many as the device runs in step, or of 32 where it does not say.
+/// The tuning that estimators use by default: vector width 16 on every CPU, whatever its native
+/// width, so that pictures agree in every bit between CPUs; elsewhere `lanes`: of 16 work-items
+/// where the device has shuffles, else of as many as it runs in lockstep, or of 32 where that is
+/// unknown.
 EstimateTuning shipped_tuning(const DeviceInfo& device);
 
-/// With this strategy, as wide as suits it on the device.
+/// The default tuning of a strategy, in the width that suits it on the device.
 EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strategy);
 
 /// The weight of a photon at distance d, where the k-th lies at r (Silverman, "Density Estimation
@@ -67,7 +68,7 @@ enum class DensityKernel {
 std::string_view name_of(DensityKernel kernel);
 inline constexpr std::array all_density_kernels = {DensityKernel::constant, DensityKernel::cone};
 
-/// What a photon counts where the squares of its distance and of that of the k-th have this ratio.
+/// The weight of a photon, given its squared distance over that of the k-th photon.
 inline double kernel_weight(DensityKernel kernel, double relative_squared) {
   switch (kernel) {
     case DensityKernel::constant:
@@ -90,13 +91,15 @@ inline double kernel_spread(DensityKernel kernel) {
   return 0;
 }
 
-/// The kernel in use with k neighbours: one photon alone lies at r, where the others are 0.
+/// The kernel that is used with k neighbours: a single photon lies at r, where the other kernels
+/// are 0.
 inline DensityKernel kernel_used(DensityKernel kernel, int neighbours) {
   return neighbours > 1 ? kernel : DensityKernel::constant;
 }
 
-/// Of caustics, whose photons fill their paths evenly: what a kernel counts that vanishes at its
-/// border has little noise then, and does not depend on where the k-th photon happens to lie.
+/// The kernel of caustics, whose photons fill their paths evenly: the estimate of a kernel that
+/// vanishes at its border then has little noise, and does not depend on where the k-th photon
+/// happens to lie.
 inline constexpr DensityKernel caustic_kernel = DensityKernel::cone;
 
 /// The area that a density estimate divides by.
@@ -113,17 +116,17 @@ struct EstimateParameters {
   int neighbours = defaults::neighbours;  ///< k
   /// Metres; 0 = the maps' radius. No neighbour is farther.
   double radius = 0;
-  /// How uniform grids are queried; none = shipped_tuning of the device.
+  /// How the photon maps are queried; none = shipped_tuning of the device.
   std::optional<EstimateTuning> tuning = std::nullopt;
   /// Kernels are compiled for k up to this; 0 = `neighbours`. Estimators with different k share
   /// them; what they compute does not depend on it.
   int compiled_neighbours = 0;
-  /// Naive maps, whose photons are those of one triangle, take the disc in any case.
+  /// Naive maps, whose photons are those of one triangle, always use the disc.
   AreaMode area = AreaMode::clipped;
   /// The weight of each photon; with one neighbour, 1.
   DensityKernel kernel = DensityKernel::constant;
-  /// For clipped areas: of the scene, for the radius of the maps or a larger one and the angle of
-  /// their groups. Estimators share it; none = the estimator makes its own.
+  /// For clipped areas: the index of the scene, for the radius of the maps or a larger one, and the
+  /// angle of their groups. Estimators may share it; null = the estimator makes its own.
   std::shared_ptr<const SurfaceIndex> surface = nullptr;
 };
 
@@ -152,8 +155,8 @@ class Estimator {
   ~Estimator();
   Estimator(Estimator&&) noexcept;
 
-  /// Radiance estimates; none depends on the other hits, in any bit. Hits may have any order: the
-  /// kernels take them map by map.
+  /// Radiance estimates, none of which depends on the other hits in any bit. Hits may be in any
+  /// order: the kernels process them map by map.
   LightTable estimate(const PrimaryHits& hits);
 
   /// Estimates hits [first, first + count) alone.

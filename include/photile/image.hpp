@@ -43,12 +43,12 @@ PictureHeader read_header(const std::filesystem::path& file);
 
 /// Reads an EXR (all parts; channels of part P that do not carry its name keep theirs), a PNG,
 /// JPEG, TIFF, WebP, BMP, GIF, Targa, PNM or Radiance picture: upright and in linear Rec.709, as
-/// docs/reference/scene-files.md has it, integers up to 1. Checks limits.hpp before decoding.
-/// Errors: InputError naming the file.
+/// docs/reference/scene-files.md describes; integers are scaled to [0, 1]. Checks limits.hpp before
+/// decoding. Errors: InputError naming the file.
 Image read_image(const std::filesystem::path& file);
 
-/// Reads every pixel of a picture, a few rows at a time, and forgets it. Errors: InputError naming
-/// the file where it is damaged, or not whole.
+/// Reads every pixel of a picture, a few rows at a time, and discards it. Errors: InputError naming
+/// the file where it is damaged or incomplete.
 void check_pixels(const std::filesystem::path& file);
 
 /// Writes a single-part scan-line EXR of 32-bit floats, through a temporary name and a rename.
@@ -90,7 +90,7 @@ struct ToneMapping {
 /// Factor that brings the log-average luminance of R, G, B to 0.36 of white, over pixels of finite
 /// positive luminance within a factor of 20 of their median (Reinhard et al., "Photographic tone
 /// reproduction for digital images", 2002, without the outliers: lights and black backgrounds). 1
-/// where no pixel has any. Errors: InputError where there is no R, G or B.
+/// where there is no such pixel. Errors: InputError where there is no R, G or B.
 double automatic_exposure(const Image& scene_referred);
 /// The same of several pictures together.
 double automatic_exposure(std::span<const Image* const> scene_referred);
@@ -99,23 +99,23 @@ double automatic_exposure(std::span<const Image* const> scene_referred);
 ToneMapping with_one_exposure(ToneMapping parameters, std::span<const Image* const> scene_referred);
 
 /// Root R, G, B to display-referred values in [0,1], still linear; `write_png` applies the sRGB
-/// curve. Every pixel keeps its hue, but those on the border of a lamp or a window, which become a
-/// mix of what is displayed on both sides of it. NaN and negative values count as 0.
+/// curve. Every pixel keeps its hue, except those on the border of a lamp or a window, which become
+/// a mix of what is displayed on both sides. NaN and negative values count as 0.
 Image tone_map(const Image& scene_referred, const ToneMapping& parameters);
 
 /// Errors of a picture. Pixels that see a light, more than 20 times as bright as the reference's
-/// median, are left out of all of them, and so are those next to them: their share of a mean would
-/// hide the room's, and one sample more or less on the border of a light that of all other pixels.
+/// median, are left out of all of them, and so are those next to them: their part of a mean would
+/// hide the room's, and a single sample on the border of a light would outweigh all other pixels.
 struct PictureError {
   /// Mean over pixels and channels of (a - b)^2 / (b^2 + 0.01 m^2): a the picture, b the reference,
-  /// m the mean of b. Its root is the error relative to what is seen, in a pixel.
+  /// m the mean of b. Its square root is the relative error of a pixel.
   double relative_mse = 0;
   double mean_ratio = 1;  ///< mean of the picture over that of the reference
   /// Largest |mean(a) / mean(b) - 1| of the tiles of a sixteenth of the picture's height: bias that
   /// many pixels share, where a pixel's noise has averaged out. Tiles darker than a tenth of m, or
   /// that mostly see lights, do not count.
   double worst_region = 0;
-  /// Where that is: its upper left corner and size, pixels; empty where no tile counts.
+  /// The position of that tile: its upper left corner and size, pixels; empty where no tile counts.
   struct Region {
     int x = 0, y = 0, width = 0, height = 0;
   } worst_area;
@@ -138,7 +138,7 @@ class RelativeErrorWeights {
 
   bool counts(std::size_t pixel) const { return counts_[pixel]; }
   std::size_t counted() const { return counted_; }  ///< pixels
-  double mean() const { return mean_; }             ///< of the reference over them and channels
+  double mean() const { return mean_; }  ///< of the reference over these pixels and all channels
   /// Mean over channels and pixels that count of (a - b)^2 / (b^2 + 0.01 m^2).
   double relative_mse(const Image& picture, const Image& reference) const;
 

@@ -19,7 +19,7 @@
 
 namespace photile {
 
-/// State of one light, or of a group of lights, in a mix.
+/// The state of one light, or of a group of lights, in a mix.
 struct MixedLight {
   std::string name;
   std::vector<std::string> members;  ///< lights of a group; empty for a light alone
@@ -27,8 +27,8 @@ struct MixedLight {
   PowerUnit unit = PowerUnit::lumen;
   glm::vec3 color{1.0f};  ///< the light's own colour, as its photons carried it; luminance 1
   /// Multiplies the layer, on top of `color`. Scaled so that luminance(tint * color) = 1: a tinted
-  /// light emits `power` as before and keeps its direct illuminance. What it gives by reflection
-  /// from coloured surfaces changes, which one plane of illuminance cannot follow.
+  /// light emits `power` as before and keeps its direct illuminance. Its light reflected from
+  /// coloured surfaces changes, which a single plane of illuminance cannot represent.
   glm::vec3 tint{1.0f};
 };
 
@@ -65,7 +65,7 @@ struct LightChange {
   static LightChange parse(const std::string& text);
 };
 
-/// Applies changes. Errors: UsageError for an unknown light (the message lists those there are), a
+/// Applies changes. Errors: UsageError for an unknown light (the message lists the lights), a
 /// negative or non-finite power, a malformed value, a colour that the light does not emit.
 void change_lights(LightMix& mix, const std::vector<LightChange>& changes);
 
@@ -121,22 +121,24 @@ class LayeredPicture {
   /// known.
   std::vector<std::string> channel_names(std::size_t light) const;
 
-  /// Rows [first, end) of a light: finite numbers, the nearest where a value is beyond them, and 0
-  /// for what is none. Asking for lights in ascending order is the fastest.
-  /// Errors: InputError where they come from a file that is damaged.
+  /// Rows [first, end) of a light: finite numbers; infinities become the nearest of these, NaN
+  /// becomes 0. Reading lights in ascending order is the fastest. Errors: InputError where they
+  /// come from a file that is damaged.
   LightRows read(std::size_t light, int first, int end) const;
 
-  /// The root R G B A: the float sum of all lights in order, finite as they are. Errors: as `read`.
+  /// The root R G B A: the float sum of all lights in order, made finite as these are. Errors: as
+  /// `read`.
   Image root() const { return root(0, header_.height); }
-  /// Rows [first, end) of it. To read them before those of the lights decodes a file once.
+  /// Rows [first, end) of the root. A file is decoded only once if they are read before those of
+  /// the lights.
   Image root(int first, int end) const;
 
-  /// A line for each light of whose pixels some were not finite, among those that have been read,
-  /// or for the root where only their sum was not: which, how many and the remedy.
+  /// A line for each light some of whose pixels were not finite, among those that have been read,
+  /// or for the root where only the sum was not: which light, how many pixels, and the remedy.
   std::vector<std::string> overflows() const;
 
  protected:
-  /// Reads as `read` and `root` do, whatever the numbers.
+  /// Reads as `read` and `root` do, with numbers as they are.
   virtual LightRows read_any(std::size_t light, int first, int end) const = 0;
   virtual Image sum_any(int first, int end) const = 0;
 
@@ -161,8 +163,8 @@ class LayeredPicture {
 /// when the mix lacks a layer's light.
 std::unique_ptr<LayeredPicture> mixed_picture(const LightLayers& layers, const LightMix& mix);
 
-/// A picture file with other powers, as `relight` gives it. One of few lights is read at once; of
-/// others no more than a few rows of all lights are in memory. Errors: InputError; UsageError as
+/// A picture file with other powers, as `relight` gives it. A picture of few lights is read at
+/// once; of others, only a few rows of all lights are in memory. Errors: InputError; UsageError as
 /// in `relight`.
 std::unique_ptr<LayeredPicture> relit_picture(const std::filesystem::path& file,
                                               const std::vector<LightChange>& changes);
@@ -193,16 +195,16 @@ std::string_view name_of(LayerPrecision precision);
 void write_exr(const std::filesystem::path& file, const LayeredPicture& picture,
                LayerPrecision precision = LayerPrecision::whole);
 
-/// The view as Radiance's pictures tell it ("-vta -vp 0 0 1.2 -vd 0 1 0 -vu 0 0 1 -vh 180 -vv
+/// The view as Radiance's pictures state it ("-vta -vp 0 0 1.2 -vd 0 1 0 -vu 0 0 1 -vh 180 -vv
 /// 180"), for a film of width x height pixels. Empty where Radiance has no such view: a whole
 /// sphere, or a fisheye whose picture is wider than its hemisphere.
 std::string radiance_view(const Camera& camera, int width, int height);
 
-/// Sets the attribute `photile.view`, as radiance_view has it, and the matrices `worldToCamera`
-/// and, of a perspective, `worldToNDC` as OpenEXR's standard attributes define them, for a film of
-/// width x height pixels. Row vectors: p' = p M. Camera space is left-handed, +x
-/// right, +y up, +z along the view, in metres. NDC, after division by w, is [0,1] x [0,1] over the
-/// picture with (0,0) in its upper left corner; its z is 1 / depth and only keeps the matrix
+/// Sets the attribute `photile.view`, to the result of radiance_view, and the matrices
+/// `worldToCamera` and, of a perspective, `worldToNDC` as OpenEXR's standard attributes define
+/// them, for a film of width x height pixels. Row vectors: p' = p M. Camera space is left-handed,
+/// +x right, +y up, +z along the view, in metres. NDC, after division by w, is [0,1] x [0,1] over
+/// the picture with (0,0) in its upper left corner; its z is 1 / depth and only keeps the matrix
 /// invertible.
 void set_camera_attributes(PictureHeader& image, const Camera& camera, int width, int height);
 

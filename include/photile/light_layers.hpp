@@ -19,7 +19,7 @@ struct LightGroup {
   glm::vec3 color{0.0f};              ///< of their light together; luminance 1
 };
 
-/// The layers of a scene and what each light gives to its own.
+/// The layers of a scene and what each light contributes to its layer.
 struct LightGroups {
   std::vector<LightGroup> groups;       ///< in the order of their first lights
   std::vector<std::uint32_t> group_of;  ///< per light
@@ -64,8 +64,8 @@ struct LightLayers {
   LightLayers dense() const;
 };
 
-/// A mixdown of the lights' layers: each is multiplied by a number and added to another. Of
-/// hundreds of patches of a sky one layer is left, which costs a film as much as one light.
+/// A mixdown of the lights' layers: each is multiplied by a number and added to another. Hundreds
+/// of patches of a sky become one layer, which costs a film as much as one light.
 struct LayerMixdown {
   std::vector<std::string> layers;      ///< of the film
   std::vector<std::uint32_t> layer_of;  ///< per layer of the scene: into `layers`

@@ -13,7 +13,7 @@ namespace photile {
 
 /// Light at points, each light at power 1. A row has an entry for each light of the scene, in their
 /// order; with more than max_dense_lights lights, for those alone that were found at its point,
-/// each once. Columns have a value for each entry; those that nobody told are empty.
+/// each once. Columns have a value for each entry; columns that are not known are empty.
 struct LightTable {
   static constexpr int max_batches = 64;
 
@@ -28,13 +28,13 @@ struct LightTable {
   /// leave it unless the scene is glossy, radiance is albedo / pi x irradiance.
   std::vector<glm::vec3> radiance;
   /// Luminance of irradiance by the normal, to first order: a plane of unit normal n there gets
-  /// dot(xyz, n) + w. Only of nodes that rays value, in scenes with smooth shading.
+  /// dot(xyz, n) + w. Only for nodes whose light rays find, in scenes with smooth shading.
   std::vector<glm::vec4> by_normal;
-  /// Luminance that each of several independent batches found alone, row-major [entry][batch]:
-  /// irradiance is their mean, their scatter its error, also that of any mix of lights. Of rays.
+  /// Luminance found by each of several independent batches of rays, row-major [entry][batch]:
+  /// irradiance is their mean, and their scatter is its error, also for any mix of lights.
   std::vector<float> batch;
   int batches = 0;
-  /// Variance of the luminance that all batches share, of caustics.
+  /// Variance of the luminance of caustics, which all batches share.
   std::vector<float> shared_variance;
 
   std::size_t lights = 0;  ///< of the scene: entries of a row, where rows are dense
@@ -69,13 +69,13 @@ struct LightTable {
   LightTable slice(std::size_t begin, std::size_t count) const;
 
   std::uint64_t bytes() const;
-  /// Leaves the means alone.
+  /// Keeps only the means.
   void drop_batches();
 
   /// Standard error of the luminance of an entry, by its batches.
   double error(std::size_t entry) const;
   /// Standard error by which it may differ from a point beside it that sees the same light: of the
-  /// error that batches share the part `defaults::aimed_noise`.
+  /// error that batches share, only the fraction `defaults::aimed_noise` counts.
   double scatter(std::size_t entry) const;
 
   /// Luminance of all lights together, and the error by which it may differ from a point beside it.
@@ -86,8 +86,9 @@ struct LightTable {
   Total total(std::size_t row, std::span<const double> powers) const;
 };
 
-/// Light of two kinds, or found twice, at the same points, whose batches are as many.
-///   share_a, share_b   what each counts
+/// The sum of light of two kinds, or of light found twice, at the same points and with the same
+/// number of batches.
+///   share_a, share_b   their weights
 LightTable sum_of(const LightTable& a, const LightTable& b, float share_a = 1, float share_b = 1);
 
 }  // namespace photile

@@ -13,18 +13,18 @@ inline constexpr std::uint64_t min_photons = 1;
 inline constexpr std::uint64_t max_stored_photons = 0xFFFF'FFFEull;
 inline constexpr std::uint64_t max_emitted_photons = 10'000'000'000ull;
 inline constexpr std::uint32_t max_shards = 1'000'000;  ///< processes that share the paths
-/// Each traces a sample of every pixel at least.
+/// Each pass traces at least one sample of every pixel.
 inline constexpr int max_passes = 65'536;
 inline constexpr int max_specular_depth = 1'000'000;  ///< mirrors and glass that a ray follows
 inline constexpr int max_neighbours = 1'000'000;      ///< k
 inline constexpr int max_direct_rays = 4096;          ///< light samples from a hit
-inline constexpr int max_gathering_rays = 4096;       ///< from a point; each has its random numbers
+inline constexpr int max_gathering_rays = 4096;  ///< from a point; each has its own random numbers
 
 // Radii of search
 /// Metres. The square of a hundred-thousandth of it is a normal float, and so is its inverse.
 inline constexpr double min_radius = 1e-13;
-/// Over the diagonal of the scene: squares of distances over a hundred-thousandth of the radius
-/// stay within the range of a float.
+/// As a fraction of the scene's diagonal: squares of distances, divided by a hundred-thousandth of
+/// the radius, stay within the range of a float.
 inline constexpr double min_radius_over_scene = 1e-9;
 /// Metres: beyond the largest scene. Its square is within the range of a float.
 inline constexpr double max_radius = 1e13;
@@ -44,7 +44,7 @@ inline constexpr std::uint64_t max_vertices = 0x7FFF'FFFFull;
 /// Metres from the scene's origin. Areas times photons, and squares of distances, stay within the
 /// range of a float.
 inline constexpr double max_coordinate = 1e12;
-inline constexpr std::uint64_t max_materials = 100'000;  ///< an empty one takes 2 kB
+inline constexpr std::uint64_t max_materials = 100'000;  ///< an empty material takes 2 kB
 inline constexpr std::uint64_t max_lights = 10'000;
 inline constexpr std::uint64_t max_polygon_corners = 65'536;  ///< triangulated in a second or two
 inline constexpr int max_node_depth = 512;
@@ -54,9 +54,9 @@ inline constexpr std::uint64_t max_nodes = 250'000;
 inline constexpr std::uint64_t max_repeated_visits = 100'000;
 inline constexpr std::uint64_t max_node_visits = max_nodes + max_repeated_visits;
 inline constexpr int max_json_depth = 256;  ///< recursive parsers overflow the stack
-/// Triangles that a glTF file places for each that its buffers and nodes can hold (three bytes, or
-/// a node), above a number that is not worth a check: nodes may repeat a mesh, and meshes share
-/// buffers, so that a file of kilobytes could ask for any memory.
+/// Triangles that a glTF file may place for each triangle that its buffers and nodes can hold
+/// (three bytes, or a node), above a number that is not worth a check: nodes may repeat a mesh, and
+/// meshes share buffers, so that a file of kilobytes could ask for any memory.
 inline constexpr std::uint64_t max_triangle_expansion = 1'000;
 inline constexpr std::uint64_t unchecked_triangles = 1'000'000;
 
@@ -65,7 +65,7 @@ inline constexpr std::uint64_t max_implicit_elements = 1'000'000;
 
 // Materials
 inline constexpr double max_index_of_refraction = 1e6;  ///< F0 is 1 within rounding
-inline constexpr double max_normal_scale = 1e6;  ///< bumps are walls, which floats have to hold
+inline constexpr double max_normal_scale = 1e6;  ///< bumps are walls then, which floats must hold
 
 // Photometric files (LM-63, EULUMDAT): ten times the finest that goniophotometers write
 inline constexpr std::uint64_t max_photometry_bytes = 64ull << 20;
@@ -78,7 +78,7 @@ inline constexpr double min_color_temperature = 1'000, max_color_temperature = 4
 inline constexpr double max_light_power = 1e30;
 /// Lux of a sun or a sky: floats hold the radiance of all of its parts.
 inline constexpr double min_illuminance = 1e-30, max_illuminance = 1e30;
-inline constexpr double max_irradiance = 10'000;  ///< W/m2 of a sun or a sky, seven times the sun's
+inline constexpr double max_irradiance = 10'000;  ///< W/m2 of a sun or a sky; the sun has 1,400
 /// Each line of photons and each light sample of the sky is tested against all of them.
 inline constexpr std::size_t max_portals = 64;
 /// Degrees of a sun's disc: the light of a wider one is that of an environment.
@@ -89,7 +89,7 @@ inline constexpr int max_image_side = 16'384;
 /// The most texels of all light maps of a page together: 48 MB on the graphics processor.
 inline constexpr std::uint64_t max_published_texels = 12'000'000;
 inline constexpr std::uint64_t max_image_pixels = 268'435'456;
-inline constexpr int max_cube_map_side = max_image_side / 4;  ///< of a face: four of them go round
+inline constexpr int max_cube_map_side = max_image_side / 4;  ///< of a face: four of them go around
 inline constexpr int max_image_channels = 1'024;              ///< of a picture in memory
 /// The most channels of an EXR in a single part, which every program reads. OpenEXR compresses
 /// blocks of 16 rows of a part, two for each thread: with more lights they would take as much
@@ -102,8 +102,8 @@ inline constexpr std::uint64_t max_image_bytes = 4ull << 30;  ///< decoded
 /// picture of a few kilobytes must not fill the memory.
 inline constexpr std::uint64_t max_image_expansion = 1'000;
 inline constexpr std::uint64_t unchecked_image_bytes = 64ull << 20;
-/// Pixels of an EXR above that size for each encoded byte. Photons' noise takes 20 bytes a pixel
-/// and more: of such a picture a pixel in 300 would show something.
+/// Pixels of an EXR above that size for each encoded byte. The noise of photons takes 20 bytes a
+/// pixel and more: in such a picture one pixel in 300 would show something.
 inline constexpr std::uint64_t max_exr_pixels_per_byte = 16;
 /// A tile or a strip of rows, decoded, of which a decoder keeps some at a time.
 inline constexpr std::uint64_t max_image_block_bytes = 256ull << 20;

@@ -38,8 +38,8 @@ struct EnvironmentPicture {
 struct Site {
   double latitude_degrees = 0;   ///< north of the equator
   double longitude_degrees = 0;  ///< east of Greenwich
-  double time_zone = 0;          ///< hours before Greenwich: 1 in Berlin, -5 in New York
-  /// Errors: UsageError for other than three numbers, or one out of range.
+  double time_zone = 0;          ///< hours ahead of UTC: 1 in Berlin, -5 in New York
+  /// Errors: UsageError unless there are three numbers in range.
   static Site parse(const std::string& text);
 };
 
@@ -47,26 +47,26 @@ struct Site {
 struct LocalTime {
   int year = 2026, month = 1, day = 1;
   double hour = 12;  ///< from midnight, in [0, 24)
-  /// Errors: UsageError for another form, or a day that there is not.
+  /// Errors: UsageError for another form, or a day that does not exist.
   static LocalTime parse(const std::string& text);
 };
 
 /// The data that the position of the sun and the luminance of the sky follow from.
 struct SkySituation {
-  std::optional<Site> site = std::nullopt;  ///< of the weather file where it is not given
+  std::optional<Site> site = std::nullopt;  ///< if not given, that of the weather file
   std::optional<LocalTime> time = std::nullopt;
   double north_degrees = 0;            ///< of north, clockwise from -z as seen from above
   std::filesystem::path weather = {};  ///< an EPW file, "" = none
 };
 
-/// The sun; parsed from AZIMUTH,ELEVATION,LUX, or from LUX alone where a time tells the position.
+/// The sun; parsed from AZIMUTH,ELEVATION,LUX, or from LUX alone where a time gives the position.
 struct Sun {
   double azimuth_degrees = 0;    ///< clockwise from north, which is -z; east is +x
   double elevation_degrees = 0;  ///< above the horizon, y upwards
   double illuminance = 0;        ///< lux on a surface that faces it
   double diameter_degrees = defaults::sun_diameter_degrees;  ///< of its disc; 0 = parallel light
   bool placed_by_time = false;  ///< azimuth and elevation are those of SkySituation
-  /// Errors: UsageError for other than three numbers, or one out of range.
+  /// Errors: UsageError unless there are three numbers in range.
   static Sun parse(const std::string& text);
 };
 
@@ -75,7 +75,7 @@ enum class SkyKind {
   overcast,  ///< CIE overcast sky: three times as bright at the zenith as at the horizon
   clear,     ///< CIE standard clear sky (ISO 15469, type 12); it needs a sun
   perez,     ///< all-weather sky of Perez, Seals and Michalsky (1993); it needs a sun
-  patches    ///< even patches of 1 cd/m2 each, a light apiece, for relighting by time
+  patches    ///< even patches of 1 cd/m2, each a separate light, for relighting by time
 };
 
 /// The upper half of the surroundings, black below the horizon.
@@ -98,7 +98,7 @@ struct LuminousPanel {
   static LuminousPanel parse(const std::string& text);
 };
 
-/// The part of light that materials reflect, or let through; parsed from MATERIAL=SHARE.
+/// The fraction of light that materials reflect or transmit; parsed from MATERIAL=SHARE.
 struct MaterialShare {
   std::string glob;     ///< of material names: *, ? and [...] as in a shell
   double fraction = 0;  ///< 0 to 1
@@ -116,32 +116,31 @@ struct LightTemperature {
 
 /// The parts of a file that are loaded, and what is added to it or changed.
 struct SceneLoadOptions {
-  float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 mends Blender files
+  float emissive_scale = 1.0f;  ///< multiplies emissive radiance; 683 corrects Blender files
   bool allow_outside = false;   ///< textures and buffers may lie outside the scene's folder
   /// Which of the scenes in a glTF file: name or index; "" = the file's default, else its first.
   std::string scene = {};
-  /// Globs of what is left out: nodes of glTF with all below them, its meshes, objects and groups
-  /// of OBJ.
+  /// Globs of what is left out: nodes of glTF with all nodes below them, meshes of glTF, objects
+  /// and groups of OBJ.
   std::vector<std::string> hidden = {};
   /// Which axis of the file points up: "x", "y", "z", "-x", "-y" or "-z"; the scene is turned so
   /// that it becomes y. "" = y, and a warning where the geometry looks as if it were z.
   std::string up = {};
-  /// Metres in a unit of the file's lengths: 0.001 where they are millimetres.
+  /// Metres per unit of the file's lengths: 0.001 for millimetres.
   double metres_per_unit = 1;
-  std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match counts
+  std::vector<LightGrouping> light_groups = {};  ///< after the file's own; the last match applies
   std::vector<LightProfile> profiles = {};
   std::vector<LightTemperature> temperatures = {};
   std::vector<LuminousPanel> panels = {};
   EnvironmentPicture environment = {};
   std::optional<Sun> sun = std::nullopt;
   std::optional<Sky> sky = std::nullopt;
-  /// Reflectance of even ground below the horizon, which the sun and the sky light; 0 = it is
-  /// black.
+  /// Reflectance of even ground below the horizon, which the sun and the sky light; 0 = black.
   double ground = defaults::ground_reflectance;
   /// Luminous reflectances, of light from all directions.
   std::vector<MaterialShare> reflectances = {};
-  /// Materials that become clear glass, and what it lets through at normal incidence: both faces of
-  /// a pane that is modelled with two.
+  /// Materials that become clear glass, with its transmittance at normal incidence: through both
+  /// faces of a pane that is modelled with two.
   std::vector<MaterialShare> glasses = {};
   bool lambertian = false;   ///< dielectrics have no specular lobe
   bool may_be_dark = false;  ///< no error where there is no light
@@ -160,9 +159,9 @@ struct SceneLoadOptions {
 
 /// Reads a scene from OBJ+MTL (.obj) or glTF 2.0 (.gltf, .glb).
 /// Errors: InputError naming the file and the remedy when it is missing, unreadable, malformed,
-/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when `up` is no
-/// axis, the file has no such scene, a grouping matches no light, a glob of `hidden` matches
-/// nothing, or a group bears the name of a light outside it.
+/// beyond a limit of limits.hpp, without triangles or without lights; UsageError when `up` is not
+/// an axis, the file has no such scene, a grouping matches no light, a glob of `hidden` matches
+/// nothing, or a group has the name of a light outside it.
 Scene load_scene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace photile

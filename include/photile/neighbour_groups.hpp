@@ -32,7 +32,7 @@ inline constexpr std::array all_map_modes = {MapMode::naive, MapMode::triangle, 
 /// Triangles in disjoint sets. Patch p owns two maps: map 2 p holds the photons of its members,
 /// map 2 p + 1 those of the members' other sides. Without patches each oriented face s owns map s.
 struct Patches {
-  std::vector<std::uint32_t> map_of;    ///< per oriented face; empty: every triangle for itself
+  std::vector<std::uint32_t> map_of;  ///< per oriented face; empty: every triangle has its own maps
   std::vector<std::uint32_t> first_of;  ///< members of patch p: members[first_of[p] ..)
   std::vector<std::uint32_t> members;   ///< oriented faces, ascending within a patch
 
@@ -49,10 +49,11 @@ struct Patches {
   }
 };
 
-/// Clusters triangles, connected or not, into patches: flat to a fraction of `radius`, alike in
-/// normal (whichever way they are wound), and without large gaps. Patches may be any number of
-/// radii wide, for the wider, the fewer photons lie near a border and enter two. Empty for
-/// MapMode::naive and ::triangle. Parallel; the result does not depend on the number of threads.
+/// Clusters triangles, connected or not, into patches: flat to a fraction of `radius`, with similar
+/// normals (whichever way they are wound), and without large gaps. Patches may be any number of
+/// radii wide: the wider they are, the fewer photons lie near a border and enter two maps. Empty
+/// for MapMode::naive and ::triangle. Parallel; the result does not depend on the number of
+/// threads.
 ///   radius   metres, > 0: the search radius of the maps
 Patches find_patches(const Scene& scene, double radius, MapMode mode);
 
@@ -84,8 +85,8 @@ struct NeighbourGroups {
 /// distance, Eberly) whose normals differ by at most the angle. A bounding volume hierarchy finds
 /// the candidates; work is shared by TBB. The result does not depend on the number of threads.
 /// Errors: UsageError when the radius is not positive and finite or the angle is outside [0, 180].
-///   landed   per oriented face: 1 where photons are that need a group; others get an empty one.
-///            Empty: all get theirs
+///   landed   per oriented face: 1 where there are photons that need a group; other faces get an
+///            empty group. Empty: all faces get groups
 NeighbourGroups find_neighbour_groups(const Scene& scene,
                                       const NeighbourGroupParameters& parameters,
                                       Progress& progress = Progress::none(),
@@ -93,34 +94,35 @@ NeighbourGroups find_neighbour_groups(const Scene& scene,
 
 /// Finds groups whose members are the maps of patches, by boxes: each map that holds an oriented
 /// face whose normal agrees and whose box lies at most `radius` from the box of the oriented
-/// face. These are a few more than have a triangle in its group; no query finds the photons that
-/// they hold in excess. Found patch by patch, so that time grows with the patches near a triangle
-/// and not with the triangles.
+/// face. These are slightly more maps than those with a triangle in the group; no query finds the
+/// surplus photons that they hold. The search goes patch by patch, so that its time grows with the
+/// patches near a triangle and not with the triangles.
 NeighbourGroups find_patch_groups(const Scene& scene, Patches patches,
                                   const NeighbourGroupParameters& parameters,
                                   Progress& progress = Progress::none(),
                                   std::span<const std::uint8_t> landed = {});
 
 /// Joins patches that hold mostly the same photons, judged by a sample: each joined pair saves the
-/// references they share. Patches whose queries would test most photons in vain stay apart. What a
-/// query finds is the same.
+/// references they share. Patches whose queries would test most photons in vain stay separate. What
+/// a query finds does not change.
 NeighbourGroups merge_patches(const Scene& scene, NeighbourGroups groups, const Photons& photons);
 
 /// Which photons will be entered in maps by groups.
 enum class MapUsers {
-  these_photons,  ///< those the groups are made for: oriented faces without any get empty groups
-  any_photons     ///< others besides, wherever they land
+  these_photons,  ///< those for which the groups are made: oriented faces without photons get empty
+                  ///< groups
+  any_photons     ///< others as well, wherever they land
 };
 
-/// Groups for maps of a mode, as the renderer uses them: the patches that it asks for, their
-/// groups, patches joined.
+/// Groups for maps of a mode, as the renderer uses them: the patches of the mode, their groups, and
+/// patches joined.
 NeighbourGroups find_map_groups(const Scene& scene, const Photons& photons, MapMode mode,
                                 const NeighbourGroupParameters& parameters,
                                 Progress& progress = Progress::none(),
                                 MapUsers users = MapUsers::these_photons);
 
 /// Groups of one: every map holds the photons of its own oriented face only (figure 1 of the
-/// paper: dark edges). Their radius is infinite: no other triangle's photon is ever looked for.
+/// paper: dark edges). Their radius is infinite: photons of other triangles are never searched.
 NeighbourGroups naive_groups(const Scene& scene);
 
 /// Rounding slack of the normal test, so that normals folded by exactly the angle agree although

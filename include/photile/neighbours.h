@@ -33,15 +33,14 @@ photile_status photile_open_device(const char* selector, photile_device** device
 void photile_close_device(photile_device* device);
 
 /* The k nearest of `point_count` points around each of `query_count` queries, nearest first.
-   Coordinates are x, y, z of one point after another, up to 1e12, in one unit that distances have
-   as well.
+   Coordinates are x, y, z of one point after another, up to 1e12, in the unit of the distances.
      point_count    at least 1
      k              1 to 1,000,000; it may exceed point_count
      max_distance   above 0; INFINITY: all points count
      indices        query_count * k; point_count beyond the last neighbour
      distances      query_count * k, or NULL; INFINITY beyond the last neighbour
    Exact up to the rounding of floats: where distances agree to a few roundings, any of the points
-   may be the last. The arrays hold nothing of use where the status is another than PHOTILE_OK. */
+   may be the last. The contents of the arrays are undefined unless the status is PHOTILE_OK. */
 photile_status photile_find_neighbours(photile_device* device, const float* points,
                                        size_t point_count, const float* queries, size_t query_count,
                                        int k, float max_distance, uint32_t* indices,

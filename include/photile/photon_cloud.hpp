@@ -15,7 +15,8 @@
 
 namespace photile {
 
-/// Photons in arrays that the caller owns. Arrays but the first are empty or as long as it.
+/// Photons in arrays that the caller owns. All arrays but the first are either empty or as long as
+/// the first.
 struct CloudPhotons {
   std::span<const glm::vec3> position;        ///< metres, up to limits::max_coordinate
   std::span<const glm::vec3> normal = {};     ///< unit, of the surface below; empty: none counts
@@ -30,7 +31,7 @@ struct CloudParameters {
   float photons_per_cell = defaults::photons_per_cell;  ///< aimed at
 };
 
-/// The neighbours of points: row-major [point][k], nearest first, those at the same distance in the
+/// The neighbours of points: row-major [point][k], nearest first, those at equal distances in the
 /// order of their indices.
 struct CloudNeighbours {
   int k = 0;
@@ -38,11 +39,11 @@ struct CloudNeighbours {
   std::vector<float> squared_distance;  ///< square metres; infinity beyond the last
 };
 
-/// What `find_neighbours` is asked for. The arrays are the caller's.
+/// The arguments of `find_neighbours`. The arrays belong to the caller.
 struct NeighbourSearch {
   std::span<const glm::vec3> points;   ///< metres, up to limits::max_coordinate; at least one
   std::span<const glm::vec3> queries;  ///< as the points
-  int k = defaults::neighbours;        ///< 1 to limits::max_neighbours, also above the points
+  int k = defaults::neighbours;  ///< 1 to limits::max_neighbours; may exceed the number of points
   /// Metres, > 0: no neighbour is farther. Infinity: all points count.
   double max_distance = std::numeric_limits<double>::infinity();
   /// Unit, as many as points and as queries: only points count whose normals differ from that of
@@ -53,9 +54,9 @@ struct NeighbourSearch {
 
 /// The k nearest points of each query. Exact: distances are those in double precision, rounded to
 /// floats; of points whose distances agree to a few roundings of a float, any may be the last.
-/// Maps are made with a radius that suits some of the queries; those that find too few are asked
-/// again with larger ones, until all points lie within it. A query whose nearest points are much
-/// farther than they are from each other takes as long as a look at all of them.
+/// Maps are made with a radius that suits some of the queries; queries that find too few are
+/// repeated with larger radii, until all points lie within them. A query that is much farther from
+/// its nearest points than these are from each other takes as long as a search of all points.
 /// Errors: InputError that names the first point or query that is NaN, infinite or too far, or
 /// where there is no point; UsageError for k, distance or angle out of range; DeviceMemoryError;
 /// Interrupted.
@@ -65,14 +66,15 @@ CloudNeighbours find_neighbours(Device& device, const NeighbourSearch& search,
 struct CloudEstimateParameters {
   int neighbours = defaults::neighbours;           ///< k
   double radius = 0;                               ///< metres; 0 = the cloud's
-  DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
+  DensityKernel kernel = DensityKernel::constant;  ///< the weight of each photon
 };
 
-/// Photon maps over a cloud of photons on a device. Space is cut into cubes a few radii wide; each
-/// that a photon may be near has maps in the plane that most of its photons lie along (photons on
-/// a wall: that of the wall). Projection into a plane lengthens no distance, so that a search there
-/// finds every neighbour in space; photons spread through a volume are found as well, though with
-/// more candidates to look at. The device must outlive the cloud; one thread at a time may use it.
+/// Photon maps over a cloud of photons on a device. Space is divided into cubes a few radii wide;
+/// each cube near a photon has maps in the plane along which most of its photons lie (for photons
+/// on a wall: that of the wall). Projection onto a plane lengthens no distance, so that a search
+/// there finds every neighbour in space; photons spread through a volume are found as well, though
+/// with more candidates to test. The device must outlive the cloud; one thread at a time may use
+/// it.
 class PhotonCloud {
  public:
   /// Copies what it needs. Errors: InputError that names the first photon that is NaN, infinite,
@@ -90,14 +92,14 @@ class PhotonCloud {
   /// The k nearest photons of each point within `radius` (0 = the cloud's), whose normals agree
   /// where photons have any. Of photons at the same distance, to a few roundings of a float, any
   /// may be the last.
-  ///   normals   unit, as many as points, if the photons have some; else empty
-  /// Errors: InputError for a point that is no number or arrays that do not fit; UsageError for k
-  /// or a radius out of range.
+  ///   normals   unit, as many as points, if the photons have normals; else empty
+  /// Errors: InputError for a point that is not finite or arrays of different lengths; UsageError
+  /// for k or a radius out of range.
   CloudNeighbours nearest(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
                           int k, double radius = 0);
 
-  /// Flux per area at each point: that of its neighbours over the disc that they fill (Estimator,
-  /// AreaMode::disc), per light. Errors: those of `nearest`.
+  /// Flux per area at each point: the flux of its neighbours over the area of the disc that they
+  /// fill (Estimator, AreaMode::disc), per light. Errors: those of `nearest`.
   LightTable irradiance(std::span<const glm::vec3> points, std::span<const glm::vec3> normals,
                         const CloudEstimateParameters& parameters = {});
 

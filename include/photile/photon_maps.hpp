@@ -19,8 +19,8 @@ namespace photile {
 struct PhotonMapParameters {
   double radius = 0;  ///< metres, > 0: no neighbour is farther; at most the groups' radius
   float photons_per_cell = defaults::photons_per_cell;  ///< aimed at
-  /// Whether a CPU device keeps maps in large pages of memory. Estimates of millions of hits are
-  /// quicker by them; to clear them takes longer, where the system has none ready.
+  /// Whether a CPU device keeps maps in large pages of memory. They make estimates of millions of
+  /// hits quicker; clearing them takes longer where the system has none ready.
   bool large_pages = true;
 };
 
@@ -28,7 +28,7 @@ struct PhotonMapStatistics {
   std::uint64_t photons = 0;
   std::uint64_t references = 0;            ///< records over all maps; references / photons = copies
   std::uint64_t maps = 0;                  ///< that hold a photon
-  std::uint64_t normal_filtered_maps = 0;  ///< of them, those whose queries filter by normal
+  std::uint64_t normal_filtered_maps = 0;  ///< of these, maps whose queries filter by normal
   std::uint64_t cells = 0;
   std::uint64_t largest_map = 0;              ///< records
   std::vector<std::uint32_t> map_sizes = {};  ///< photons of each map that holds one, ascending
@@ -53,8 +53,8 @@ class PhotonMaps {
  public:
   /// Builds on the device. Errors: UsageError for a radius beyond the groups'; DeviceMemoryError
   /// when the device's memory does not suffice even page by page; Interrupted.
-  ///   requested   per map of the groups: 1 for those to make, which hold the same as among all;
-  ///               empty: all
+  ///   requested   per map of the groups: 1 for those to build, whose contents do not depend on
+  ///               the others; empty: all
   PhotonMaps(Device& device, const Scene& scene, const Photons& photons,
              const NeighbourGroups& groups, const PhotonMapParameters& parameters,
              Progress& progress = Progress::none(), std::span<const std::uint8_t> requested = {});

@@ -1,5 +1,5 @@
-// Photon paths from the lights, and the photons they leave: a structure of arrays, ready for the
-// device.
+// Photon paths from the lights, and the photons that they store: a structure of arrays, ready for
+// the device.
 #pragma once
 
 #include <array>
@@ -21,13 +21,14 @@ struct PhotonsOfAll {
   Communicator* processes = nullptr;  ///< that hold them
   std::uint64_t count = 0;
   std::vector<std::uint32_t> landed;  ///< per oriented face: photons there
-  /// Positions of as many as groups::max_subsample, spread evenly, or of all where they are fewer.
+  /// Positions of groups::max_subsample photons, spread evenly, or of all where there are fewer.
   std::vector<glm::vec3> spread;
-  /// Every n-th, by which groups::PhotonSample judges patches, and their oriented faces.
+  /// Positions of every n-th photon, by which groups::PhotonSample judges patches, and their
+  /// oriented faces.
   std::vector<glm::vec3> sample;
   std::vector<std::uint32_t> sample_triangle;
   /// Per oriented face: 1 where its photons are all here, and no other process answers for them.
-  /// Empty before photons are where their maps are.
+  /// Empty before photons have been sent to the processes that hold their maps.
   std::vector<std::uint8_t> own;
 };
 
@@ -39,7 +40,7 @@ struct Photons {
   /// over the photons that a layer's lights emitted, before the first hit, the luminance is 1.
   std::vector<glm::vec3> flux;
   std::vector<glm::vec3> incoming;   ///< unit, towards where it came from; empty unless glossy
-  std::vector<std::uint16_t> light;  ///< layer, into LightGroups::groups; empty for one alone
+  std::vector<std::uint16_t> light;  ///< layer, into LightGroups::groups; empty for a single layer
   std::vector<std::uint32_t> oriented_face;
 
   /// Photons of oriented face s are [first_of[s], first_of[s + 1]). Size 2 * triangles + 1.
@@ -60,8 +61,8 @@ struct Photons {
 Photons sort_by_oriented_face(Photons photons, std::size_t oriented_face_count);
 
 /// The photons of several runs of paths as if one process had traced them: those of each oriented
-/// face in the order of the runs. All arrays that one run has, all have.
-///   runs   in the order light, path; consumed, so that only one array exists twice
+/// face in the order of the runs. All runs have the same arrays.
+///   runs   in the order light, path; consumed, so that only one array is in memory twice at a time
 Photons merge_runs(std::vector<Photons> runs);
 
 /// How emitted photons are divided between the lights.
@@ -84,8 +85,8 @@ struct PhotonTracerParameters {
   int roulette_start = defaults::roulette_start;    ///< bounces before roulette may end a path
   /// Whether photons that come directly from a light, or through panes of thin glass, are stored.
   bool store_direct = true;
-  /// Whether photons that come by mirrors, or by glass that bends or reflects them, and nothing
-  /// else are stored on their own, too, from further paths that are aimed at them.
+  /// Whether photons that come only by mirrors, or by glass that bends or reflects them, are also
+  /// stored separately, from additional paths aimed at these surfaces.
   bool keep_caustics = false;
   /// Paths of each light that earlier passes have traced: the first to be traced now. Empty: none.
   std::vector<std::uint64_t> paths_before = {};
@@ -97,7 +98,7 @@ struct PhotonTracerParameters {
 
 struct PhotonTracerResult {
   Photons photons;
-  Photons caustics;  ///< that came by mirrors and glass alone, by their own paths; where kept
+  Photons caustics;  ///< that came by mirrors and glass alone, from their own paths; if kept
   std::vector<std::uint64_t> stored_per_light;
   /// Flux that left the scene, per unit of each light's power (luminance): for the energy balance.
   std::vector<double> escaped_flux_per_light;
@@ -106,7 +107,7 @@ struct PhotonTracerResult {
   double seconds = 0;
 };
 
-/// Paths of each light, by the rules of `quota`; each light at least one. Sums to `total` or to the
+/// Paths of each light, divided by `quota`; each light has at least one. Sums to `total` or to the
 /// number of lights, whichever is larger.
 std::vector<std::uint64_t> photons_per_light(const Scene& scene, std::uint64_t total,
                                              PhotonQuota quota);

@@ -1,4 +1,4 @@
-// How long work reports its progress and is asked to stop.
+// How long-running work reports its progress and is asked to stop.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ class Progress {
   virtual void end();
   /// A line for the user that is not progress: what was chosen, approximated or left out.
   virtual void note(const std::string& line);
-  /// A warning, which is printed even where notes are not: what may make the result wrong. By
-  /// default a note.
+  /// A warning about what may make the result wrong; it is printed even where notes are not. By
+  /// default it is a note.
   virtual void warn(const std::string& line);
   /// True once the user asked to stop; stages then throw Interrupted at their next safe point.
   virtual bool cancelled() const;

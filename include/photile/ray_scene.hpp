@@ -44,13 +44,14 @@ struct HitLobe {
   glm::vec3 smooth_normal{0.0f};  ///< `normal` without a normal map; only in scenes that have one
 };
 
-/// Hits on opaque surfaces, after mirrors and glass were followed. Structure of arrays. Pixel by
-/// pixel; those of one by photon map, then along a space-filling curve: so their light is summed.
+/// Hits on opaque surfaces, after mirrors and glass were followed. A structure of arrays, pixel by
+/// pixel; the hits of a pixel are ordered by photon map, then along a space-filling curve, and
+/// their light is summed in this order.
 struct PrimaryHits {
   std::vector<glm::vec3> position;  ///< metres
   std::vector<std::uint32_t> oriented_face;
   std::vector<std::uint32_t> pixel;       ///< y * width + x
-  std::vector<glm::vec3> throughput;      ///< what the hit's radiance counts in its pixel
+  std::vector<glm::vec3> throughput;      ///< the weight of the hit's radiance in its pixel
   std::vector<glm::vec3> diffuse_albedo;  ///< textured Lambertian albedo at the hit
   std::vector<glm::vec3> outgoing;        ///< unit, towards the eye; empty unless glossy
   std::vector<HitLobe> lobe;              ///< empty unless glossy
@@ -63,8 +64,8 @@ struct PrimaryHits {
   std::size_t size() const { return position.size(); }
 };
 
-/// Light that needs no estimate: a light seen directly or through mirrors and glass, or what a hit
-/// gets directly from one. Adds to the layer of its light.
+/// Light that needs no estimate: a light seen directly or through mirrors and glass, or the direct
+/// light of one at a hit. It is added to the layer of its light.
 struct VisibleEmission {
   std::uint32_t pixel;
   std::uint32_t light;    ///< layer, into LightGroups::groups
@@ -76,22 +77,24 @@ struct PrimaryHitParameters {
   int width = defaults::image_width;
   int height = defaults::image_height;
   int samples_per_pixel = defaults::samples_per_pixel;
-  /// Pixels that show an edge have this many times as many samples, each of which counts as a part
-  /// of one.
+  /// Pixels that show an edge have this many times as many samples, each with a correspondingly
+  /// smaller weight.
   int times_at_edges = 1;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;
   /// Only samples pass, pass + passes, pass + 2 passes ... of each pixel are traced.
   int pass = 0;
   int passes = 1;
-  /// > 0: this many light samples and as many directions of the surface find the direct light at
-  /// each hit, and photons have to carry only the rest (PhotonTracerParameters::store_direct).
+  /// > 0: direct light at each hit is found by this many light samples and as many directions
+  /// sampled from the surface, and photons have to carry only the rest
+  /// (PhotonTracerParameters::store_direct).
   int direct_rays = 0;
-  /// Lobes that are narrow, or reflect little, are left out of hits: a ray of each hit follows them
-  /// to the surfaces that they reflect (PrimaryHitBatch::reflected).
+  /// Lobes that are narrow, or reflect little, are left out of hits: a ray from each hit follows
+  /// them to the surfaces that they reflect (PrimaryHitBatch::reflected).
   bool lobe_rays = false;
   /// Samples follow both the reflection and the refraction of glass, as long as both count
-  /// (defaults::least_glass_fraction), and have a hit for each; else one by chance.
+  /// (defaults::least_glass_fraction), and have a hit for each; else they follow one of them at
+  /// random.
   bool split_at_glass = false;
   /// > 1: the samples of a pixel are divided into this many runs, and a hit's pixel is that of a
   /// film which is wider by this factor: y * width * runs + x * runs + run. Runs follow each other
@@ -99,10 +102,11 @@ struct PrimaryHitParameters {
   int runs = 1;
 };
 
-/// The surfaces of a pixel whose lobes rays follow: sums over its samples, each with its weight.
+/// The surfaces of a pixel whose lobes are followed by rays: sums over its samples, each with its
+/// weight.
 struct PixelLobes {
   std::uint32_t pixel = 0;
-  float weight = 0;             ///< of the samples; 1 where all of them met such a surface
+  float weight = 0;             ///< of the samples; 1 where all of them hit such a surface
   glm::vec3 position{0.0f};     ///< metres
   glm::vec3 normal{0.0f};       ///< unit shading normals
   glm::vec3 reflectance{0.0f};  ///< of the lobe, towards the eye

@@ -35,8 +35,8 @@ namespace photile {
 /// Whether the light of matt surfaces is read from light maps.
 enum class LightMapMode {
   off,       ///< an estimate at each hit: the method of the paper
-  on,        ///< nodes, which rays value or the photon estimate (light_map_rays)
-  automatic  ///< on for pictures, but with naive maps and with several passes
+  on,        ///< nodes, whose light rays or the photon estimate find (light_map_rays)
+  automatic  ///< on for pictures, except with naive maps or several passes
 };
 
 /// "off", "on", "auto".
@@ -50,10 +50,10 @@ struct LightMapContents {
     std::uint32_t chart, x, y;  ///< in cells of the finest level
   };
   struct Tile {
-    std::uint64_t known, split;  ///< cells, bit y * 8 + x: whose corners are valued; refined
+    std::uint64_t known, split;  ///< bit y * 8 + x: cells whose corners have light; refined cells
     std::uint32_t chart, level, x, y;
   };
-  std::string settings;  ///< in words: what the light depends on beside the scene and the photons
+  std::string settings;  ///< in words: what the light depends on besides the scene and the photons
   std::vector<Coordinates> nodes;
   LightTable values;  ///< of the nodes
   std::vector<float> error,
@@ -79,7 +79,7 @@ struct PhotonPaths {
 /// What finds the light that a specular lobe reflects (docs/method/gloss.md).
 enum class GlossMode {
   photons,   ///< the photons around a hit, weighed by the lobe: the method of the paper
-  rays,      ///< a ray of each hit, along lobes that are narrow or faint; photons for others
+  rays,      ///< a ray from each hit for lobes that are narrow or faint; photons for others
   filtered,  ///< those rays, with their noise averaged over pixels of a picture that are alike
   automatic  ///< filtered where light maps are read, else photons
 };
@@ -107,21 +107,21 @@ struct RenderParameters {
   int neighbours = defaults::neighbours;
   float photons_per_cell = defaults::photons_per_cell;
   AreaMode area = AreaMode::clipped;  ///< what the density divides by; naive maps take the disc
-  DensityKernel kernel = DensityKernel::constant;  ///< what each photon counts
+  DensityKernel kernel = DensityKernel::constant;  ///< the weight of each photon
   /// > 0: direct light is found by this many light samples at each hit. 0 = photons carry it.
   int direct_rays = 0;
   GlossMode gloss = GlossMode::automatic;
   LightMapMode light_maps = LightMapMode::automatic;  ///< see docs/method/light-maps.md
   /// > 0: each node of light maps gathers light by this many rays and as many light samples, fewer
-  /// at finer levels (docs/method/gathering.md). 0 = the photon estimate values them.
+  /// at finer levels (docs/method/gathering.md). 0 = the photon estimate finds their light.
   int light_map_rays = 0;
   /// Quicker, for first pictures: see docs/method/hidden-photons.md.
   bool counts_hidden_photons = false;
-  double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = by the photons
-  double light_map_detail = 0;   ///< metres between the finest nodes, at most; 0 = by the photons
+  double light_map_spacing = 0;  ///< metres between the coarsest nodes; 0 = chosen from the photons
+  double light_map_detail = 0;   ///< metres between the finest nodes, at most; 0 = chosen as well
   /// Processes that share the rendering (docs/method/clusters.md), all with the same arguments:
   /// paths, photon maps and rows of the film are split between them, and rank 0 has the result.
-  /// Null: this process has all. Kept as a reference.
+  /// Null: this process renders alone. Kept as a reference.
   Communicator* processes = nullptr;
 };
 
@@ -172,7 +172,7 @@ PathTracerResult trace_paths(const Scene& scene, const Camera& camera,
 /// Whether lights of the scene have such caustics, which path tracing leaves out.
 bool has_hidden_caustics(const Scene& scene);
 
-/// What all settings of a rendering follow, unless they are given.
+/// The quality that sets all settings of a rendering unless they are given.
 enum class Quality {
   draft,  ///< light maps whose nodes lie far apart: quick, soft
   good,   ///< nodes close enough for shadows: clean to the eye
@@ -183,22 +183,22 @@ enum class Quality {
 std::string_view name_of(Quality quality);
 inline constexpr std::array all_qualities = {Quality::draft, Quality::good, Quality::best};
 
-/// Its position in all_qualities.
+/// The position of a quality in all_qualities.
 constexpr std::size_t index_of(Quality quality) { return static_cast<std::size_t>(quality); }
 
-/// A description of its pictures.
+/// A description of the pictures of a quality.
 std::string_view description_of(Quality quality);
 
-/// Sets what the table of settings (docs/reference/settings.md) has for the quality, and leaves all
-/// others.
+/// Sets the settings to which the table (docs/reference/settings.md) gives a value for the quality,
+/// and leaves all others.
 void set_quality(RenderParameters& parameters, Quality quality);
 
 /// Names of all settings, such as "photons_emitted", in the order of the table.
 std::vector<std::string_view> setting_names();
 
-/// Sets one by its name: for programs whose users name settings. Whole numbers serve where any
-/// number does. Errors: UsageError, one line that begins with the name, for an unknown name or a
-/// value out of the range of the table.
+/// Sets one setting by its name: for programs whose users name settings. A whole number is accepted
+/// wherever any number is. Errors: UsageError, one line that begins with the name, for an unknown
+/// name or a value out of the range of the table.
 void set_by_name(RenderParameters& parameters, std::string_view name,
                  const std::variant<std::uint64_t, double, std::string_view>& value);
 
@@ -206,8 +206,8 @@ void set_by_name(RenderParameters& parameters, std::string_view name,
 struct TracedPhotons {
   Photons photons;
   NeighbourGroups groups;  ///< empty: found when maps are built
-  double radius = 0;       ///< metres: of the maps; 0 where groups are not there
-  /// The photons that came by mirrors and glass alone; where rays gather.
+  double radius = 0;       ///< metres: of the maps; 0 where there are no groups
+  /// The photons that came by mirrors and glass alone; present where rays gather.
   std::optional<Photons> caustics = std::nullopt;
   /// The contents of light maps of these photons, if they are kept. Where its settings are those of
   /// the rendering, maps are built from the photons when an estimate is first needed.
@@ -219,15 +219,15 @@ using KeepPhotons = std::function<void(const TracedPhotons&)>;
 
 /// The state of a quick frame.
 struct DrawnFrame {
-  /// Cells of light maps that it shows coarser than they should be.
+  /// The number of cells of light maps that it shows coarser than they should be.
   std::size_t lacking = 0;
-  std::size_t empty = 0;  ///< of them, those without any light: they have that of what is around
+  std::size_t empty = 0;        ///< of these, those without any light, which show that around them
   double lacking_fraction = 0;  ///< of the surface that is seen, in [0, 1]
-  double fill_seconds = 0;      ///< that went into nodes which were lacking
-  double draw_seconds = 0;      ///< that drawing the latest picture took
+  double fill_seconds = 0;      ///< spent on missing nodes
+  double draw_seconds = 0;      ///< spent on drawing the latest picture
 };
 
-/// How long a quick frame may value nodes that it lacks.
+/// How long a quick frame may spend on nodes that it lacks.
 struct FrameFilling {
   /// The seconds that it may take; infinite: until no node is lacking. Implicit, because a frame
   /// has no other number.
@@ -253,11 +253,11 @@ struct FrameFilling {
 class SceneRenderer {
  public:
   /// Traces the photons and builds the maps. The scene and the devices must outlive it.
-  ///   prepared   in place of tracing, of the same scene and parameters; left empty. Null: none
-  ///   keep       is called with what the maps are built from, before they are. Empty: nothing
+  ///   prepared   used instead of tracing; of the same scene and parameters; left empty. Null: none
+  ///   keep       called with what the maps are built from, before they are built. Empty: nothing
   /// Of several photon passes pictures are the mean of all; `prepared` and `keep` are of the first.
   /// Errors: those of `render`, and of `keep`; UsageError where the photons do not fit in memory at
-  /// once, or where rays gather and `prepared` has no caustics apart.
+  /// once, or where rays gather and `prepared` has no separate caustics.
   SceneRenderer(const Scene& scene, std::span<Device> devices, const RenderParameters& parameters,
                 TracedPhotons* prepared = nullptr, const KeepPhotons& keep = {},
                 Progress& progress = Progress::none());
@@ -265,7 +265,7 @@ class SceneRenderer {
 
   /// The picture that `render` gives with this film, bit for bit. Statistics contain the costs of
   /// the maps each time.
-  ///   mixdown   of its layers, before they take memory; null = each for itself
+  ///   mixdown   of its layers, before they take memory; null = all layers stay separate
   RenderResult render(const Camera& camera, const Film& film, Progress& progress = Progress::none(),
                       const LayerMixdown* mixdown = nullptr);
 
@@ -277,16 +277,16 @@ class SceneRenderer {
   ///             other pixels show a coarser level, or light from around
   ///   picture   of the film's size, linear RGB radiance
   ///   coarser   of the same scene: shown where these light maps have no node yet, and filled
-  ///             before them; null = none
+  ///             before these; null = none
   /// Once nothing is lacking, a frame that is not soft does not depend on what was drawn before.
   /// Errors: those of `render`.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   const FrameFilling& filling, std::span<glm::vec3> picture,
                   Progress& progress = Progress::none(), SceneRenderer* coarser = nullptr);
 
-  /// From now on light maps take about this many bytes: `draw` forgets what was seen least
-  /// recently, but nothing of the latest picture. What was forgotten is valued again, to the same
-  /// bits, when it is seen.
+  /// From now on light maps take about this many bytes: `draw` discards what was visible least
+  /// recently, but nothing of the latest picture. What was discarded is computed again, to the same
+  /// bits, when it becomes visible.
   void bound_light_maps(std::uint64_t bytes);
 
   /// Whether `draw` has light maps to draw from.
@@ -295,8 +295,8 @@ class SceneRenderer {
   /// The contents of the light maps so far; none where light maps are not read, or cannot be kept.
   std::optional<LightMapContents> light_maps() const;
 
-  /// The part of that picture that comes by a mirror, by glass that bends or reflects it, or by a
-  /// glossy lobe.
+  /// The part of the picture of `render` that comes by a mirror, by glass that bends or reflects
+  /// light, or by a glossy lobe.
   RenderResult render_reflections(const Camera& camera, const Film& film,
                                   Progress& progress = Progress::none(),
                                   const LayerMixdown* mixdown = nullptr);
@@ -323,17 +323,17 @@ DenoisingGuides denoising_guides(const RayScene& rays, const Camera& camera, con
 class Denoiser {
  public:
   /// Loads the library.
-  ///   library   name or path of the shared library, as the dynamic linker takes it
+  ///   library   name or path of the shared library, as for the dynamic linker
   ///   threads   0 = all cores
-  /// Errors: UsageError where there is none, it lacks a function, or has no device.
+  /// Errors: UsageError where there is no such library, or it lacks a function or a device.
   explicit Denoiser(const std::filesystem::path& library, int threads = 0);
   ~Denoiser();
 
   /// "Open Image Denoise 2.3.0".
   const std::string& version() const { return version_; }
 
-  /// The layers with the radiance of each denoised on its own, led by the guides; the illuminance
-  /// as it is. What a layer has does not depend on the powers of lights, so that mixing stays
+  /// The layers, with the radiance of each denoised separately, guided by the guides, and the
+  /// illuminance unchanged. A layer does not depend on the powers of lights, so that mixing stays
   /// linear; but the sum of denoised layers is not the denoised sum. A plane for each light: 16
   /// bytes per pixel and light.
   ///   errors   standard errors of the layers, where they are known: a value moves by at most

@@ -59,8 +59,8 @@ class EnvironmentMap {
   glm::dvec3 integral_{0.0};
 };
 
-/// Axes of the spherical coordinates in which a luminaire was measured, in its own space: its
-/// -z axis is where it is aimed, as for lights of glTF.
+/// Axes of the spherical coordinates in which a luminaire was measured, in its own space: it is
+/// aimed along its -z axis, as lights of glTF are.
 struct PhotometricAxes {
   glm::dvec3 pole{0.0, 0.0, -1.0};    ///< unit; polar angle 0
   glm::dvec3 zero{1.0, 0.0, 0.0};     ///< unit; polar angle 90 degrees, azimuth 0
@@ -89,7 +89,7 @@ struct LuminousOpening {
 /// stated.
 struct LuminaireData {
   std::string maker, article, luminaire, source;  ///< UTF-8; `source`: the lamps in it
-  double watts = 0;                               ///< that the luminaire takes
+  double watts = 0;                               ///< electrical power that the luminaire draws
   double kelvin = 0;                              ///< correlated colour temperature
   double highest_kelvin = 0;                      ///< where it is tunable from `kelvin` on
   double rendering = 0;                           ///< Ra, at least
@@ -120,8 +120,8 @@ class IntensityDistribution {
   void set_opening(const LuminousOpening& opening) { opening_ = opening; }
   const LuminaireData& data() const { return data_; }
   void set_data(LuminaireData data) { data_ = std::move(data); }
-  /// The watts that the luminaire takes for this many lumens, in proportion; 0 where its file does
-  /// not state them.
+  /// The watts that the luminaire draws for this many lumens, in proportion; 0
+  /// where its file does not state them.
   double electrical_watts(double lumens) const { return data_.watts * lumens / flux_; }
 
   // Cells of the grid: column of azimuths x row of polar angles.
@@ -180,7 +180,7 @@ class Texture {
   /// it repeats outside [0,1).
   glm::vec3 sample(glm::vec2 uv) const;
 
-  /// The texel from the bytes as they are, RGBA in [0,1]: alpha, normals and factors are no
+  /// The texel from the bytes as they are, RGBA in [0,1]: alpha, normals and factors are not
   /// colours.
   glm::vec4 sample_data(glm::vec2 uv) const;
 
@@ -236,10 +236,10 @@ struct Material {
   /// reflectance; `diffuse`, `specular` and `roughness` are then those of white texels.
   std::uint32_t metallic_roughness = none;
 
-  /// Fraction of the surface that is there, times the alpha of a texture.
+  /// Fraction of the surface that is present, multiplied by the alpha of a texture.
   float opacity = 1.0f;
   std::uint32_t opacity_texture = none;
-  /// Where above 0, all of the surface is there from this opacity on, and nothing below.
+  /// If above 0, the surface is present where its opacity is at least this, and absent elsewhere.
   float opacity_cutoff = 0.0f;
 
   /// Tangent space normals, red along u, green along -v, blue along the shading normal; or none.
@@ -272,8 +272,8 @@ struct Light {
   double power = 0;
 
   // Area lights: radiance over the triangles' front sides, or both sides, uniform or textured; with
-  // a `distribution` each point sends its part of the intensities, and less or more of radiance
-  // by direction.
+  // a `distribution` each point emits its part of the intensities, so that radiance depends on the
+  // direction.
   std::vector<std::uint32_t> triangles;
   bool two_sided = false;
   std::uint32_t emission_texture = none;
@@ -282,7 +282,7 @@ struct Light {
 
   // Point, spot and directional lights.
   glm::vec3 position{0.0f};
-  glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, where the light shines to
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< unit, the direction of the emitted light
   float inner_cone_angle = 0.0f;           ///< radians, spot
   float outer_cone_angle = 0.7853982f;     ///< radians, spot
   /// The intensities of a point or area light: an index into Scene::distributions; `none` = the
@@ -292,8 +292,8 @@ struct Light {
   glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
   float angular_diameter = 0.0f;  ///< radians, of a directional light's disc; 0 = parallel light
   /// The bounds of a directional light that is an even patch of the sky in place of a disc:
-  /// azimuths from and to, radians clockwise from -z as seen from above, and the sines of the
-  /// elevations from and to. All 0 = none.
+  /// its first and last azimuth, radians clockwise from -z as seen from above, and the sines of its
+  /// lowest and highest elevation. All 0 = none.
   glm::vec4 sky_patch{0.0f};
 
   std::uint32_t environment = none;  ///< of an environment light: into Scene::environments
@@ -345,22 +345,22 @@ struct ImportedMesh {
 struct ImportReport {
   std::vector<std::string> warnings;       ///< one line each: object, what was found, what was done
   std::uint64_t degenerate_triangles = 0;  ///< zero area; dropped
-  std::uint64_t non_finite_triangles = 0;  ///< NaN, infinite or too far a corner; dropped
-  std::uint64_t duplicate_triangles = 0;   ///< exactly on another; dropped
+  std::uint64_t non_finite_triangles = 0;  ///< a corner is NaN, infinite or too far away; dropped
+  std::uint64_t duplicate_triangles = 0;   ///< coincide with another; dropped
   std::uint64_t polygons_triangulated = 0;
   std::vector<ImportedMesh> meshes;  ///< in the order of the file
 };
 
 /// The geometry is one indexed triangle soup. Corners of a triangle are stored in canonical order
 /// (the lexicographically smallest position first, then the smaller of the other two), so that the
-/// same mesh with another winding gives the same bits everywhere. `Scene::front_side` keeps what
-/// the winding said. Side 0 of a triangle is the one that its canonical geometric normal points to.
+/// same mesh with another winding gives the same bits everywhere. `Scene::front_side` keeps the
+/// original winding. Side 0 of a triangle is the one that its canonical geometric normal points to.
 struct Scene {
   std::filesystem::path source;
   PowerUnit unit = PowerUnit::lumen;
 
   /// Where (0, 0, 0) of this scene lies in the file's world, metres. The importers read coordinates
-  /// in double precision and take it off before they round them, so that a scene far from the
+  /// in double precision and subtract it before they round them, so that a scene far from the
   /// file's origin loses nothing. Every position below, and in all that is computed from them,
   /// counts from here; reports and pictures name world positions.
   glm::dvec3 origin{0.0};
@@ -434,7 +434,7 @@ glm::dvec3 face_normal(const Scene& scene, std::uint32_t oriented_face);
 double triangle_area(const Scene& scene, std::uint32_t triangle);
 
 /// A sphere that encloses the scene: around the centre of its bounding box, through the box's
-/// corners. Light from beyond the scene takes its flux from its disc.
+/// corners. The flux of light from beyond the scene is that through its disc.
 struct BoundingSphere {
   glm::dvec3 center{0.0};
   double radius = 0;  ///< metres
@@ -447,7 +447,7 @@ inline constexpr std::uint32_t max_dense_lights = 8;
 
 /// The features that later stages must support; those that are false cost nothing. From them follow
 /// the records of photons and hits, the buffers of maps and estimates, the symbols that kernels are
-/// compiled with, and what shadow rays look at (docs/kernels/data.md, "Records").
+/// compiled with, and what shadow rays test (docs/kernels/data.md, "Records").
 struct SceneNeeds {
   bool glossy = false;       ///< some opaque material has a specular lobe or a normal map
   bool normal_maps = false;  ///< some opaque material has a normal map
@@ -460,8 +460,8 @@ struct SceneNeeds {
 
   /// Whether photons and estimates distinguish lights.
   bool several_lights() const { return light_count > 1; }
-  /// Whether the reflected radiance at points is stored beside the irradiance, to which it is not
-  /// in proportion.
+  /// Whether the reflected radiance at points is stored beside the irradiance, because the two are
+  /// not proportional.
   bool tells_radiance() const { return glossy || smooth_shading; }
   /// Whether only the lights that reach a point are kept for it.
   bool many_lights() const { return light_count > max_dense_lights; }

@@ -21,7 +21,7 @@ struct MeshArrays {
   std::span<const glm::vec3> normals = {};      ///< per vertex, any length; zero = flat
   std::span<const glm::vec2> uv = {};           ///< per vertex, of Material's textures
   std::span<const glm::vec2> emission_uv = {};  ///< per vertex, of Light::emission_texture
-  std::span<const glm::vec4> tangents = {};     ///< per vertex, as glTF has them: w is the hand
+  std::span<const glm::vec4> tangents = {};     ///< per vertex, as in glTF: w is the handedness
 
   std::span<const std::uint32_t> materials = {};  ///< per triangle; empty: all have `material`
   std::span<const std::uint32_t> lights = {};     ///< per triangle; empty: all have `light`
@@ -30,8 +30,8 @@ struct MeshArrays {
 };
 
 /// Makes a Scene that every stage can trust: vertices welded, corners in canonical order, all of
-/// its arrays filled. What a thing refers to (materials, textures, lights) is added before it.
-/// Errors: InputError, one line that names the scene, the thing and what is wrong with it.
+/// its arrays filled. What an object refers to (materials, textures, lights) is added before it.
+/// Errors: InputError, one line that names the scene, the object and what is wrong with it.
 class SceneBuilder {
  public:
   explicit SceneBuilder(std::string name = "scene in memory", PowerUnit unit = PowerUnit::lumen);
@@ -39,14 +39,14 @@ class SceneBuilder {
   SceneBuilder(SceneBuilder&&) noexcept;
   SceneBuilder& operator=(SceneBuilder&&) noexcept;
 
-  // Each returns the number by which others refer to it.
+  // Each returns the index by which other objects refer to it.
   std::uint32_t add(Material material);
   std::uint32_t add(const MetallicRoughness& model);
   std::uint32_t add(Texture texture);
   std::uint32_t add(IntensityDistribution distribution);
-  /// An area, point or spot light of `light.power`, in the unit of the scene. The triangles of an
-  /// area light follow with its meshes. `color` may have any luminance above 0, directions any
-  /// length. With an emission texture, `color` is the tint of its texels.
+  /// An area, point or spot light with the power `light.power`, in the unit of the scene. The
+  /// triangles of an area light are added later, with its meshes. `color` may have any luminance
+  /// above 0, directions any length. With an emission texture, `color` is the tint of its texels.
   std::uint32_t add(Light light);
   /// A directional light that makes `irradiance` (lux or W/m2) on a surface that faces it.
   std::uint32_t add_distant(Light light, double irradiance);
@@ -54,7 +54,7 @@ class SceneBuilder {
   std::uint32_t add_surroundings(std::string name, EnvironmentMap map);
   void add(Camera camera);
 
-  /// Adds the triangles of a mesh. Those without area, and those that lie exactly on others, are
+  /// Adds the triangles of a mesh. Those without area, and those that coincide with others, are
   /// counted in Scene::report and left out. Returns each triangle's number in the scene, `none`
   /// where it was left out.
   std::vector<std::uint32_t> add(const MeshArrays& mesh);
@@ -62,7 +62,7 @@ class SceneBuilder {
   /// One triangle, counter-clockwise as seen from its front; its number, or `none`.
   std::uint32_t triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
                          std::uint32_t material, std::uint32_t light = none);
-  /// Two of them: a, b, c and a, c, d.
+  /// Two triangles: a, b, c and a, c, d.
   void quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d,
             std::uint32_t material, std::uint32_t light = none);
   /// The parallelogram from `origin` along two edges, cut into cells x cells quads. Its front is on
@@ -75,7 +75,7 @@ class SceneBuilder {
 
   /// The scene so far, with a camera that shows it where none was added. Names of lights become
   /// unique and fit for layers of a picture. Errors: InputError without triangles, for an area
-  /// light without any, and for light that is no finite number.
+  /// light without any, and for light that is not finite.
   Scene build() const&;
   Scene build() &&;
 
@@ -85,8 +85,8 @@ class SceneBuilder {
 };
 
 /// Refuses a scene that later stages could not trust: arrays of wrong lengths, numbers out of
-/// range, NaN. Every stage that takes a scene asks; scenes of load_scene and SceneBuilder pass.
-/// Errors: InputError.
+/// range, NaN. Every stage that takes a scene calls this; scenes from load_scene and SceneBuilder
+/// pass. Errors: InputError.
 void check_scene(const Scene& scene);
 
 }  // namespace photile

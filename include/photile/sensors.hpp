@@ -18,14 +18,14 @@ enum class SensorResponse {
   cylindrical,  ///< sine to the normal over pi: illuminance of a small upright cylinder, the mean
                 ///< of all planes that contain the normal (EN 12464-1)
   /// (1 + cos alpha) sine over pi, alpha being the angle round the normal to `facing`: the half
-  /// cylinder that faces there (EN 13201-3)
+  /// cylinder that faces that direction (EN 13201-3)
   semi_cylindrical
 };
 
 /// A point where light is measured.
 struct Sensor {
   glm::dvec3 position{0.0};          ///< metres
-  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also where radiance is seen from
+  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; also the direction from which radiance is measured
   /// `gather` only. False: light directly from lights within the scene, or through panes, is left
   /// out: what remains is indirect light, and that of sun and sky.
   bool sees_lights = true;
@@ -38,7 +38,7 @@ Sensor in_scene(const Scene& scene, Sensor sensor);
 
 /// The light at sensors on opaque surfaces that face their normals, within a millimetre, by
 /// `render`: the result's layers are one row high, sensor i is pixel i.
-/// `parameters.film` does not count. Errors: those of `render`; InputError that names a sensor
+/// `parameters.film` is ignored. Errors: those of `render`; InputError that names a sensor
 /// without an opaque surface.
 RenderResult measure(const Scene& scene, std::span<const Sensor> sensors, std::span<Device> devices,
                      const RenderParameters& parameters, Progress& progress = Progress::none());
@@ -58,7 +58,7 @@ struct GatherParameters {
 /// pixel wide, sensor i is row i: `radiance` is irradiance / pi, W/(m2 sr) or cd/m2 of a white
 /// plate there, and `illuminance` the luminance of irradiance. What mirrors and refracting glass
 /// throw onto a sensor from point, spot and directional lights is missing, see has_hidden_caustics.
-/// `parameters.film` does not count. Errors: those of `render`; UsageError for rays out of
+/// `parameters.film` is ignored. Errors: those of `render`; UsageError for rays out of
 /// limits.hpp.
 RenderResult gather(const Scene& scene, std::span<const Sensor> sensors,
                     const GatherParameters& gathering, std::span<Device> devices,
@@ -78,8 +78,8 @@ struct Measured {
 struct MeasuringParameters {
   GatherParameters gathering;
   int repeats = defaults::measuring_repeats;  ///< >= 2, each with its own seed
-  bool by_paths = false;                      ///< and not by photon maps
-  RenderParameters photons;                   ///< of each repeat, whose seeds follow from this one
+  bool by_paths = false;                      ///< instead of by photon maps
+  RenderParameters photons;  ///< of each repeat; their seeds are derived from this one
   double maintenance = defaults::maintenance_factor;  ///< factor of all values
 };
 
@@ -89,13 +89,13 @@ struct LightIlluminance {
   std::vector<Measured> sensors;  ///< lux, in the order of the sensors
 };
 
-/// What `photile measure` prints: `gather`, or gather_by_paths, repeated with random numbers of
-/// their own, whose mean is the value and whose scatter tells the standard error.
+/// What `photile measure` prints: `gather`, or gather_by_paths, repeated with different random
+/// numbers; the mean is the value, and the scatter gives the standard error.
 ///   sensors   in the scene file's world
 ///   mix       powers of all lights of the scene
 ///   devices   may be empty for paths
 /// Returns all lights together first, then each one of the mix. Errors: those of `gather`;
-/// UsageError for fewer than two repeats; InputError naming a light whose lux no number holds.
+/// UsageError for fewer than two repeats; InputError naming a light whose lux overflows.
 std::vector<LightIlluminance> measure_illuminance(const Scene& scene,
                                                   std::span<const Sensor> sensors,
                                                   const LightMix& mix, std::span<Device> devices,

@@ -14,7 +14,7 @@ namespace photile {
 struct StageStatistics {
   std::string stage;               ///< "trace photons", "build photon maps", ...
   double seconds = 0;              ///< wall clock
-  double processor_seconds = 0;    ///< of all threads of the process, whatever they did meanwhile
+  double processor_seconds = 0;    ///< of all threads of the process, whatever they did
   std::uint64_t host_bytes = 0;    ///< memory that the stage's result keeps on the host
   std::uint64_t device_bytes = 0;  ///< memory that the stage's result keeps on the device
   /// Named figures of the stage, in the order they were added ("photons per second", 1.9e6).

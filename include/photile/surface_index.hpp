@@ -38,8 +38,8 @@ struct PartBounds {
 /// ceiling), triangles are *dark*, and form separate components and regions.
 ///
 /// A *region* is a set of connected triangles in one plane. A hit on a region wider than twice the
-/// radius looks at the edges that bound it, and not at its triangles. Smaller regions, and those of
-/// curved surfaces, are looked at triangle by triangle.
+/// radius tests the edges that bound it, and not its triangles. Smaller regions, and those of
+/// curved surfaces, are tested triangle by triangle.
 ///
 /// Triangles that store no photons (mirrors, glass) form separate components and regions, which
 /// stay dark. Coincident triangles count once.
@@ -55,7 +55,7 @@ struct SurfaceIndex {
   double angle_degrees = 0;  ///< largest angle between the normals of neighbours
 
   std::vector<std::uint32_t> original;  ///< per oriented face: the first that coincides with it
-  /// Per triangle: its region where hits look at the region's border, else PHOTILE_NO_REGION.
+  /// Per triangle: its region where hits test the region's border, else PHOTILE_NO_REGION.
   std::vector<std::uint32_t> region;
   std::vector<std::uint32_t> component;  ///< per oriented face
   std::vector<glm::vec3> normal;         ///< per oriented face, unit
@@ -73,7 +73,7 @@ struct SurfaceIndex {
   std::uint32_t component_at(std::uint32_t oriented_face, const glm::vec3& position) const;
 
   /// Border edges of regions, and triangles near other regions of similar normal, in a tree whose
-  /// root is node 0; no node where there are none.
+  /// root is node 0; no node where there are no such pieces.
   std::vector<PhotileSurfaceNode> nodes;
   std::vector<PhotileSurfaceLeaf> leaves;
 
@@ -83,15 +83,15 @@ struct SurfaceIndex {
 /// Finds components and regions and builds the tree. The result does not depend on the number of
 /// threads.
 ///   radius          metres, > 0: of the largest disc
-///   landed          per oriented face: photons that landed there; what faces lit surface unlit
-///                   covers it
+///   landed          per oriented face: photons that landed there; unlit surface that faces lit
+///                   surface covers it
 ///   angle_degrees   largest angle between normals of neighbours, in [0, 180]
 SurfaceIndex index_surface(const Scene& scene, const std::vector<std::uint32_t>& landed,
                            double radius, double angle_degrees);
 
 /// Indexes the surface and finds its unlit regions.
-///   photons   sorted by oriented face; where several processes hold them, those of the maps that
-///             are theirs, and all call this
+///   photons   sorted by oriented face; where several processes hold them, all call this, each
+///             with those of its own maps
 SurfaceIndex index_surface(const Scene& scene, const Photons& photons, double radius,
                            double angle_degrees);
 

@@ -1,12 +1,12 @@
-"""photile: photon mapping on OpenCL devices, a layer of the picture per light.
+"""photile: photon mapping on OpenCL devices, with a layer of the picture for each light.
 
-Scenes come from files (`load`) or arrays (`Scene`). `trace` gives photons as arrays, `PhotonMaps`
-finds the nearest of any photons on an OpenCL device, `neighbours` those of bare points, `render`
-gives a picture with a layer for each light, `Picture.mix` changes its lights, `relight` those of a
-file, and `measure` tells lux at points. Metres, lumens (or watts), cd/m2 and lux throughout; arrays
-are numpy's.
+Scenes come from files (`load`) or arrays (`Scene`). `trace` returns photons as arrays, `PhotonMaps`
+finds the nearest photons on an OpenCL device, `neighbours` the nearest points, `render` returns a
+picture with a layer for each light, `Picture.mix` changes its lights, `relight` those of a file, and
+`measure` returns lux at points. Units are metres, lumens (or watts), cd/m2 and lux; arrays are
+numpy's.
 
-Long work releases the interpreter's lock, hears Ctrl-C and tells a callback how far it is.
+Long work releases the interpreter's lock, stops on Ctrl-C and reports its progress to a callback.
 """
 
 from typing import Any
@@ -43,7 +43,7 @@ def devices() -> list[dict[str, Any]]:
 
 
 def test_devices(device: str = "") -> str:
-    """Whether devices compute right, in seconds: "" where they do, else what does not, in a line.
+    """Test devices, which takes seconds: "" if they compute correctly, else a line about what is wrong.
 
     Parameters
     ----------
@@ -53,4 +53,4 @@ def test_devices(device: str = "") -> str:
     return _photile.test_devices(device)
 
 
-test_devices.__test__ = False  # type: ignore[attr-defined]  # it is no test of pytest's
+test_devices.__test__ = False  # type: ignore[attr-defined]  # it is not a test of pytest's

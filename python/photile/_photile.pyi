@@ -1,4 +1,4 @@
-"""The compiled part of the package; the package's other modules say what arrays it takes."""
+"""The compiled part of the package; the package's other modules describe the arrays that it takes."""
 
 from typing import Any, Callable, Optional, Union
 
@@ -22,7 +22,7 @@ def test_devices(selector: str) -> str: ...
 def setting_names() -> list[str]: ...
 
 class ArrayMemory:
-    """Memory of the library, of which numpy makes the arrays that functions return."""
+    """Memory of the library, from which numpy makes the arrays that functions return."""
 
 class Scene:
     @property

@@ -1,4 +1,4 @@
-"""What can go wrong. Each message is one line: what was found, and the remedy."""
+"""Errors. Each message is one line: what was found, and the remedy."""
 
 __all__ = [
     "Error",
@@ -41,7 +41,7 @@ class KernelBuildError(DeviceError):
     Attributes
     ----------
     build_log : str
-        What the compiler of the OpenCL runtime said.
+        The output of the compiler of the OpenCL runtime.
     """
 
     build_log: str = ""

@@ -41,7 +41,7 @@ def _read(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise ValueError(f"{name} is neither stored nor deflated")  # the others unpack without bounds
     if member.file_size > most:
-        raise ValueError(f"{name} has {member.file_size} bytes, and photile reads {most} at most")
+        raise ValueError(f"{name} has {member.file_size} bytes; photile reads at most {most}")
     return archive.read(member)
 
 
@@ -114,7 +114,7 @@ def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
     """Writes the photometric files of all variants and ``luminaires.json``, with an entry for each
     of their lights, into a new or empty folder; returns the entries.
 
-    Errors: ValueError where the file is no GLDF, or none of its variants has a photometric file
+    Errors: ValueError where the file is not GLDF, or none of its variants has a photometric file
     in it. OSError.
     """
     try:
@@ -122,12 +122,12 @@ def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
     except OSError:
         raise
     except Exception as error:  # zipfile and its decompressors raise what they like on damaged files
-        raise ValueError(f"{gldf}: is no GLDF file: {error}; get it anew") from None
+        raise ValueError(f"{gldf}: this is not a GLDF file: {error}; get the file again") from None
     if not entries:
         raise ValueError(f"{gldf}: no variant has a photometric file (EULUMDAT or IES) in it")
     folder.mkdir(parents=True, exist_ok=True)
     if any(folder.iterdir()):
-        raise ValueError(f"{folder}: is not empty; name a new folder")
+        raise ValueError(f"{folder}: the folder is not empty; name a new one")
     for file_name, content in written.items():
         (folder / file_name).write_bytes(content)
     (folder / "luminaires.json").write_text(json.dumps(entries, indent=2) + "\n", encoding="utf-8")

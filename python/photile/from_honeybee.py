@@ -35,9 +35,9 @@ def _colour(modifier: Any, what: str) -> list[float]:
 
 
 def _tint(transmissivity: float, index: float) -> float:
-    """Of photile's thin glass that lets as much of an even sky through as Radiance's does.
+    """The tint of photile's thin glass that transmits as much of an even sky as Radiance's glass does.
 
-    photile's tint is the same at all angles, and Radiance's the longer the way through the pane.
+    photile's tint is the same at all angles, while Radiance's grows with the path through the pane.
     """
     cosine = (np.arange(64) + 0.5) / 64
     within = np.sqrt(1 - (1 - cosine**2) / index**2)
@@ -84,7 +84,7 @@ def _material(modifier: Any) -> tuple[dict[str, Any], str]:
         material["emissiveFactor"] = [value / most for value in nits]
         extensions["KHR_materials_emissive_strength"] = {"emissiveStrength": most}
     else:
-        colour, lost = [0.5] * 3, f"all: photile has no {kind}; it is matt grey (0.5)"
+        colour, lost = [0.5] * 3, f"all: photile has no {kind}; it becomes matt grey (0.5)"
     surface["baseColorFactor"] = [*colour, 1.0]
     return material, lost
 
@@ -147,7 +147,7 @@ def _gltf(model: Any, warnings: list[str]) -> dict[str, Any]:
 def _rotation(axis: Any, aim: Any) -> float:
     """Degrees about the aim that turn photile's lamps so that C0 lies along the axis."""
     z = -np.array(tuple(aim))
-    # As luminaires.cpp has it, in the model's axes: its y up is z here, and its z is -y.
+    # As in luminaires.cpp, in the model's axes: its y up is z here, and its z is -y.
     level = np.array([1.0, 0, 0]) if abs(z[2]) > 0.999 else np.cross([0, 0, 1.0], z)
     x = level - (level @ z) * z
     x /= np.linalg.norm(x)
@@ -157,7 +157,7 @@ def _rotation(axis: Any, aim: Any) -> float:
 
 def _add(texts: dict[str, str], name: str, text: str) -> None:
     if name in texts:
-        raise ValueError(f"two grids or luminaires are called '{Path(name).stem}'; rename one")
+        raise ValueError(f"two grids or luminaires have the name '{Path(name).stem}'; rename one")
     texts[name] = text
 
 
@@ -195,7 +195,7 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"{text} is no number")
+        raise ValueError(f"{text} is not a number")
     return value
 
 
@@ -206,7 +206,7 @@ def _read(file: Path, warnings: list[str]) -> Any:
         if part.get("type") == "BSDF":  # is written to a file that its identifier names
             grey = {f"{channel}_reflectance": 0.5 for channel in _channels}
             warning = (f"modifier '{part['identifier']}': left out is all: photile has no BSDF; "
-                       "it is matt grey (0.5)")
+                       "it becomes matt grey (0.5)")
             if warning not in warnings:
                 warnings.append(warning)
             return {"type": "Plastic", "identifier": part["identifier"], **grey,

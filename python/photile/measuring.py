@@ -22,11 +22,11 @@ class Illuminance:
     Attributes
     ----------
     points, normals : (m, 3) arrays
-        Where it was measured.
+        The points of measurement and their normals.
     lux, error : (m,) arrays
-        Of all lights together, and its standard error.
+        Lux from all lights together, and its standard error.
     by_light, error_by_light : dicts of (m,) arrays
-        The same of each light layer.
+        The same for each light layer.
     """
 
     points: NDArray[np.float64]
@@ -48,16 +48,16 @@ class Illuminance:
 def grid(
     corner: ArrayLike, along: ArrayLike, across: ArrayLike, columns: int, rows: int
 ) -> NDArray[np.float64]:
-    """Middles of the equal cells of a rectangle.
+    """The centres of the equal cells of a rectangle.
 
     Parameters
     ----------
     corner : (3,) floats
         Metres.
     along, across : (3,) floats
-        Its whole sides, metres.
+        The sides of the rectangle, metres.
     columns, rows : int
-        Cells along the first and the second.
+        Cells along the first and the second side.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def grid(
     """
     for name, count in (("columns", columns), ("rows", rows)):
         if not isinstance(count, (int, np.integer)) or count < 1:
-            raise UsageError(f"{name}: {count!r} is no whole number above 0")
+            raise UsageError(f"{name}: {count!r} is not a whole number above 0")
     u, v = (np.arange(count) + 0.5 for count in (columns, rows))
     places = np.stack(np.meshgrid(u / columns, v / rows), axis=-1).reshape(-1, 2)
     sides = np.array([vector(along, "along"), vector(across, "across")])
@@ -97,24 +97,24 @@ def measure(
     points : (m, 3) array
         Metres in the file's world.
     normals : (m, 3) or (3,) array
-        Directions that they face, of any length; y is upwards in glTF files.
+        The directions that the points face, of any length; y is upwards in glTF files.
     rays : int
-        Of each point and repeat.
+        Rays of each point and repeat.
     repeats : int
-        At least 2: measurements with random numbers of their own, whose scatter is the standard
+        At least 2: measurements with different random numbers, whose scatter gives the standard
         error.
     cylindrical : bool
-        Cylindrical illuminance round the normals (EN 12464-1).
+        Cylindrical illuminance around the normals (EN 12464-1).
     integrator : {"photon-map", "path"}
         Paths are unbiased and need no OpenCL device.
     maintenance : float
         Factor of all values, for ageing and dirt.
     lumen_per_watt : float
-        What turns watts into lumens.
+        The factor between watts and lumens.
     device, progress
         As for `render`.
     **settings
-        By their names in ``photile.SETTINGS``, such as ``photons_emitted=200_000``.
+        Settings by their names in ``photile.SETTINGS``, such as ``photons_emitted=200_000``.
 
     Returns
     -------
@@ -123,16 +123,16 @@ def measure(
     Raises
     ------
     InputError
-        Arrays do not fit, or hold numbers that are none.
+        Arrays do not fit, or hold NaN or infinite numbers.
     UsageError
         Names the setting and its range.
     """
     where = floats(points, "points", np.float64)
     if where.ndim != 2 or where.shape[1] != 3:
-        raise InputError(f"points: the array has shape {where.shape}, and has to have (m, 3)")
+        raise InputError(f"points: the array has shape {where.shape}; it must have shape (m, 3)")
     if not np.all(np.isfinite(where)):
         row = int(np.argmin(np.all(np.isfinite(where), axis=1)))
-        raise InputError(f"points: number {row} is no place")
+        raise InputError(f"points: point {row} is NaN or infinite")
     facing = floats(normals, "normals", np.float64)
     if facing.shape == (3,):
         facing = np.broadcast_to(facing, where.shape)

@@ -14,7 +14,7 @@ from .scenes import Scene, floats
 __all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "neighbours", "trace"]
 
 NONE: int = _photile.none
-"""What stands where there is no neighbour, no light, no material."""
+"""The index that means: no neighbour, no light or no material."""
 
 _POINTS_AT_A_TIME = 1 << 20  # Ctrl-C is heard between them
 
@@ -31,7 +31,7 @@ class Photons:
     Attributes
     ----------
     scene : Scene
-        What they lie on.
+        The scene on which they lie.
     """
 
     scene: Scene
@@ -55,19 +55,19 @@ class Photons:
 
     @property
     def incoming(self) -> Optional[NDArray[np.float32]]:
-        """(n, 3) unit vectors to where they came from, or None in scenes without glossy surfaces."""
+        """(n, 3) unit vectors towards where they came from, or None in scenes without glossy surfaces."""
         incoming = self._core.incoming
         return incoming if len(incoming) == len(self) else None
 
     @property
     def light(self) -> NDArray[np.uint16]:
-        """(n,) numbers of `layer_names`; a read-only view where there are several."""
+        """(n,) indices into `layer_names`; a read-only view where there are several layers."""
         light = self._core.light
         return light if len(light) == len(self) else np.zeros(len(self), np.uint16)
 
     @property
     def triangle(self) -> NDArray[np.uint32]:
-        """(n,) rows of ``scene.triangles``."""
+        """(n,) row numbers in ``scene.triangles``."""
         return self._core.oriented_face >> np.uint32(1)
 
     @property
@@ -92,17 +92,17 @@ class Photons:
 
     @property
     def emitted(self) -> NDArray[np.uint64]:
-        """(lights,) paths that were started."""
+        """(lights,) number of paths started."""
         return np.array(self._core.emitted_per_light, np.uint64)
 
     @property
     def absorbed_flux(self) -> NDArray[np.float64]:
-        """(lights,) share of each light's flux that surfaces absorbed."""
+        """(lights,) fraction of each light's flux that surfaces absorbed."""
         return np.array(self._core.absorbed_flux_per_light)
 
     @property
     def escaped_flux(self) -> NDArray[np.float64]:
-        """(lights,) share of each light's flux that left the scene."""
+        """(lights,) fraction of each light's flux that left the scene."""
         return np.array(self._core.escaped_flux_per_light)
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
@@ -129,21 +129,21 @@ def trace(
     max_path_length: int = 1_000_000,
     progress: _photile.Callback = None,
 ) -> Photons:
-    """Follow photon paths from the lights, and store a photon at each opaque surface they meet.
+    """Trace photon paths from the lights, and store a photon at each hit on an opaque surface.
 
     Parameters
     ----------
     scene : Scene
     photons : int
-        Paths over all lights; each leaves several photons.
+        Paths over all lights; each stores several photons.
     seed : int
         The same seed gives the same photons, bit for bit, on any number of threads.
     quota : {"balanced", "power", "equal"}
-        How lights share the paths: half by power and half equally, by power, equally.
+        How paths are divided between the lights: half by power and half equally, by power, or equally.
     store_direct : bool
-        Whether photons that come straight from a lamp are stored.
+        Whether photons that come directly from a light are stored.
     max_path_length : int
-        Surfaces that a path meets at most; chance ends all but a few paths long before.
+        The most surface interactions of a path; Russian roulette ends almost all paths much earlier.
     progress : callable, optional
         See `render`.
 
@@ -173,7 +173,7 @@ class Neighbours(NamedTuple):
     """The k nearest photons of each point, nearest first."""
 
     photons: NDArray[np.uint32]
-    """(points, k) rows of the photons; ``photile.NONE`` beyond the last."""
+    """(points, k) row numbers of the photons; ``photile.NONE`` beyond the last."""
     squared_distance: NDArray[np.float32]
     """(points, k) square metres; infinity beyond the last."""
 
@@ -189,32 +189,32 @@ class PhotonMaps:
     Parameters
     ----------
     photons : Photons or (n, 3) array
-        Of `trace`, with their normals, flux and lights; or positions in metres.
+        The result of `trace`, with normals, flux and lights; or positions in metres.
     flux : (n, 3) array, optional
-        Linear RGB of each photon; 1 where it is left out.
+        Linear RGB of each photon; 1 by default.
     normals : (n, 3) array, optional
-        Unit normals of the surfaces below. Where photons have some, points have to, and only
+        Unit normals of the surfaces below. If photons have normals, points need them too, and only
         photons count whose normals differ by at most ``angle``.
     lights : (n,) array of ints below 65536, optional
-        A light of each; densities are told for each.
+        The light of each photon; densities are computed for each light.
     radius : float, optional
-        Metres: no neighbour is farther away. Left out: twice the median distance to the
+        Metres: no neighbour is farther away. By default twice the median distance to the
         ``neighbours``-th photon.
     neighbours : int
-        That the radius is chosen for.
+        The number of neighbours for which the radius is chosen.
     angle : float
         Degrees, in [0, 180].
     photons_per_cell : float
-        That grids aim at.
+        Aim for the grids of the maps.
     device : str
-        As for `render`; of several the first.
+        As for `render`; of several devices, the first is used.
     progress : callable, optional
         See `render`.
 
     Raises
     ------
     InputError
-        Arrays do not fit, or hold numbers that are none; the first wrong photon is named.
+        Arrays do not fit, or hold NaN or infinite numbers; the first such photon is named.
     UsageError
         A parameter is out of its range.
     DeviceMemoryError
@@ -274,7 +274,7 @@ class PhotonMaps:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """Photons, references (entries over all maps), maps, cells, bytes and seconds."""
+        """Photons, references (records over all maps), maps, cells, bytes and seconds."""
         return self._core.statistics()
 
     def nearest(
@@ -289,24 +289,24 @@ class PhotonMaps:
         Parameters
         ----------
         points : (m, 3) array
-            Metres, in the file's world where the photons are those of a scene, else where the
-            photons are.
+            Metres: in the file's world if the photons are those of a scene, else in the coordinates of
+            the photons.
         normals : (m, 3) array, optional
-            Unit; needed where the photons have normals.
+            Unit vectors; needed if the photons have normals.
         k : int
             Neighbours of each point.
         radius : float, optional
-            Metres, at most that of the maps, which it is where it is left out.
+            Metres, at most the radius of the maps, which is the default.
 
         Returns
         -------
         Neighbours
-            Of photons at the same distance, to a few roundings of a float, any may be the last.
+            Of photons at distances that agree to a few roundings of a float, any may be the last.
 
         Raises
         ------
         InputError
-            Arrays do not fit, or hold numbers that are none.
+            Arrays do not fit, or hold NaN or infinite numbers.
         UsageError
             k or the radius is out of its range.
         """
@@ -326,21 +326,21 @@ class PhotonMaps:
         radius: Optional[float] = None,
         kernel: str = "constant",
     ) -> NDArray[np.float32]:
-        """Flux per area at each point: that of its neighbours over the disc that they fill.
+        """Flux per area at each point: the flux of its neighbours over the area of their disc.
 
         Parameters
         ----------
         points, normals, k, radius
             As for `nearest`.
         kernel : {"constant", "cone"}
-            What each photon counts, by its distance.
+            The weight of photons by their distance.
 
         Returns
         -------
         (m, lights, 3) array
-            Linear RGB, in the unit of the flux per square metre; one light where photons have none
-            of their own. Of photons of `trace` each light layer is at a power of 1:
-            ``irradiance @ ...`` with ``photons.power`` gives the scene's.
+            Linear RGB, in the unit of the flux per square metre; one light if the photons have no lights.
+            For photons of `trace` each light layer is at a power of 1: weight the layers by
+            ``photons.power`` to get the irradiance in the scene.
 
         Raises
         ------
@@ -361,7 +361,7 @@ class PhotonMaps:
     ) -> tuple[NDArray[np.float32], Optional[NDArray[np.float32]]]:
         where = _rows_from(self._origin, points, "points")
         if normals is None and self._has_normals:
-            raise InputError("normals: the photons have some, so points need theirs")
+            raise InputError("normals: the photons have normals, so the points need them too")
         return where, None if normals is None else _rows(normals, "normals")
 
     def __repr__(self) -> str:
@@ -382,43 +382,44 @@ def neighbours(
 ) -> tuple[NDArray[np.uint32], NDArray[np.float32]]:
     """The k nearest points of each query, as ``scipy.spatial.cKDTree(points).query(queries, k)``.
 
-    The search runs on an OpenCL device. It is made anew in each call: pass all queries at once, or
-    keep `PhotonMaps`, whose neighbours lie within a radius.
+    The search runs on an OpenCL device, and is prepared again in each call: pass all queries at once,
+    or keep `PhotonMaps`, whose neighbours lie within a radius.
 
     Parameters
     ----------
     points : (n, 3) array
-        At least one. Any unit of length, which distances have as well; coordinates up to 1e12.
+        At least one point, in any unit of length, which distances have as well; coordinates up to 1e12.
     queries : (m, 3) array
-        As the points. Doubles far from the origin count from the middle of the points before they
-        become floats.
+        As the points. Doubles far from the origin are taken relative to the middle of the points
+        before they are rounded to floats.
     k : int
         1 to 1,000,000; it may exceed n.
     normals, query_normals : (n, 3) and (m, 3) arrays, optional
-        Unit. With them only points count whose normals differ from the query's by at most ``angle``.
+        Unit vectors. With them, only points count whose normals differ from the query's by at most
+        ``angle``.
     max_distance : float
         Above 0: no neighbour is farther. Infinity: all points count.
     angle : float
         Degrees, in [0, 180].
     device : str
-        As for `render`; of several the first.
+        As for `render`; of several devices, the first is used.
     progress : callable, optional
         See `render`.
 
     Returns
     -------
     indices : (m, k) array of uint32
-        Rows of ``points``, nearest first, coincident points in the order of their rows; n where
-        there are fewer than k neighbours.
+        Row numbers in ``points``, nearest first, coincident points in the order of their rows; n
+        where there are fewer than k neighbours.
     distances : (m, k) array of float32
-        Those of the points as floats, computed in double precision; infinity where there are fewer.
-        Of points whose distances agree to a few roundings of a float, any may be the last.
+        Distances of the points as floats, computed in double precision; infinity where there are
+        fewer. Of points whose distances agree to a few roundings of a float, any may be the last.
 
     Raises
     ------
     InputError
-        There is no point, arrays do not fit, or hold numbers that are none; the first is named. Or
-        points are so far apart that floats would have other neighbours.
+        There are no points, arrays do not fit or hold NaN or infinite numbers, the first of which is
+        named, or points are so far apart that rounding to floats would change the neighbours.
     UsageError
         k, the distance or the angle is out of its range.
     DeviceMemoryError
@@ -450,27 +451,27 @@ def _radius(radius: Optional[float]) -> float:
 
 
 def _rows(values: ArrayLike, name: str) -> NDArray[np.float32]:
-    """A C-contiguous (n, 3) array of floats: the same one where it is such."""
+    """A C-contiguous (n, 3) array of floats; the argument itself if it is one."""
     array = floats(values, name)
     if array.ndim == 1 and array.size == 3:
         array = array.reshape(1, 3)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise InputError(f"{name}: the array has shape {array.shape}, and has to have (n, 3)")
+        raise InputError(f"{name}: the array has shape {array.shape}; it must have shape (n, 3)")
     return array
 
 
 def _rows_from(origin: NDArray[np.float64], values: ArrayLike, name: str) -> NDArray[np.float32]:
-    """Positions that count from ``origin``: the array of `_rows` where that is zero."""
+    """Positions relative to ``origin``: the array of `_rows` if that is zero."""
     if not origin.any():
         return _rows(values, name)
     return _rows(floats(values, name, np.float64) - origin, name)
 
 
-_FARTHER = 16  # times what they are from the middle of their box, as for the origins of scenes
+_FARTHER = 16  # times their distance from the middle of their box, as for the origins of scenes
 
 
 def _origin(values: ArrayLike) -> NDArray[np.float64]:
-    """What positions count from before they become floats, whose steps grow with the distance.
+    """The origin of positions before they become floats, whose steps grow with the distance.
 
     Zero, unless they lie much nearer to the middle of their box.
     """
@@ -496,23 +497,23 @@ def _check_rounding(
     rows: NDArray[np.float32],
     radius: float,
 ) -> None:
-    """Refuses positions that are so far apart that floats would tell other neighbours."""
+    """Refuses positions so far apart that rounding to floats would change the neighbours."""
     if np.asarray(values).dtype == np.float32 and not origin.any() or len(rows) == 0:
         return
     moved = np.abs(floats(values, "positions", np.float64).reshape(-1, 3) - origin - rows)
     most = np.unravel_index(np.argmax(moved), moved.shape)
     if moved[most] > _LARGEST_ROUNDING * radius:
         raise InputError(
-            f"{what} {most[0]} is so far from others that its float lies"
-            f" {moved[most]:.2g} m off, which is too much for a radius of {radius:.4g} m;"
-            " search each part alone"
+            f"{what} {most[0]} is so far from the others that its position in floats is"
+            f" {moved[most]:.2g} m off, too much for a radius of {radius:.4g} m;"
+            " search each part separately"
         )
 
 
 def _lights(values: ArrayLike) -> NDArray[np.uint16]:
     array = np.asarray(values)
     if array.dtype.kind not in "iu" or (array.size and (array.min() < 0 or array.max() > 0xFFFF)):
-        raise InputError("lights: the array has to hold whole numbers from 0 to 65535")
+        raise InputError("lights: the array must hold whole numbers from 0 to 65535")
     return np.ascontiguousarray(array, np.uint16)
 
 

@@ -19,14 +19,14 @@ from .scenes import Camera, Scene
 __all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
 
 SETTINGS: tuple[str, ...] = tuple(_photile.setting_names())
-"""Names of the settings that `render` and `measure` take; docs/reference/settings.md says what they are."""
+"""Names of the settings that `render` and `measure` take; see docs/reference/settings.md."""
 
 Change = Union[float, str]
 Changes = Optional[Mapping[str, Change]]
 
 
 class LightState(NamedTuple):
-    """A light layer as it is in a picture."""
+    """The state of a light layer in a picture."""
 
     power: float
     """In `unit`."""
@@ -35,9 +35,9 @@ class LightState(NamedTuple):
     color: tuple[float, float, float]
     """Linear RGB of the light itself; luminance 1."""
     tint: tuple[float, float, float]
-    """What multiplies its layer on top."""
+    """An additional factor of its layer."""
     members: list[str]
-    """Lights of a group; none of a light alone."""
+    """The lights of a group; empty for a single light."""
 
 
 class Picture(Mapping[str, NDArray[np.float32]]):
@@ -48,7 +48,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
     view at a power of 1. Layers add up to `mix`.
 
     Changes of lights are a mapping of names to a factor of the power (``2``, ``0.5``, ``0``), or to
-    text as `photile relight` has it: ``"1500lm"``, ``"x2"``, ``"2700K"``, ``"#ffb070"``, ``"off"``.
+    text as for `photile relight`: ``"1500lm"``, ``"x2"``, ``"2700K"``, ``"#ffb070"``, ``"off"``.
     """
 
     def __init__(self, core: _photile.Picture, changes: Changes = None) -> None:
@@ -78,7 +78,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
 
     @property
     def statistics(self) -> list[dict[str, Any]]:
-        """What each stage of the rendering cost: seconds, processor seconds, bytes, figures."""
+        """The cost of each stage of the rendering: seconds, processor seconds, bytes, figures."""
         return self._core.statistics
 
     def __getitem__(self, light: str) -> NDArray[np.float32]:
@@ -99,7 +99,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         return self._core.unit_layer(light)
 
     def illuminance(self, light: Optional[str] = None) -> NDArray[np.float32]:
-        """(height, width) lux of the surfaces seen, of one light or of all together."""
+        """(height, width) lux of the visible surfaces, from one light or from all together."""
         if light is None:
             total = np.zeros((self.height, self.width), np.float32)
             for name in self:
@@ -111,7 +111,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         return layer * np.float32(state.power * lumens)
 
     def mix(self, changes: Changes = None) -> NDArray[np.float32]:
-        """The picture with other lights, in the time that it takes to add its layers.
+        """The picture with changed lights, in the time that it takes to add its layers.
 
         Parameters
         ----------
@@ -126,13 +126,13 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         Raises
         ------
         UsageError
-            There is no such light, the value is no change of one, or a light that is off in a
-            picture of a file is to be turned up.
+            There is no such light, the value is not a change of a light, or a light that is off in a
+            picture from a file is to be turned up.
         """
         return self._core.mix(self._changes + _listed(changes))
 
     def relit(self, changes: Changes) -> Picture:
-        """The same layers with other lights; nothing is copied. Errors as for `mix`."""
+        """The same layers with changed lights; nothing is copied. Errors as for `mix`."""
         picture = Picture(self._core)
         picture._changes = self._changes + _listed(changes)
         picture._core.lights(picture._changes)
@@ -191,14 +191,14 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         changes : mapping, optional
             See the class.
         exposure, automatic, view
-            Of a PNG, as for `display`.
+            For a PNG, as for `display`.
 
         Raises
         ------
         OutputError
-            It cannot be written; an existing file is kept then.
+            The file cannot be written; an existing file is kept then.
         UsageError
-            The name ends otherwise.
+            The name has another ending.
         """
         name, all_changes = os.fspath(file), self._changes + _listed(changes)
         if name.lower().endswith(".exr"):
@@ -207,7 +207,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
             display = {"exposure": exposure, "automatic": automatic, "view": view}
             self._core.save_png(name, all_changes, display)
         else:
-            raise UsageError(f"{name}: a picture is written as .exr or .png")
+            raise UsageError(f"{name}: pictures are written as .exr or .png")
 
     def _repr_png_(self) -> bytes:
         """What Jupyter shows."""
@@ -220,8 +220,8 @@ class Picture(Mapping[str, NDArray[np.float32]]):
 def png_of(pixels: NDArray[np.uint8]) -> bytes:
     """A PNG of (height, width, 3) sRGB values, such as those of `Picture.display`."""
     if pixels.ndim != 3 or pixels.shape[2] != 3 or pixels.dtype != np.uint8:
-        raise InputError(f"pixels: the array of {pixels.dtype} has shape {pixels.shape}, and has to "
-                         "be one of uint8 and have (height, width, 3)")
+        raise InputError(f"pixels: the array of {pixels.dtype} has shape {pixels.shape}; it must "
+                         "be of uint8 and have shape (height, width, 3)")
     height, width, _ = pixels.shape
     rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], axis=1)
     file = io.BytesIO(b"")
@@ -234,7 +234,7 @@ def png_of(pixels: NDArray[np.uint8]) -> bytes:
 
 
 def _listed(changes: Changes) -> _photile.Changes:
-    """As the extension takes them."""
+    """The changes as the extension takes them."""
     listed = []
     for name, value in (changes or {}).items():
         try:
@@ -262,24 +262,24 @@ def render(
     ----------
     scene : Scene
     camera : Camera, str or int, optional
-        One of its own, or one of the scene by name or number; the first where it is left out.
+        A camera, or one of the scene's by name or number; by default the first.
     size : (width, height), optional
-        Pixels; 512 x 384, or as wide as the camera says.
+        Pixels; by default 512 x 384, or the width that fits the camera's aspect ratio.
     quality : {"draft", "good", "final"}
-        Settings that belong together; those given by name come on top.
+        A set of settings; those given by name override it.
     integrator : {"photon-map", "path"}
-        Paths are unbiased and need no OpenCL device; their noise is settled by samples_per_pixel.
+        Paths are unbiased and need no OpenCL device; samples_per_pixel controls their noise.
     lumen_per_watt : float
-        What turns watts into lumens.
+        The factor between watts and lumens.
     device : str
         An OpenCL device, or several, as `photile devices` lists them: "" is the best; else
         "0:0", "cpu", "gpu", a part of a name, or "all".
     progress : callable, optional
         ``progress(stage, done, total, unit)`` is called a few times a second in the calling thread.
-        What it raises stops the work and is raised here, once it has stopped. Notes to the user go
-        to the logger "photile".
+        An exception from it stops the work and is raised here once it has stopped. Notes to the user
+        go to the logger "photile".
     **settings
-        By their names in ``photile.SETTINGS``: ``photons_emitted=100_000``, ``neighbours=80``,
+        Settings by their names in ``photile.SETTINGS``: ``photons_emitted=100_000``, ``neighbours=80``,
         ``seed=7``, ``maps="naive"``.
 
     Returns
@@ -311,7 +311,7 @@ def render(
 
 
 def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Picture:
-    """Read a picture with light layers, of photile, Blender or Arnold, and change its lights.
+    """Read a picture with light layers, from photile, Blender or Arnold, and change its lights.
 
     Parameters
     ----------
@@ -329,6 +329,6 @@ def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Pict
     InputError
         Names the file, which is missing, damaged or has no light layers.
     UsageError
-        There is no such light, or one that is off in the file is to be turned up.
+        There is no such light, or a light that is off in the file is to be turned up.
     """
     return Picture(_photile.read_picture(os.fspath(file)), changes)

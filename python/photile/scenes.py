@@ -1,4 +1,4 @@
-"""Scenes: read from files, or made of arrays."""
+"""Scenes: read from files, or made from arrays."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ class Material:
     texture : (height, width, 3 or 4) uint8 array, optional
         sRGB texels, row 0 at the top; needs ``Scene(uv=...)``.
     interaction : {"opaque", "mirror", "glass"}
-        Photons are stored on opaque surfaces alone.
+        Photons are stored on opaque surfaces only.
     specular : (3,) floats
         Reflectance at normal incidence of the glossy lobe of an opaque surface, or of a mirror.
     roughness : float
         GGX alpha of the glossy lobe, in (0, 1].
     transmission : (3,) floats
-        Colour of what passes a surface of glass.
+        Colour of the light that passes a surface of glass.
     index_of_refraction : float
         Of glass.
     thin : bool
         Glass without volume: rays are not bent.
     opacity : float
-        Share of the surface that is there, in [0, 1].
+        Fraction of the surface that is present, in [0, 1].
     """
 
     name: str = "material"
@@ -67,29 +67,29 @@ class Light:
     Parameters
     ----------
     name : str
-        Of its layer in pictures; made unique where several have the same.
+        Name of its layer in pictures; made unique if several lights have the same name.
     power : float
-        Lumens, or watts in a scene of that unit. Not of directional lights and environments.
+        Lumens, or watts in a scene of that unit. Not for directional lights and environments.
     kind : {"point", "area", "spot", "directional", "environment"}
-        Area lights are triangles of the scene, which shine from their fronts.
+        Area lights are triangles of the scene, which emit from their fronts.
     triangles : sequence of int
-        Of an area light: rows of ``Scene(triangles=...)``.
+        For an area light: row numbers in ``Scene(triangles=...)``.
     two_sided : bool
-        Of an area light: it shines from both sides.
+        For an area light: it emits from both sides.
     color : (3,) floats
         Linear RGB of any luminance above 0; only the hue and saturation count.
     position : (3,) floats
         Metres, of point and spot lights.
     direction : (3,) floats
-        Where spot and directional lights shine to, of any length.
+        The direction in which spot and directional lights emit, of any length.
     inner_angle, outer_angle : float
-        Degrees from the axis of a spot light at which its light begins to fall off, and ends.
+        Degrees from the axis of a spot light at which its light begins to fall off and reaches 0.
     illuminance : float
         Lux (or W/m2) of a directional light on a surface that faces it.
     diameter : float
-        Degrees of a directional light's disc, such as 0.53 of the sun; 0 is parallel light.
+        Degrees of a directional light's disc, such as 0.53 for the sun; 0 is parallel light.
     texels : (height, width, 3) array, optional
-        Of an environment: radiance in cd/m2 (or W/(m2 sr)) by direction, row 0 at the zenith (y).
+        For an environment: radiance in cd/m2 (or W/(m2 sr)) by direction, row 0 at the zenith (y).
     group : str
         Lights of one group share a layer.
     """
@@ -121,7 +121,7 @@ class Camera:
     target : (3,) floats
         A point that it looks at.
     up : (3,) floats
-        What is upwards in the picture; y in glTF files.
+        The direction that is upwards in the picture; y in glTF files.
     field_of_view : float
         Degrees from the lower to the upper edge of the picture.
     name : str
@@ -144,7 +144,7 @@ class Camera:
         )
         forward = np.subtract(target, position)
         if not np.all(np.isfinite(forward)) or not np.any(forward):
-            raise UsageError(f"camera '{self.name}': it looks nowhere; give another target")
+            raise UsageError(f"camera '{self.name}': its target is its own position; give another target")
         return (
             self.name,
             position,
@@ -156,26 +156,26 @@ class Camera:
 
 
 def floats(values: ArrayLike, name: str, kind: Any = np.float32) -> NDArray[Any]:
-    """A C-contiguous array: the same one where it is such. Raises InputError where it is none."""
+    """A C-contiguous array; the argument itself if it is one. Raises InputError if it is no array."""
     try:
         return np.ascontiguousarray(values, kind)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name}: {reprlib.repr(values)} is no array of numbers") from None
+        raise InputError(f"{name}: {reprlib.repr(values)} is not an array of numbers") from None
 
 
 def _number(value: Any, name: str) -> float:
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
-        raise UsageError(f"{name}: {reprlib.repr(value)} is no number") from None
+        raise UsageError(f"{name}: {reprlib.repr(value)} is not a number") from None
 
 
 def vector(values: ArrayLike, name: str) -> Vector:
     array = floats(values, name, np.float64)
     if array.shape != (3,):
-        raise InputError(f"{name}: {reprlib.repr(values)} is no three numbers")
+        raise InputError(f"{name}: {reprlib.repr(values)} is not three numbers")
     if not np.all(np.isfinite(array)):
-        raise InputError(f"{name}: {reprlib.repr(values)} holds a number that is none")
+        raise InputError(f"{name}: {reprlib.repr(values)} holds NaN or an infinite number")
     x, y, z = (float(value) for value in array)
     return (x, y, z)
 
@@ -183,7 +183,7 @@ def vector(values: ArrayLike, name: str) -> Vector:
 def _per_corner(
     values: Optional[ArrayLike], name: str, columns: int, triangles: NDArray[Any], vertices: int
 ) -> NDArray[np.float32]:
-    """Rows per vertex; none where there are no values."""
+    """Rows per vertex; no rows if there are no values."""
     if values is None:
         return np.empty((0, columns), np.float32)
     array = floats(values, name)
@@ -193,7 +193,7 @@ def _per_corner(
     if array.shape == (vertices, columns):
         return np.ascontiguousarray(array)
     raise InputError(
-        f"{name}: the array has shape {array.shape}, and has to have {(vertices, columns)}"
+        f"{name}: the array has shape {array.shape}; it must have shape {(vertices, columns)}"
         f" or, with triangles of corners, {expected}"
     )
 
@@ -203,14 +203,14 @@ def _indices(values: ArrayLike, count: int, name: str) -> NDArray[np.uint32]:
     try:
         array = np.asarray(values)
     except ValueError:  # rows of several lengths
-        raise InputError(f"{name}: {reprlib.repr(values)} is no array of whole numbers") from None
+        raise InputError(f"{name}: {reprlib.repr(values)} is not an array of whole numbers") from None
     if array.size == 0:
         return np.empty(array.shape, np.uint32)
     if array.dtype.kind not in "iu":
-        raise InputError(f"{name}: the array has type {array.dtype}, and has to hold whole numbers")
+        raise InputError(f"{name}: the array has type {array.dtype}; it must hold whole numbers")
     if array.min() < 0 or array.max() >= count:
         wrong = array.min() if array.min() < 0 else array.max()
-        raise InputError(f"{name}: there is no number {wrong}; there are {count}, from 0")
+        raise InputError(f"{name}: index {wrong} is out of range; there are {count}, counted from 0")
     return np.ascontiguousarray(array, np.uint32)
 
 
@@ -221,7 +221,7 @@ class Scene:
     ----------
     triangles : (n, 3, 3) array of floats, or (n, 3) array of ints
         Corners of each triangle in metres, counter-clockwise as seen from its front; or, with
-        ``vertices``, their rows there.
+        ``vertices``, the row numbers of the corners there.
     vertices : (v, 3) array, optional
         Metres.
     normals : (n, 3, 3) or (v, 3) array, optional
@@ -229,27 +229,27 @@ class Scene:
     uv : (n, 3, 2) or (v, 2) array, optional
         Coordinates of the materials' textures, (0, 0) at the upper left.
     materials : sequence of Material
-        One white one where none is given.
+        A single white material if none is given.
     triangle_materials : (n,) array of ints, optional
-        The material of each triangle; all have the first where it is left out.
+        The material of each triangle; by default all have the first.
     lights : sequence of Light
         At least one.
     cameras : sequence of Camera
-        One that shows the whole scene where none is given.
+        A camera that shows the whole scene if none is given.
     unit : {"lumen", "watt"}
-        Of all powers: pictures are in cd/m2, or in W/(m2 sr).
+        The unit of all powers: pictures are in cd/m2 or in W/(m2 sr).
     name : str
         For messages.
 
     Raises
     ------
     InputError
-        For arrays that do not fit, no triangles or lights, or numbers that are none.
+        For arrays that do not fit, missing triangles or lights, and NaN or infinite numbers.
 
     Notes
     -----
-    Triangles without area, and those that lie exactly on others, are left out and counted in
-    `dropped_triangles`; the corners of a triangle are stored in an order of the library's own.
+    Triangles without area, and those that coincide with others, are left out and counted in
+    `dropped_triangles`; the library chooses the order in which it stores the corners of a triangle.
     """
 
     _core: _photile.Scene
@@ -272,7 +272,7 @@ class Scene:
             corners = floats(triangles, "triangles", np.float64)
             if corners.ndim != 3 or corners.shape[1:] != (3, 3):
                 raise InputError(
-                    f"triangles: the array has shape {corners.shape}, and has to have (n, 3, 3)"
+                    f"triangles: the array has shape {corners.shape}; it must have shape (n, 3, 3)"
                     " or, with vertices, (n, 3)"
                 )
             points = np.ascontiguousarray(corners.reshape(-1, 3))
@@ -281,12 +281,12 @@ class Scene:
             points = floats(vertices, "vertices", np.float64)
             if points.ndim != 2 or points.shape[1] != 3:
                 raise InputError(
-                    f"vertices: the array has shape {points.shape}, and has to have (v, 3)"
+                    f"vertices: the array has shape {points.shape}; it must have shape (v, 3)"
                 )
             faces = _indices(triangles, len(points), "triangles")
             if faces.ndim != 2 or faces.shape[1] != 3:
                 raise InputError(
-                    f"triangles: the array has shape {faces.shape}, and has to have (n, 3)"
+                    f"triangles: the array has shape {faces.shape}; it must have shape (n, 3)"
                 )
         materials = [_part(one, Material, "materials") for one in materials or (Material(),)]
         lights = [_part(one, Light, "lights") for one in lights]
@@ -320,25 +320,25 @@ class Scene:
 
     @property
     def unit(self) -> str:
-        """"lumen" or "watt": what the powers of `lights` and `layers` are in."""
+        """"lumen" or "watt": the unit of the powers of `lights` and `layers`."""
         return self._core.unit
 
     @property
     def origin(self) -> Vector:
         """Where (0, 0, 0) of `vertices` and photons lies in the file's world, metres.
 
-        It is (0, 0, 0) but for scenes that are far from there, measured by their size.
+        It is (0, 0, 0) except for scenes that are far from there in relation to their size.
         """
         return self._core.origin
 
     @property
     def warnings(self) -> list[str]:
-        """What the import found worth telling, one line each."""
+        """The warnings of the import, one line each."""
         return self._core.warnings
 
     @property
     def dropped_triangles(self) -> int:
-        """How many had no area, no finite corners, or lay exactly on others."""
+        """The number of triangles that had no area or no finite corners, or coincided with others."""
         return self._core.dropped_triangles
 
     @property
@@ -348,17 +348,18 @@ class Scene:
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
-        """(n, 3) rows of `vertices`; a read-only view."""
+        """(n, 3) row numbers in `vertices`; a read-only view."""
         return self._core.triangles
 
     @property
     def triangle_material(self) -> NDArray[np.uint32]:
-        """(n,) numbers of `materials`; a read-only view."""
+        """(n,) indices into `materials`; a read-only view."""
         return self._core.triangle_material
 
     @property
     def triangle_light(self) -> NDArray[np.uint32]:
-        """(n,) numbers of `lights`, ``photile.NONE`` where it is no lamp; a read-only view."""
+        """(n,) indices into `lights`, ``photile.NONE`` for triangles that are not lights; a read-only
+        view."""
         return self._core.triangle_light
 
     @property
@@ -373,22 +374,22 @@ class Scene:
 
     @property
     def materials(self) -> list[Material]:
-        """Those of the scene, without their textures."""
+        """The materials of the scene, without their textures."""
         return [Material(**fields) for fields in self._core.materials()]
 
     @property
     def lights(self) -> list[Light]:
-        """Those of the scene, with their triangles in it."""
+        """The lights of the scene, with their triangles in it."""
         return [Light(**fields) for fields in self._core.lights()]
 
     @property
     def layers(self) -> dict[str, float]:
-        """Powers by layer of the picture: a light, or the lights of a group."""
+        """The power of each layer of the picture: of a light, or of the lights of a group."""
         return dict(self._core.layers())
 
     @property
     def cameras(self) -> list[Camera]:
-        """Those of the file, or the one that was placed; never none."""
+        """The cameras of the file, or the one that was placed; there is always at least one."""
         return [
             Camera(position, vector(np.add(position, forward), "target"), up, float(np.degrees(angle)),
                    name, aspect)
@@ -396,7 +397,7 @@ class Scene:
         ]
 
     def _camera(self, camera: Union[None, int, str, Camera]) -> Union[int, _photile.CameraParts]:
-        """As the extension takes it. Cameras of the scene keep all their bits."""
+        """The camera as the extension takes it. Cameras of the scene keep all their bits."""
         if isinstance(camera, Camera):
             return camera._parts()
         names = [parts[0] for parts in self._core.cameras()]
@@ -406,9 +407,9 @@ class Scene:
             return names.index(camera)
         number = camera or 0
         if not isinstance(number, (int, np.integer)):
-            raise UsageError(f"camera: {camera!r} is neither a camera nor a name or number of one")
+            raise UsageError(f"camera: {camera!r} is neither a camera nor the name or number of one")
         if not 0 <= number < len(names):
-            raise UsageError(f"there is no camera {number}; there are {len(names)}, from 0")
+            raise UsageError(f"there is no camera {number}; there are {len(names)}, counted from 0")
         return number
 
     def __repr__(self) -> str:
@@ -419,17 +420,17 @@ class Scene:
 
 def _part(part: Any, kind: type[_Part], name: str) -> _Part:
     if not isinstance(part, kind):
-        raise UsageError(f"{name}: {reprlib.repr(part)} is no photile.{kind.__name__}")
+        raise UsageError(f"{name}: {reprlib.repr(part)} is not a photile.{kind.__name__}")
     return part
 
 
 def _fields(part: Union[Material, Light]) -> dict[str, Any]:
-    """The fields by name, arrays as they are."""
+    """The fields by name, with arrays unchanged."""
     return dict(part.__dict__)
 
 
 def _text(values: Any, *separators: str) -> str:
-    """As the command has them, for the parsers that refuse what does not fit."""
+    """The values in the form of the command line, whose parsers refuse what does not fit."""
     parts = [str(value) for value in values] if isinstance(values, (tuple, list)) else [str(values)]
     between = iter(separators)
     text, separator = "", ""
@@ -467,23 +468,23 @@ def load(
     file : path
         The scene.
     scene : str
-        Name or number of one of the scenes in a glTF file; the file's default where it is "".
+        Name or number of one of the scenes in a glTF file; "" means the file's default.
     up : str
-        The axis of the file that points up, "x" to "-z"; y where it is "".
+        The axis of the file that points up, "x" to "-z"; "" means y.
     metres_per_unit : float
-        Of lengths in the file: 0.001 where they are millimetres.
+        Metres per unit of the lengths in the file: 0.001 for millimetres.
     emissive_scale : float
-        Factor of emissive radiance; 683 mends files of Blender.
+        Factor of emissive radiance; 683 corrects files from Blender.
     allow_outside : bool
         Textures and buffers may lie outside the scene's folder.
     light_groups : mapping of patterns of light names to groups
         Lights of a group share a layer of the picture.
     profiles : mapping of light names to files
-        LM-63 (.ies) or EULUMDAT (.ldt) files of point and spot lights.
+        LM-63 (.ies) or EULUMDAT (.ldt) files for point and spot lights.
     temperatures : mapping of light names to kelvin
         Colours of lights.
     panels : mapping of node names to (width, height, lumens)
-        Luminous rectangles at nodes of a glTF file, metres; they shine along -z.
+        Luminous rectangles at nodes of a glTF file, metres; they emit along -z.
     environment : path, optional
         A picture of the surroundings, equirectangular.
     environment_scale, environment_rotation : float
@@ -495,9 +496,9 @@ def load(
     ground : float
         Reflectance of even ground below the horizon, which the sun and the sky light; 0 is black.
     lumen_per_watt : float
-        What turns lumens and lux into the watts of an OBJ scene.
+        The factor between lumens or lux and the watts of an OBJ scene.
     progress : callable, optional
-        See `render`; here it is only asked whether Ctrl-C was pressed.
+        See `render`; here it only serves to notice Ctrl-C.
 
     Returns
     -------
@@ -506,7 +507,7 @@ def load(
     Raises
     ------
     InputError
-        Names the file and the remedy: missing, malformed, beyond a limit, without lights.
+        Names the file and the remedy: the file is missing, malformed, beyond a limit or without lights.
     UsageError
         The file has no such scene or light.
     """

@@ -55,7 +55,7 @@ std::span<const Row> rows_of(const Array<T>& array, const char* name) {
   constexpr auto columns = static_cast<py::ssize_t>(sizeof(Row) / sizeof(T));
   if (array.ndim() != 2 || array.shape(1) != columns) {
     throw InputError(std::string(name) + ": the array has shape " + shape_text(array) +
-                     ", and has to have (n, " + std::to_string(columns) + ")");
+                     "; it must have shape (n, " + std::to_string(columns) + ")");
   }
   return {reinterpret_cast<const Row*>(array.data()), static_cast<std::size_t>(array.shape(0))};
 }
@@ -65,7 +65,7 @@ template <class T>
 std::span<const T> values_of(const Array<T>& array, const char* name) {
   if (array.ndim() != 1) {
     throw InputError(std::string(name) + ": the array has shape " + shape_text(array) +
-                     ", and has to have (n,)");
+                     "; it must have shape (n,)");
   }
   return {array.data(), static_cast<std::size_t>(array.shape(0))};
 }

@@ -38,7 +38,7 @@ py::list measure(const std::shared_ptr<Scene>& scene, const Array<double>& point
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double length = glm::length(directions[i]);
     if (!(length > 0) || !std::isfinite(length)) {
-      throw InputError("normals: number " + std::to_string(i) + " has no direction");
+      throw InputError("normals: normal " + std::to_string(i) + " has length 0");
     }
     sensors.push_back({places[i], directions[i] / length});
   }

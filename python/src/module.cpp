@@ -37,7 +37,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const photile::Error& error) {
     raise("Error", error);
   } catch (const py::cast_error&) {
-    raise("UsageError", photile::UsageError("a value is of another type than its parameter's"));
+    raise("UsageError", photile::UsageError("a value has another type than its parameter"));
   }
 }
 

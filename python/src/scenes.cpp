@@ -44,7 +44,7 @@ E word(const std::array<const char*, n>& words, const std::string& found, const 
 Texture texture_of(const std::string& name, const Array<std::uint8_t>& texels) {
   if (texels.ndim() != 3 || (texels.shape(2) != 3 && texels.shape(2) != 4) || texels.size() == 0) {
     throw InputError("texture of material '" + name + "': the array has shape " +
-                     shape_text(texels) + ", and has to have (height, width, 3 or 4)");
+                     shape_text(texels) + "; it must have shape (height, width, 3 or 4)");
   }
   const auto components = static_cast<std::size_t>(texels.shape(2));
   const auto pixels = static_cast<std::size_t>(texels.shape(0) * texels.shape(1));
@@ -82,13 +82,13 @@ Material material_of(SceneBuilder& builder, const py::dict& fields) {
 EnvironmentMap surroundings_of(const std::string& name, const Array<float>& texels) {
   if (texels.ndim() != 3 || texels.shape(2) != 3 || texels.size() == 0) {
     throw InputError("environment '" + name + "': the array has shape " + shape_text(texels) +
-                     ", and has to have (height, width, 3)");
+                     "; it must have shape (height, width, 3)");
   }
   const auto* const rows = reinterpret_cast<const glm::vec3*>(texels.data());
   const auto pixels = static_cast<std::size_t>(texels.shape(0) * texels.shape(1));
   if (!std::all_of(texels.data(), texels.data() + texels.size(),
                    [](float texel) { return std::isfinite(texel); })) {
-    throw InputError("environment '" + name + "': a texel is no finite number");
+    throw InputError("environment '" + name + "': a texel is not a finite number");
   }
   return {name,
           static_cast<int>(texels.shape(1)),
@@ -292,7 +292,7 @@ Camera camera_of(const Scene& scene, const py::tuple& parts) {
   camera.name = name;
   camera.aspect_ratio = value_of<double>(parts[5], of + "aspect_ratio");
   if (!(camera.aspect_ratio >= 0) || !std::isfinite(camera.aspect_ratio)) {
-    throw UsageError(of + "aspect_ratio: it is width over height, or 0");
+    throw UsageError(of + "aspect_ratio: give width divided by height, or 0");
   }
   return camera;
 }

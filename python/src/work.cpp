@@ -129,11 +129,11 @@ Working::Working() {
   Work& work = all_work();
   if (is_forked()) {
     throw UsageError(
-        "this process was forked off one that has used photile, and lacks its threads; start it "
-        "anew, as multiprocessing.get_context('spawn') does");
+        "this process was forked from one that has used photile, and lacks its threads; start it "
+        "with multiprocessing.get_context('spawn')");
   }
   const std::lock_guard lock(work.mutex);
-  if (work.ending) throw UsageError("the interpreter ends");
+  if (work.ending) throw UsageError("the interpreter is shutting down");
   work.process = getpid();
   ++work.under_way;
 }

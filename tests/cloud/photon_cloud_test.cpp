@@ -304,7 +304,8 @@ TEST_CASE("what is wrong with photons or points is said in one line") {
   Cloud flat = whole;
   flat.normal.clear();
   PhotonCloud plain(device(), flat.photons(), {.radius = 0.1});
-  CHECK_THROWS_WITH(plain.nearest(flat.points, flat.point_normals, 3), Contains("no photon has"));
+  CHECK_THROWS_WITH(plain.nearest(flat.points, flat.point_normals, 3),
+                    Contains("the photons have none"));
 }
 
 TEST_CASE("C gets the neighbours that C++ gets, and errors as a status and a line") {

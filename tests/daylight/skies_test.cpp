@@ -231,7 +231,7 @@ TEST_CASE("weather of an hour is lit by the sun of its middle, whatever time of 
   CHECK_THAT(facts[1].second, Catch::Contains("6/21 hour 10") && Catch::Contains("9:00 to 10:00") &&
                                   Catch::Contains("100 W/m2 direct") &&
                                   Catch::Contains("110 W/m2 diffuse") &&
-                                  Catch::Contains("sun is that of 9:30"));
+                                  Catch::Contains("sun stands where it is at 9:30"));
   // With a sky of its own the time places the sun.
   options.sky = Sky::parse("perez=600,120");
   const auto asked = weather::sun_position(site, {2026, 6, 21, 10.0});

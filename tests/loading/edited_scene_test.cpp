@@ -217,7 +217,7 @@ TEST_CASE("lights of options are told, and no file is written over another") {
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("sky") && Contains("option"));
   CHECK_THROWS_WITH(writing::write_edited_scene(file, options, mix, "a"),
-                    Contains("room.a.gltf") && Contains("there already"));
+                    Contains("room.a.gltf") && Contains("exists already"));
 }
 
 }  // namespace photile::test

@@ -306,7 +306,7 @@ TEST_CASE("damaged Draco data is refused by the mesh's name") {
   CHECK_THAT(refusal(other, buffer), Catch::Contains("an attribute that the file names"));
   json fewer = document;
   fewer["accessors"][0]["count"] = 5;
-  CHECK_THAT(refusal(fewer, buffer), Catch::Contains("points of 5"));
+  CHECK_THAT(refusal(fewer, buffer), Catch::Contains("the accessor 5"));
   // What follows the header and the kind of traversal are the numbers of vertices and of faces.
   const std::size_t counts = 12;
   REQUIRE(buffer[8] == 1);  // edgebreaker

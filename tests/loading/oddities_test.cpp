@@ -30,7 +30,7 @@ TEST_CASE("a face that the file has twice is one, whatever its winding") {
   // triangulation of a polygon depends neither on its winding nor on its first corner.
   CHECK(scene.triangle_count() == 4);
   CHECK(scene.report.duplicate_triangles == 2);
-  CHECK(warns(scene, {"2 triangles that lie exactly on others"}));
+  CHECK(warns(scene, {"2 triangles that coincide with others"}));
 }
 
 TEST_CASE("two materials in one place that face away from each other are two sides") {

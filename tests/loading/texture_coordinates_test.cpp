@@ -63,7 +63,7 @@ TEST_CASE("without coordinates the factors count where textures would vary them"
 TEST_CASE("a normal map alone without coordinates leaves the colour as it is") {
   const Scene scene = square_with(
       {{204, 128, 230}}, [](json& material) { material["normalTexture"] = texture(0, 1); });
-  CHECK(warns(scene, {"TEXCOORD_1", "what its factors say"}));
+  CHECK(warns(scene, {"TEXCOORD_1", "its base-colour factor"}));
   CHECK(double{trace::reflectance(scene, middle(scene)).albedo.g} == Approx(0.6));
 }
 

@@ -94,13 +94,13 @@ def test_bad_files_are_told_in_one_line(tmp_path):
     damaged.write_bytes(data[:60] + bytes([data[60] ^ 255]) + data[61:])  # packed bytes of product.xml
     fluxes = [archive(tmp_path / f"flux{i}.gldf", PRODUCT.replace("1500", flux))
               for i, flux in enumerate(("NaN", "1e999", "-1", "bright"))]
-    for file, told in ((tmp_path / "text.gldf", "is no GLDF file"),
+    for file, told in ((tmp_path / "text.gldf", "not a GLDF file"),
                        (archive(tmp_path / "none.gldf", empty), "no variant has a photometric file"),
-                       (archive(tmp_path / "bad.gldf", "<Root>"), "is no GLDF file"),
-                       (damaged, "is no GLDF file"),
+                       (archive(tmp_path / "bad.gldf", "<Root>"), "not a GLDF file"),
+                       (damaged, "not a GLDF file"),
                        (archive(tmp_path / "bz2.gldf", method=zipfile.ZIP_BZIP2), "nor deflated"),
                        (archive(tmp_path / "code.gldf", '<?xml version="1.0" encoding="x"?><Root/>'),
-                        "is no GLDF file"),
+                        "not a GLDF file"),
                        *((file, "has a flux of") for file in fluxes[:-1]),
                        (fluxes[-1], "bright"),
                        (tmp_path / "absent.gldf", "absent.gldf")):

@@ -137,7 +137,7 @@ def test_the_sky_and_a_temperature_of_a_file(tmp_path):
         ({"normals": np.zeros((5, 3))}, "normals"),
         ({"uv": np.zeros((12, 3, 3))}, "uv"),
         ({"triangle_materials": [1] * 12}, "triangle_materials"),
-        ({"lights": [photile.Light("a", 1, "area", triangles=[12])]}, "no number 12"),
+        ({"lights": [photile.Light("a", 1, "area", triangles=[12])]}, "index 12"),
         ({"lights": [photile.Light("a", 1, "area")]}, "'a'"),
         ({"lights": [photile.Light("a", float("nan"))]}, "'a'"),
         ({"lights": [photile.Light("a", 1, "candle")]}, "candle"),

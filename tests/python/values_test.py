@@ -100,8 +100,8 @@ def test_of_a_grid(name, value):
 
 def test_places_beyond_any_scene_are_refused():
     for far in (1e13, 1e30, 1e300):
-        check("no place", lambda: measure(points=[[0, far, 0]]))
-        check("no place", lambda: scene(cameras=[Camera((0, far, 0), (1, 0, 0))]))
+        check("not within", lambda: measure(points=[[0, far, 0]]))
+        check("within", lambda: scene(cameras=[Camera((0, far, 0), (1, 0, 0))]))
     for pixels in (np.zeros((2, 2, 4), np.uint8), np.zeros((2, 2), np.uint8), np.zeros((2, 2, 3))):
         check("pixels", lambda: photile.png_of(pixels))
 

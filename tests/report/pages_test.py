@@ -115,7 +115,7 @@ def test_templates_of_ones_own_replace_and_extend_those_of_photile(record, tmp_p
         (tmp_path / "report.html").write_text(bad)
         with pytest.raises(pages.BadInput, match=said):
             Report(record, str(tmp_path)).page()
-    with pytest.raises(pages.BadInput, match="no folder"):
+    with pytest.raises(pages.BadInput, match="not a folder"):
         Report(record, str(tmp_path / "none"))
     record["report"]["language"] = "xx"
     with pytest.raises(pages.UnknownLanguage, match="en, de, fr"):
@@ -148,7 +148,7 @@ def test_results_of_other_commands_are_included(record):
     {"observers": [], "plane": {**PLANE, "columns": 99999, "rows": 99999}}])
 def test_what_is_no_result_is_refused_by_name(record, content):
     record["report"]["included"] = [{"file": "b.json", "content": content}]
-    with pytest.raises(pages.BadInput, match="b.json: is no result.*photile glare"):
+    with pytest.raises(pages.BadInput, match="b.json: this is not a result.*photile glare"):
         Report(record)
 
 

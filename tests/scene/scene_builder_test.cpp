@@ -217,7 +217,8 @@ TEST_CASE("what is wrong with a mesh or a light is said in one line that names t
   CHECK_THAT(refusal([&](auto& m) { m.uv = short_uv; }), Contains("3 uv; it must have none or 4"));
   CHECK_THAT(refusal([&](auto& m) { m.normals = bad_normals; }), Contains("normal of vertex 1"));
   CHECK_THAT(refusal([&](auto& m) { m.light = 7; }), Contains("light 7, and there are 1"));
-  CHECK_THAT(refusal([&](auto& m) { m.light = bulb; }), Contains("'bulb', which is no area light"));
+  CHECK_THAT(refusal([&](auto& m) { m.light = bulb; }),
+             Contains("'bulb', which is not an area light"));
   CHECK_THAT(refusal([&](auto& m) { m.material = paper; }),
              Contains("without uv") && Contains("'paper'"));
   shape.triangles[3].y = 4;
@@ -295,7 +296,7 @@ TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, a
   stages_refuse([](Scene& s) { s.triangles[4].z = 8; }, "of 8 vertices");
   stages_refuse([](Scene& s) { s.vertices[3].y = nan; }, "vertex 3 lies at");
   stages_refuse([](Scene& s) { s.triangle_material[5] = 1; }, "triangle 5 has material 1 of 1");
-  stages_refuse([](Scene& s) { s.triangle_light[5] = 0; }, "light 0, which is no area light");
+  stages_refuse([](Scene& s) { s.triangle_light[5] = 0; }, "light 0, which is not an area light");
   stages_refuse([](Scene& s) { s.materials[0].diffuse_texture = 0; }, "has texture 0 of 0");
   stages_refuse([](Scene& s) { s.materials[0].diffuse.g = nan; }, "reflectances lie in [0, 1]");
   for (const double power : {double{nan}, -1.0, 1e300}) {

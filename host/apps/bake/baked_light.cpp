@@ -14,7 +14,7 @@ namespace photile::bake {
 
 namespace {
 
-/// Texels whose nodes are valued at a time: bounds the memory of their hits.
+/// Texels whose nodes are filled at a time: bounds the memory of their hits.
 constexpr std::size_t texels_per_fill = std::size_t{1} << 16;
 
 void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_face) {

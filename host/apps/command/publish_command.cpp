@@ -119,7 +119,7 @@ class LitRoom {
     return with_one_exposure(shown_as(options, *picture), std::span(&only, 1));
   }
 
-  /// As GatheredNodes::errors; none where photons value nodes.
+  /// As GatheredNodes::errors; none where photons fill nodes.
   std::optional<LightTable> errors() {
     const cache::GatheredNodes* nodes = session_.light().gathered();
     return nodes ? std::optional(nodes->errors(session_.light().cache()->maps().values()))

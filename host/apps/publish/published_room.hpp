@@ -53,7 +53,7 @@ struct PublishedRoom {
   const bake::BakedLight* light;  ///< of the atlas; null where a server sends it (serve/)
   int edition = 0;                ///< of a page whose light a server sends, from 1
   const LightMix& mix;            ///< as the page opens
-  const LightTable* node_errors;  ///< as GatheredNodes::errors; null where photons value nodes ...
+  const LightTable* node_errors;  ///< as GatheredNodes::errors; null where photons fill nodes ...
   double relative_error = 0;      ///< ... which all err by this part
   std::vector<Preset> presets;
   SkyHours hours;

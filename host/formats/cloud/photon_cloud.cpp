@@ -57,8 +57,8 @@ void check(const CloudPhotons& photons, const CloudParameters& parameters) {
                                  limits::max_stored_photons));
   }
   if (!(parameters.radius > 0) || !(parameters.radius <= limits::max_radius)) {
-    throw UsageError(
-        fmt::format("photon cloud: radius {} m: must be a positive number", parameters.radius));
+    throw UsageError(fmt::format("photon cloud: the radius is {} m; it must be a positive number",
+                                 parameters.radius));
   }
   check_setting("angle_degrees", setting_value(parameters.angle_degrees));
   check_setting("photons_per_cell", setting_value(parameters.photons_per_cell));
@@ -70,7 +70,7 @@ void check(const CloudPhotons& photons, const CloudParameters& parameters) {
   for (std::size_t i = 0; i < photons.flux.size(); ++i) {
     const glm::vec3& flux = photons.flux[i];
     if (std::isfinite(flux.x) && std::isfinite(flux.y) && std::isfinite(flux.z)) continue;
-    throw InputError(fmt::format("photon cloud: photon {} has a flux that is no number", i));
+    throw InputError(fmt::format("photon cloud: photon {} has a flux that is not a number", i));
   }
 }
 
@@ -104,8 +104,9 @@ void check(const NeighbourSearch& search) {
   check_setting("neighbours", setting_value(search.k));
   check_setting("angle_degrees", setting_value(search.angle_degrees));
   if (!(search.max_distance > 0)) {
-    throw UsageError(fmt::format("neighbours: largest distance {} m: must be a positive number",
-                                 search.max_distance));
+    throw UsageError(
+        fmt::format("neighbours: the largest distance is {} m; it must be a positive number",
+                    search.max_distance));
   }
   if (!search.normals.empty() || !search.query_normals.empty()) {
     check_size("normals", search.normals.size(), search.points.size(), "points", "neighbours");
@@ -205,14 +206,17 @@ PrimaryHits PhotonCloud::Impl::place(std::span<const glm::vec3> points,
   if (has_normals || !normals.empty())
     check_size("normals", normals.size(), points.size(), "points");
   if (!has_normals && !normals.empty()) {
-    throw InputError("photon cloud: the points have normals, but no photon has one to compare");
+    throw InputError(
+        "photon cloud: the points have normals, but the photons have none; leave out the normals "
+        "of the points");
   }
   check_places("photon cloud: point", points);
   check_normals("photon cloud: point", normals);
   const std::size_t photons = positions.size();
   if (points.size() > limits::max_stored_photons - photons) {
-    throw UsageError(fmt::format("photon cloud: {} points at once beside {} photons; ask for fewer",
-                                 points.size(), photons));
+    throw UsageError(fmt::format(
+        "photon cloud: {} points and {} photons are too many at once; pass fewer points",
+        points.size(), photons));
   }
   const auto normal_of = [&](std::size_t i) {
     return normals.empty() ? glm::vec3(0, 0, 1) : normals[i];

@@ -81,10 +81,10 @@ std::vector<unsigned char> read_regular_file(const std::filesystem::path& file,
   if (descriptor.value() < 0) throw_system_error();
   struct stat status {};
   if (::fstat(descriptor.value(), &status) != 0) throw_system_error();
-  if (!S_ISREG(status.st_mode)) throw ResourceError("not a regular file");
+  if (!S_ISREG(status.st_mode)) throw ResourceError("it is not a regular file");
   const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > max_bytes) {
-    throw ResourceError(fmt::format("{} bytes; the limit is {}", size, max_bytes));
+    throw ResourceError(fmt::format("it has {} bytes; the limit is {}", size, max_bytes));
   }
   note_input(file);
   std::vector<unsigned char> bytes(size);
@@ -114,7 +114,7 @@ std::vector<unsigned char> SceneFolder::read_scene_file() const {
 
 std::filesystem::path SceneFolder::resolve(const std::string& name) const {
   if (name.empty()) throw ResourceError("the name is empty");
-  if (name.find('\0') != std::string::npos) throw ResourceError("the name holds a NUL byte");
+  if (name.find('\0') != std::string::npos) throw ResourceError("the name contains a NUL byte");
   if (name.find("://") != std::string::npos) {
     throw ResourceError("addresses are not fetched; save the file in the scene's folder");
   }
@@ -132,7 +132,7 @@ std::filesystem::path SceneFolder::resolve(const std::string& name) const {
   // A missing file outside must not be told from an existing one.
   if (!allow_outside_ && (!inside(lexical) || (!error && !inside(target)))) {
     throw ResourceError(
-        "it lies outside the scene's folder; move it there, or allow files outside");
+        "it lies outside the scene's folder; move it there, or give --set allow_outside=on");
   }
   if (error) throw ResourceError(error.message());
   return target;

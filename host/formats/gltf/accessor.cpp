@@ -172,8 +172,9 @@ std::vector<float> AccessorReader::floats(int accessor_index, int components,
 void AccessorReader::check_implicit_count(const tinygltf::Accessor& accessor,
                                           const std::string& use) const {
   if (accessor.count > limits::max_implicit_elements) {
-    throw context_.error(fmt::format("{}: {} elements without data; the limit is {}", use,
-                                     accessor.count, limits::max_implicit_elements));
+    throw context_.error(
+        fmt::format("{}: the accessor has {} elements without data; the limit is {}", use,
+                    accessor.count, limits::max_implicit_elements));
   }
 }
 
@@ -197,8 +198,9 @@ void AccessorReader::for_each_sparse(const tinygltf::Accessor& accessor, std::ui
     const std::uint64_t target =
         index(indices.first + i * indices.stride, sparse.indices.componentType);
     if (target >= accessor.count) {
-      throw context_.error(fmt::format("{}: sparse index {} of {} elements; export it again", use,
-                                       target, accessor.count));
+      throw context_.error(
+          fmt::format("{}: sparse index {} is out of range of {} elements; export it again", use,
+                      target, accessor.count));
     }
     visit(target, replacements.first + i * replacements.stride);
   }
@@ -208,8 +210,8 @@ std::vector<std::uint32_t> AccessorReader::indices(int accessor_index,
                                                    const std::string& use) const {
   const tinygltf::Accessor& accessor = at(accessor_index, use);
   if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType)) {
-    throw context_.error(fmt::format("{}: accessor {} holds no unsigned indices; export it again",
-                                     use, accessor_index));
+    throw context_.error(fmt::format(
+        "{}: accessor {} does not hold unsigned integers; export it again", use, accessor_index));
   }
   std::vector<std::uint32_t> result;
   if (accessor.count == 0) return result;

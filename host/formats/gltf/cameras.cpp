@@ -48,12 +48,12 @@ std::string name_of_camera(const tinygltf::Model& model, const NodeVisit& visit,
 void add_camera(const tinygltf::Camera& source, const std::string& name, const glm::dmat4& world,
                 reading::ImportContext& context) {
   if (source.type != "perspective") {
-    context.warnings.add("camera", name, "not a perspective camera; skipped");
+    context.warnings.add("camera", name, "is not a perspective camera; skipped");
     return;
   }
   const double field_of_view = source.perspective.yfov;
   if (!(field_of_view > 0.0 && field_of_view < std::numbers::pi) || !has_orientation(world)) {
-    context.warnings.add("camera", name, "no sensible field of view or orientation; skipped");
+    context.warnings.add("camera", name, "has no usable field of view or orientation; skipped");
     return;
   }
   const double aspect = source.perspective.aspectRatio;
@@ -189,7 +189,8 @@ class AnimationReader {
         channel.values.size() !=
             per_key * channel.times.size() * static_cast<std::size_t>(channel.components)) {
       throw context_.error(fmt::format(
-          "{}: times do not ascend, or are not as many as values; export it again", use));
+          "{}: the times do not ascend, or do not match the number of values; export it again",
+          use));
     }
     const auto finite = [](auto value) { return std::isfinite(value); };
     if (!std::all_of(channel.times.begin(), channel.times.end(), finite) ||
@@ -260,13 +261,13 @@ reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
   reading::AreaLights area_lights(scene);
   reading::ImportContext context{scene, folder, options, warnings, area_lights, {}};
   if (file.extension() != ".gltf" && file.extension() != ".glb") {
-    throw context.error("only glTF files have animations; describe the path in a file of its own");
+    throw context.error("only glTF files have animations; describe the path in a JSON file");
   }
   try {
     const tinygltf::Model model = read_gltf(context);
     const auto node = camera_node(model, visit_nodes(model, context), camera.name);
     if (!node) {
-      throw context.error(fmt::format("camera '{}' is no node of the file", camera.name));
+      throw context.error(fmt::format("camera '{}' is not a node of the file", camera.name));
     }
     AnimatedChain chain;
     chain.metres_per_unit = options.metres_per_unit;
@@ -281,7 +282,7 @@ reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
     }
     if (chain.channels.empty()) {
       throw context.error(
-          fmt::format("no animation {}moves camera '{}'; describe the path in a file of its own",
+          fmt::format("no animation {}moves camera '{}'; describe the path in a JSON file",
                       animation.empty() ? "" : "'" + animation + "' ", camera.name));
     }
     return motion_of(std::move(chain), camera);

@@ -70,7 +70,8 @@ Value value_named(const std::array<std::pair<std::string_view, Value>, count>& v
   const auto found =
       std::ranges::find(values, std::string_view(name), &std::pair<std::string_view, Value>::first);
   if (found != values.end()) return found->second;
-  throw context.error(fmt::format("{}: '{}' is not a way to pack it; export it again", use, name));
+  throw context.error(fmt::format(
+      "{}: '{}' is not a known mode or filter of the compression; export it again", use, name));
 }
 
 /// The number of a new buffer with these bytes.
@@ -118,7 +119,7 @@ class Unpacking {
     if (is_new) {
       std::vector<unsigned char> bytes(take(view.count * view.stride, use));
       if (!codec<decltype(photile_unpack_meshopt)>("photile_unpack_meshopt")(view, bytes.data())) {
-        throw context_.error(use + ": what meshopt packed is damaged; export it again");
+        throw context_.error(use + ": its meshopt data is damaged; export it again");
       }
       known->second = add_buffer(model_, std::move(bytes));
     }
@@ -172,8 +173,9 @@ class Unpacking {
     for (std::size_t i = 0; i < names.size(); ++i) {
       tinygltf::Accessor accessor = *accessor_of(primitive, names[i]);
       if (accessor.count != mesh.points) {
-        throw context_.error(fmt::format("{}: {} points of {} in its Draco data; export it again",
-                                         use, mesh.points, accessor.count));
+        throw context_.error(
+            fmt::format("{}: its Draco data has {} points, and the accessor {}; export it again",
+                        use, mesh.points, accessor.count));
       }
       primitive.attributes[names[i]] =
           add_accessor(std::move(accessor), std::move(attributes[i].values), use);
@@ -204,8 +206,7 @@ class Unpacking {
       return;
     }
     throw context_.error(
-        fmt::format("{}: {} elements of {} bytes do not come of {} packed bytes; "
-                    "export it again",
+        fmt::format("{}: {} elements of {} bytes cannot come from {} packed bytes; export it again",
                     use, view.count, view.stride, view.packed.size()));
   }
 
@@ -214,8 +215,8 @@ class Unpacking {
     taken_ += bytes;
     if (taken_ <= most_) return bytes;
     throw context_.error(
-        fmt::format("{}: more than {} MiB of unpacked meshes; the limit for the "
-                    "packed bytes of this file; split the scene",
+        fmt::format("{}: the unpacked meshes exceed {} MiB, the limit for a file with this many "
+                    "packed bytes; split the scene",
                     use, most_ >> 20));
   }
 

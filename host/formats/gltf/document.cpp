@@ -86,7 +86,7 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
                : loader.LoadASCIIFromString(&model, &error, &warning,
                                             reinterpret_cast<const char*>(bytes.data()), size, "");
   } catch (const nlohmann::json::exception&) {  // its text is meaningful to programmers only
-    error = "a value of another type than the format has";
+    error = "a value has the wrong type";
   }
   if (!loaded) {
     throw context.error("malformed glTF: " + first_line(error) + "; export it again");
@@ -285,8 +285,9 @@ class JsonCheck {
 
   bool parse_error(std::size_t place, const std::string&, const nlohmann::json::exception& error) {
     constexpr int number_overflow = 406;
-    problem = fmt::format("malformed glTF: what ends at byte {} is {}", place,
-                          error.id == number_overflow ? "too large a number" : "no JSON");
+    problem = fmt::format(
+        "malformed glTF: at byte {} {}", place,
+        error.id == number_overflow ? "a number is too large" : "the file is not valid JSON");
     return false;
   }
 
@@ -401,7 +402,7 @@ class JsonCheck {
     }
     levels_.push_back(level);
     if (levels_.size() <= static_cast<std::size_t>(limits::max_json_depth)) return true;
-    problem = fmt::format("JSON nested more than {} levels deep; export it again",
+    problem = fmt::format("the JSON is nested more than {} levels deep; export it again",
                           limits::max_json_depth);
     return false;
   }
@@ -418,7 +419,8 @@ class JsonCheck {
                                : array == "materials" ? limits::max_materials - 1
                                                       : most_size;
     if (levels_.back().elements <= most) return true;
-    problem = fmt::format("more than {} {}, which is the limit; split the scene", most, array);
+    problem = fmt::format("the file has more than {} {}, which is the limit; split the scene", most,
+                          array);
     return false;
   }
 

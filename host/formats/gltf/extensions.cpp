@@ -55,18 +55,19 @@ constexpr std::array<std::string_view, 14> harmless_extensions{
 constexpr std::array<std::pair<std::string_view, std::string_view>, 14> remedies{{
     {"EXT_mesh_gpu_instancing", "its copies are missing; export them as nodes"},
     {"EXT_texture_avif", "save its textures as PNG or JPEG"},
-    {"KHR_animation_pointer", "all is shown as without animation"},
-    {"KHR_materials_anisotropy", "brushed metal shines alike in all directions"},
-    {"KHR_materials_clearcoat", "coats are left out: what is below them reflects alone"},
-    {"KHR_materials_diffuse_transmission", "no light passes; export thin sheets with alpha BLEND"},
-    {"KHR_materials_dispersion", "glass bends all colours alike"},
+    {"KHR_animation_pointer", "its animations are ignored"},
+    {"KHR_materials_anisotropy", "highlights are the same in all directions"},
+    {"KHR_materials_clearcoat", "coats are ignored: only the surface below reflects"},
+    {"KHR_materials_diffuse_transmission",
+     "no light passes through; export thin sheets with alpha BLEND"},
+    {"KHR_materials_dispersion", "glass refracts all colours alike"},
     {"KHR_materials_iridescence", "thin films have no colours"},
     {"KHR_materials_pbrSpecularGlossiness",
      "its colours are lost; convert them to metallic-roughness"},
     {"KHR_materials_sheen", "cloth has no sheen"},
-    {"KHR_materials_unlit", "its surfaces are lit as all others are"},
+    {"KHR_materials_unlit", "its surfaces are lit like all others"},
     {"KHR_materials_variants", "surfaces have their default materials"},
-    {"KHR_materials_volume_scatter", "nothing scatters below surfaces"},
+    {"KHR_materials_volume_scatter", "no light scatters below surfaces"},
     {"KHR_texture_basisu", "save its textures as PNG or JPEG"},
 }};
 
@@ -90,8 +91,9 @@ void check_required_extensions(const std::vector<std::string>& required,
                                const reading::ImportContext& context) {
   for (const std::string& extension : required) {
     if (is_understood(extension)) continue;
-    throw context.error(fmt::format("requires the glTF extension {}, which is not understood; {}",
-                                    extension, remedy_for(extension, "export without it")));
+    throw context.error(
+        fmt::format("the file requires the glTF extension {}, which is not supported; {}",
+                    extension, remedy_for(extension, "export without it")));
   }
 }
 
@@ -104,7 +106,7 @@ class ExtensionUsers {
                  files::Warnings& warnings)
       : model_(model),
         extension_(std::move(extension)),
-        message_(extension_ + " is not understood; " + remedy),
+        message_(extension_ + " is not supported; " + remedy),
         warnings_(warnings) {}
 
   bool warn() {
@@ -147,9 +149,9 @@ class ExtensionUsers {
 void warn_of_extensions(const tinygltf::Model& model, reading::ImportContext& context) {
   for (const std::string& extension : model.extensionsUsed) {
     if (is_understood(extension)) continue;
-    const std::string remedy = remedy_for(extension, "what it says is ignored");
+    const std::string remedy = remedy_for(extension, "its contents are ignored");
     if (!ExtensionUsers(model, extension, remedy, context.warnings).warn()) {
-      context.warnings.add("extension", extension, "not understood; " + remedy);
+      context.warnings.add("extension", extension, "not supported; " + remedy);
     }
   }
 }

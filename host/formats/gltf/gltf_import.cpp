@@ -82,19 +82,19 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
     }
   }
   if (triangles > limits::max_triangles) {
-    throw context.error(fmt::format(
-        "{} triangles, {} of them by {} instances of mesh '{}'; the limit is {}; split the "
-        "scene",
-        triangles, most, places[static_cast<std::size_t>(largest)], name_of_mesh(model, largest),
-        limits::max_triangles));
+    throw context.error(
+        fmt::format("the scene has {} triangles, {} of them in {} instances of mesh '{}'; the "
+                    "limit is {}; split the scene",
+                    triangles, most, places[static_cast<std::size_t>(largest)],
+                    name_of_mesh(model, largest), limits::max_triangles));
   }
   const std::uint64_t held = packed_bytes(model) / least_bytes_per_triangle + model.nodes.size();
   const std::uint64_t most_placed =
       std::max(limits::unchecked_triangles, held * limits::max_triangle_expansion);
   if (triangles > most_placed) {
     throw context.error(
-        fmt::format("{} triangles from a file that holds no more than {}; the limit for it is {}; "
-                    "repeat fewer: {} are of mesh '{}', in {} instances",
+        fmt::format("the scene has {} triangles, from a file that can hold no more than {}; the "
+                    "limit for it is {}; use fewer instances: {} are of mesh '{}', in {} instances",
                     triangles, held, most_placed, most, name_of_mesh(model, largest),
                     places[static_cast<std::size_t>(largest)]));
   }
@@ -174,7 +174,7 @@ pictures::CubeMap cube_of(const tinygltf::Value& light, const tinygltf::Model& m
   const tinygltf::Value faces = has_levels ? light.Get("specularImages").Get(0) : tinygltf::Value();
   pictures::CubeMap cube;
   if (faces.ArrayLen() != cube.size()) {
-    throw files::ResourceError("its specularImages are not six for each size");
+    throw files::ResourceError("its specularImages do not have six faces for each size");
   }
   std::array<double, 6> numbers{};
   for (std::size_t i = 0; i < cube.size(); ++i) {
@@ -205,7 +205,7 @@ void add_light(const tinygltf::Value& light, const tinygltf::Model& model,
                const AccessorReader& accessors, reading::ImportContext& context) {
   const double intensity = number_member(light, "intensity", 1.0);
   if (!(intensity > 0.0) || !std::isfinite(static_cast<float>(largest_rgbd * intensity))) {
-    throw files::ResourceError(fmt::format("its intensity is {}", intensity));
+    throw files::ResourceError(fmt::format("its intensity of {} is not usable", intensity));
   }
   pictures::CubeMap cube = cube_of(light, model, accessors, context.folder);
   for (pictures::RadiancePicture& face : cube) {

@@ -29,7 +29,7 @@ double number_within(const tinygltf::Value& extras, const char* key, double lowe
   const double value = number_member(extras, key, -1.0);
   if (value >= lowest && value <= highest) return value;
   warnings.add("node", name,
-               fmt::format("{} is no number from {} to {}; ignored", key, lowest, highest));
+               fmt::format("{} is not a number from {} to {}; ignored", key, lowest, highest));
   return 0;
 }
 
@@ -80,7 +80,7 @@ std::vector<unsigned char> data_uri_content(const std::string& uri) {
   if (comma == std::string::npos || uri.substr(0, comma).find(";base64") == std::string::npos ||
       !tinygltf::DecodeDataURI(
           &bytes, type, "data:application/octet-stream;base64" + uri.substr(comma), 0, false)) {
-    throw files::ResourceError("a data: URI that is not in base64");
+    throw files::ResourceError("its data: URI is not in base64");
   }
   return bytes;
 }
@@ -300,12 +300,12 @@ class LightImporter {
     if (!std::isfinite(light.power) || light.power <= 0.0 || !scene::within_limit(position) ||
         !set_orientation(visit.world, light)) {
       context_.warnings.add("light", light.name,
-                            "emits nothing or has no position within reach; dropped");
+                            "emits nothing or lies beyond the limits of coordinates; dropped");
       return;
     }
     light.position = glm::vec3(position);
     if (context_.scene.lights.size() >= limits::max_lights) {
-      throw context_.error(fmt::format("more than {} lights", limits::max_lights));
+      throw context_.error(fmt::format("more than {} lights; remove some", limits::max_lights));
     }
     context_.scene.lights.push_back(std::move(light));
     context_.light_sources.push_back(

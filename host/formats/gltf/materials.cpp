@@ -142,7 +142,9 @@ MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
   if (unsaid) {
     model.base_color = glm::dvec3(scene::missing_albedo);
     model.metallic = model.specular_factor = 0;
-    warn("the file says nothing of its surface; it is matt grey (0.5); --reflectance sets another");
+    warn(
+        "the file does not describe its surface; it becomes matt grey (0.5); --reflectance sets "
+        "another reflectance");
     return model;
   }
   model.base_color = glm::clamp(rgb_of(pbr.baseColorFactor, glm::dvec3(1.0)), 0.0, 1.0);
@@ -272,7 +274,7 @@ std::uint32_t Converter::load_texture(int texture, pictures::TextureContent cont
       source->source >= 0 || webp == nullptr ? source->source : integer_member(*webp, "source", -1);
   if (element(model_.images, picture) == nullptr) {
     throw files::ResourceError(
-        fmt::format("texture {} has no picture of a format that is read", texture));
+        fmt::format("texture {} has no picture in a supported format", texture));
   }
   const tinygltf::Sampler* const sampler = element(model_.samplers, source->sampler);
   const auto has_wrap = [&](int mode) {
@@ -324,7 +326,7 @@ MaterialCoordinates Converter::add(const tinygltf::Material& source, const std::
   }
   set_normal_map(source, material);
   if (reference_of(source.occlusionTexture).given())
-    warn("occlusion texture is ignored: light is traced");
+    warn("occlusion texture is ignored, as light is traced");
   const reading::Emission emission = emission_of(source);
   set_opacity(source, emission.radiance != glm::dvec3(0.0), material);
   context_.scene.materials.push_back(std::move(material));

@@ -64,7 +64,8 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
   for (const std::uint32_t index : indices) {
     if (index >= corner_count) {
       throw context.error(
-          fmt::format("{}: index {} of {} vertices; export it again", use, index, corner_count));
+          fmt::format("{}: index {} is out of range of {} vertices; export it again", use, index,
+                      corner_count));
     }
   }
   return indices;
@@ -245,7 +246,8 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   }
   const std::string name = name_of_mesh(model_, node.mesh);
   if (node.skin >= 0) {
-    context_.warnings.add("node", node_name(model_, visit.node), "skin is ignored: rest pose");
+    context_.warnings.add("node", node_name(model_, visit.node),
+                          "its skin is ignored; the rest pose is used");
   }
   const auto first = static_cast<std::uint32_t>(context_.scene.triangles.size());
   kept_.clear();
@@ -288,7 +290,8 @@ void MeshImporter::add_panel(const NodeVisit& visit, std::uint64_t visit_number)
 void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const NodeVisit& visit,
                                  std::uint64_t visit_number, const std::string& mesh_name) {
   if (!primitive.targets.empty()) {
-    context_.warnings.add("mesh", mesh_name, "morph targets are ignored: rest pose");
+    context_.warnings.add("mesh", mesh_name,
+                          "its morph targets are ignored; the rest pose is used");
   }
   if (primitive.attributes.count("COLOR_0") > 0) {
     context_.warnings.add("mesh", mesh_name, "vertex colours are ignored");
@@ -374,10 +377,10 @@ PlacedVertices MeshImporter::read_vertices(const tinygltf::Primitive& primitive,
     if (emission_uv.empty()) surface.emission.texture = none;
   }
   if (material.textured()) {
-    uv = read_coordinates(
-        primitive, coordinates.surface.set, count, mesh_name,
-        fmt::format("the textures of material '{}'; {} is used instead", name,
-                    material.diffuse_texture == none ? "what its factors say" : "mid grey (0.5)"));
+    uv = read_coordinates(primitive, coordinates.surface.set, count, mesh_name,
+                          fmt::format("the textures of material '{}'; {} is used instead", name,
+                                      material.diffuse_texture == none ? "its base-colour factor"
+                                                                       : "mid grey (0.5)"));
     if (uv.empty() && count > 0) surface.material = plain_materials_.of(surface.material);
   }
   return {std::move(vertices), coordinates, world};

@@ -54,14 +54,15 @@ std::vector<int> root_nodes(const tinygltf::Model& model, reading::ImportContext
   if (const std::optional<std::size_t> scene = scene_number(model, context)) {
     if (model.scenes.size() > 1 && context.options.scene.empty()) {
       context.warnings.add(
-          fmt::format("of {} scenes only scene {} is loaded; others can be chosen: {}",
+          fmt::format("of {} scenes only scene {} is loaded; choose another with --set scene: {}",
                       model.scenes.size(), *scene, scene_list(model)));
     }
     return model.scenes[*scene].nodes;
   }
   if (!context.options.scene.empty()) {
-    throw UsageError(fmt::format("{}: no scene '{}'; the file has none, only nodes: name none",
-                                 context.folder.scene_file().string(), context.options.scene));
+    throw UsageError(fmt::format(
+        "{}: there is no scene '{}': the file has nodes but no scenes; leave the scene out",
+        context.folder.scene_file().string(), context.options.scene));
   }
   return parentless_nodes(model);
 }
@@ -153,7 +154,8 @@ class Walk {
     }
     if (path_.size() >= static_cast<std::size_t>(limits::max_node_depth)) {
       throw context_.error(
-          fmt::format("nodes nested more than {} levels deep", limits::max_node_depth));
+          fmt::format("nodes are nested more than {} levels deep; flatten the hierarchy",
+                      limits::max_node_depth));
     }
     if (context_.is_hidden(node_name(model_, node))) return;
     if (!is_visible(*source)) {
@@ -199,9 +201,10 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
     if (node.mesh < 0 && node.camera < 0 && node.children.empty() && node.extensions.empty() &&
         !is_joint[static_cast<std::size_t>(visit.node)] && !has_profile(node) && !has_panel(node) &&
         !asked_for(node) && sounds_like_light(node.name)) {
-      context.warnings.add("node", node_name(model, visit.node),
-                           "no mesh, light, camera or child; Blender's exporter drops area lights "
-                           "like that: give it a luminous panel, see docs/guide/luminaires.md");
+      context.warnings.add(
+          "node", node_name(model, visit.node),
+          "has no mesh, light, camera or child; Blender's exporter drops area lights like that: "
+          "give it a luminous panel, see docs/guide/luminaires.md");
     }
   }
 }
@@ -219,7 +222,7 @@ std::optional<std::size_t> scene_number(const tinygltf::Model& model,
     for (std::size_t i = 0; i < model.scenes.size(); ++i) {
       if (std::to_string(i) == requested) return i;
     }
-    throw UsageError(fmt::format("{}: no scene '{}'; its scenes are {}",
+    throw UsageError(fmt::format("{}: there is no scene '{}'; its scenes are {}",
                                  context.folder.scene_file().string(), requested,
                                  scene_list(model)));
   }

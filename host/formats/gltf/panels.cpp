@@ -89,8 +89,7 @@ std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
       !(luminance(panel.radiance) > 0.0)) {
     context.warnings.add(
         "node", name,
-        fmt::format("its light of {} has no size, no light or an unknown type '{}'; "
-                    "left out",
+        fmt::format("its light of {} has no size, no intensity or an unknown type '{}'; left out",
                     area_extension, type));
     return std::nullopt;
   }
@@ -107,7 +106,7 @@ std::optional<Panel> panel_of(const tinygltf::Model& model, int number,
   for (const LuminousPanel& asked : context.options.panels) {
     if (asked.node != node.name) continue;
     if (asked.lumens > limits::max_light_power) {
-      throw UsageError(fmt::format("area light '{}' of {:g} lm: the limit is {:g}; give it less",
+      throw UsageError(fmt::format("area light '{}' of {:g} lm: the limit is {:g} lm; give it less",
                                    asked.node, asked.lumens, limits::max_light_power));
     }
     Panel panel{asked.width, asked.height};

@@ -24,8 +24,8 @@ namespace photile {
 LightGrouping LightGrouping::parse(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-    throw UsageError(
-        fmt::format("'{}' is no group of lights; use GLOB=NAME, such as 'ceiling*=ceiling'", text));
+    throw UsageError(fmt::format(
+        "'{}' is not a group of lights; use GLOB=NAME, such as 'ceiling*=ceiling'", text));
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
@@ -60,8 +60,8 @@ void check_names(const std::vector<Light>& lights) {
   for (const Light& light : lights) {
     if (!light.group.empty() || !groups.contains(light.name)) continue;
     throw UsageError(
-        fmt::format("light groups: the light '{}' is outside the group of that name; put it in or "
-                    "choose another name",
+        fmt::format("light groups: the light '{}' is not in the group of the same name; add it to "
+                    "the group or choose another name",
                     light.name));
   }
 }
@@ -117,8 +117,8 @@ void apply_profiles(Scene& scene, std::span<const LightProfile> profiles,
     Light& light = light_named(profile.light, "photometric file for", scene);
     if (!light.has_position()) {
       throw UsageError(
-          fmt::format("photometric file for {}: the light is neither a point nor a spot light; "
-                      "name one of those",
+          fmt::format("photometric file for {}: the light is neither a point light nor a spot "
+                      "light; name one of those",
                       profile.light));
     }
     IntensityDistribution distribution = read_user_photometry(profile.file, warnings);
@@ -133,9 +133,10 @@ void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperat
   for (const LightTemperature& temperature : temperatures) {
     Light& light = light_named(temperature.light, "temperature of", scene);
     if (light.kind == LightKind::environment || light.emission_texture != none) {
-      throw UsageError(fmt::format(
-          "temperature of {}: its colours come from a picture, which a light mix can tint",
-          light.name));
+      throw UsageError(
+          fmt::format("temperature of {}: its colours come from a picture; tint the light in a "
+                      "light mix instead",
+                      light.name));
     }
     light.color = glm::vec3(scene::color_of_temperature(temperature.kelvin));
   }
@@ -188,18 +189,18 @@ void apply(Scene& scene, const MaterialShare& change) {
     const std::string what =
         fmt::format("reflectance of '{}': {:g} cannot be reached", material.name, change.fraction);
     if (!before) {
-      throw UsageError(what + ": it is glass, whose colour is what it lets through");
+      throw UsageError(
+          what + ": it is glass, which has no diffuse colour; --set glass sets what it transmits");
     }
     const double own = before->whole;
     const double nearest = nearest_reflectance(scene, material, change.fraction, own);
     if (change.fraction < own) {
-      throw UsageError(fmt::format(
-          "{}: its gloss alone reflects {:.3g}; --set lambertian=on removes that", what, nearest));
+      throw UsageError(
+          fmt::format("{}: its gloss alone reflects {:.3g}; --set lambertian=on removes the gloss",
+                      what, nearest));
     }
-    throw UsageError(fmt::format(
-        "{}: its colour exceeds 1 in a channel then; at its brightest it reflects {:.3g}, give "
-        "that or less",
-        what, nearest));
+    throw UsageError(fmt::format("{}: its colour would exceed 1 in a channel; give {:.3g} or less",
+                                 what, nearest));
   });
 }
 

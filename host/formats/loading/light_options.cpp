@@ -65,9 +65,8 @@ Site Site::parse(const std::string& text) {
   if (!numbers || numbers->size() != 3 || std::abs((*numbers)[0]) > 90.0 ||
       std::abs((*numbers)[1]) > 180.0 || (*numbers)[2] < -12.0 || (*numbers)[2] > 14.0) {
     throw UsageError(fmt::format(
-        "site '{}': use LATITUDE,LONGITUDE,TIME_ZONE, such as 52.5,13.4,1: degrees north within "
-        "-90 "
-        "and 90, degrees east within -180 and 180, hours before Greenwich within -12 and 14",
+        "site '{}': use LATITUDE,LONGITUDE,TIME_ZONE, such as 52.5,13.4,1: degrees north from -90 "
+        "to 90, degrees east from -180 to 180, hours ahead of UTC from -12 to 14",
         text));
   }
   return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
@@ -101,10 +100,9 @@ Sun Sun::parse(const std::string& text) {
   }
   if (!numbers || numbers->size() < 3 || numbers->size() > 4) {
     throw UsageError(fmt::format(
-        "sun '{}': use AZIMUTH,ELEVATION,LUX[,DIAMETER], such as 135,40,80000: degrees from north "
-        "by east, degrees above the horizon, lux on a surface that faces it, degrees of its disc; "
-        "or "
-        "its lux alone where a site and a time are given",
+        "sun '{}': use AZIMUTH,ELEVATION,LUX[,DIAMETER], such as 135,40,80000: degrees clockwise "
+        "from north, degrees above the horizon, lux on a surface facing the sun, diameter of its "
+        "disc in degrees; or LUX alone where a site and a time are given",
         text));
   }
   Sun sun{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
@@ -112,10 +110,10 @@ Sun Sun::parse(const std::string& text) {
   if (std::abs(sun.azimuth_degrees) > 360.0 || std::abs(sun.elevation_degrees) > 90.0 ||
       !(sun.illuminance > 0.0) || sun.diameter_degrees < 0.0 ||
       sun.diameter_degrees > limits::max_sun_diameter_degrees) {
-    throw UsageError(fmt::format(
-        "sun '{}': the azimuth lies within -360 and 360 degrees, the elevation within -90 and 90, "
-        "the lux above 0 and the diameter within 0 and {} degrees",
-        text, limits::max_sun_diameter_degrees));
+    throw UsageError(
+        fmt::format("sun '{}': the azimuth must lie between -360 and 360 degrees, the elevation "
+                    "between -90 and 90, the lux above 0 and the diameter between 0 and {} degrees",
+                    text, limits::max_sun_diameter_degrees));
   }
   return sun;
 }
@@ -123,7 +121,8 @@ Sun Sun::parse(const std::string& text) {
 Sky Sky::parse(const std::string& text) {
   constexpr const char* remedy =
       "use KIND=LUX, such as overcast=10000; the kinds are uniform, overcast and clear; or "
-      "perez=DIRECT,DIFFUSE, such as perez=600,120, in W/m2 facing the sun and on open ground; or "
+      "perez=DIRECT,DIFFUSE, such as perez=600,120, in W/m2 on a surface facing the sun and on "
+      "open ground; or "
       "patches=145, 577 or 2305";
   constexpr std::array kinds{std::pair{"uniform", SkyKind::uniform},
                              std::pair{"overcast", SkyKind::overcast},
@@ -173,7 +172,7 @@ LightTemperature LightTemperature::parse(const std::string& text) {
   const auto kelvin = parse_signed(digits);
   if (!kelvin) throw UsageError(fmt::format("light temperature '{}': {}", text, remedy));
   if (*kelvin < limits::min_color_temperature || *kelvin > limits::max_color_temperature) {
-    throw UsageError(fmt::format("light temperature '{}': not between {} and {} kelvin", text,
+    throw UsageError(fmt::format("light temperature '{}': give a number from {} to {} kelvin", text,
                                  limits::min_color_temperature, limits::max_color_temperature));
   }
   return {light, *kelvin};

@@ -58,10 +58,10 @@ void report_dropped_triangles(const ImportReport& report, files::Warnings& warni
                     report.non_finite_triangles, limits::max_coordinate));
   }
   if (report.duplicate_triangles > 0) {
-    warnings.add(fmt::format(
-        "{} triangles that lie exactly on others are dropped: of those that face one way the first "
-        "counts",
-        report.duplicate_triangles));
+    warnings.add(
+        fmt::format("{} triangles that coincide with others are dropped: of those that face the "
+                    "same way, the first is kept",
+                    report.duplicate_triangles));
   }
 }
 
@@ -95,9 +95,10 @@ void finish_directional_lights(const reading::ImportContext& context) {
     if (light.kind != LightKind::directional) continue;
     light.power = scene::directional_flux(light.power, radius);
     if (!std::isfinite(light.power)) {
-      throw context.error(fmt::format(
-          "light '{}': its flux over a scene of {:g} m is beyond any number; give it fewer lux",
-          light.name, 2 * radius));
+      throw context.error(
+          fmt::format("light '{}': its flux over a scene of {:g} m is too large for a number; give "
+                      "it fewer lux",
+                      light.name, 2 * radius));
     }
   }
 }
@@ -112,9 +113,9 @@ void check_powers(const Scene& scene, double emissive_scale) {
                           light.power / emissive_scale <= limits::max_light_power;
     if (by_scale) {
       throw UsageError(
-          fmt::format("emissive scale of {:g}: {}; give a smaller one", emissive_scale, emits));
+          fmt::format("emissive scale {:g}: {}; give a smaller scale", emissive_scale, emits));
     }
-    throw InputError(fmt::format("{}: {}; give it less", scene.source.string(), emits));
+    throw InputError(fmt::format("{}: {}; reduce its power", scene.source.string(), emits));
   }
 }
 
@@ -152,7 +153,8 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
     import_by_extension(context);
     report_dropped_triangles(scene.report, warnings);
     if (scene.triangles.empty()) {
-      throw lacks("no triangles with an area; export the scene with its geometry", context);
+      throw lacks("the file has no triangles with an area; export the scene with its geometry",
+                  context);
     }
     if (options.up.empty()) loading::warn_of_other_up(scene, warnings);
     if (options.metres_per_unit == 1) loading::warn_of_other_unit(scene, warnings);
@@ -165,7 +167,8 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
     context.light_sources.resize(scene.lights.size());
     if (scene.lights.empty() && !options.may_be_dark) {
       throw lacks(
-          "no lights; give a material an emission (Ke in MTL, emissiveFactor in glTF), add "
+          "the scene has no lights; give a material an emission (Ke in MTL, emissiveFactor in "
+          "glTF), add "
           "KHR_lights_punctual lights, or give luminaires, an environment picture, a sun or a sky",
           context);
     }
@@ -265,7 +268,7 @@ glm::dmat3 turn_upright(const std::string& up) {
   const bool down = word.front() == '-';
   const std::string axis = down ? word.substr(1) : word;
   if (axis != "x" && axis != "y" && axis != "z") {
-    throw UsageError(fmt::format("up '{}': is no axis; give x, y, z, -x, -y or -z", up));
+    throw UsageError(fmt::format("up '{}' is not an axis; give x, y, z, -x, -y or -z", up));
   }
   glm::dvec3 upwards(0.0);
   upwards[axis.front() - 'x'] = down ? -1.0 : 1.0;
@@ -282,8 +285,8 @@ void warn_of_other_up(const Scene& scene, files::Warnings& warnings) {
   const double by_area = z.area / y.area, by_plane = z.widest() / y.widest();
   if (!(by_area >= 1 && by_plane >= 1 && by_area * by_plane >= least_evidence)) return;
   warnings.add(
-      fmt::format("z seems to point up: {:.3g} m2 face along z, {:.3g} along y, which is taken for "
-                  "up; --set up=z turns the scene, --set up=y leaves this line out",
+      fmt::format("z seems to point up: {:.3g} m2 face along z, {:.3g} along y, which is taken as "
+                  "up; --set up=z turns the scene, --set up=y silences this warning",
                   z.area, y.area));
 }
 
@@ -310,7 +313,7 @@ void warn_of_other_unit(const Scene& scene, files::Warnings& warnings) {
       remedies.push_back(fmt::format("--set units={} makes it {:.4g} m", unit, then));
     }
   }
-  if (remedies.empty()) remedies.emplace_back("--set units says what its lengths are in");
+  if (remedies.empty()) remedies.emplace_back("--set units gives the unit of its lengths");
   warnings.add(fmt::format("the scene is {:.4g} m wide; {}", width, fmt::join(remedies, ", ")));
 }
 

@@ -163,7 +163,7 @@ LuminaireArray array_of(const json& entry, const JsonObject& object, files::Scen
   placed.position = position_of(entry, object, scene, shared);
   glm::dvec3 aim(0.0, -1.0, 0.0);
   if (object.has("aim")) aim = direction_in_scene(scene, object.vector("aim"));
-  if (!(glm::length(aim) > 0)) object.refuse("'aim' is 0 0 0; it has to point somewhere");
+  if (!(glm::length(aim) > 0)) object.refuse("'aim' has length 0; give a direction");
   if (object.has("rotation")) placed.rotation = glm::radians(object.number("rotation", -360, 360));
   placed.axes = luminaire_axes(glm::normalize(aim), placed.rotation);
   placed.lumens = distribution.flux();
@@ -186,8 +186,8 @@ LuminaireArray array_of(const json& entry, const JsonObject& object, files::Scen
   }
   if (!size) {
     object.refuse(
-        "'size' is missing, and the file states no luminous opening that is seen from below; give "
-        "two numbers of metres");
+        "'size' is missing, and the photometric file states no luminous opening visible from "
+        "below; give two numbers of metres");
   }
   placed.opening = *size;
   return lamps;
@@ -315,7 +315,7 @@ std::vector<PlacedLuminaires> add_luminaires(const SceneLoadOptions& options, Sc
   const LuminaireList list =
       edited ? LuminaireList::parse(options.luminaires_text, file.string()) : read_luminaires(file);
   if (list.entries.empty() && !edited) {
-    throw InputError(fmt::format("{}: holds no luminaire", file.string()));
+    throw InputError(fmt::format("{}: the file lists no luminaires", file.string()));
   }
   auto placed =
       add_luminaires(list, file, options.allow_outside, options.lumen_per_watt, scene, warnings);
@@ -337,7 +337,7 @@ std::string LuminaireList::text() const {
 LuminaireList LuminaireList::parse(const std::string& text, const std::string& name) {
   check_json_depth(text, name);
   const auto content = nlohmann::ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (content.is_discarded()) throw InputError(fmt::format("{}: is no JSON", name));
+  if (content.is_discarded()) throw InputError(fmt::format("{}: this is not valid JSON", name));
   LuminaireList list;
   list.alone = !content.is_array();
   if (list.alone) {

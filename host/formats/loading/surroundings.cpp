@@ -238,10 +238,9 @@ void add_picture(const EnvironmentPicture& picture, const SceneLoadOptions& opti
     lost += std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z) ? 0 : 1;
   }
   if (lost > 0) {
-    throw InputError(
-        fmt::format("{}: {} of its {} texels, times {:g}, are beyond any number; give a smaller "
-                    "scale",
-                    picture.file.string(), lost, read.texels.size(), picture.scale));
+    throw InputError(fmt::format(
+        "{}: {} of its {} texels overflow when multiplied by {:g}; give a smaller scale",
+        picture.file.string(), lost, read.texels.size(), picture.scale));
   }
   const auto refuse_black = [&] {
     throw InputError(fmt::format("{}: the environment is black; give another, or a larger scale",
@@ -287,8 +286,8 @@ void add_ground(const SkySituationLights& lights, const SceneLoadOptions& option
   if (lights.sky && lights.sky->kind == SkyKind::patches) {
     if (as_default) return;
     throw UsageError(
-        fmt::format("ground: a sky of patches has ground of {:g} below the horizon; leave out "
-                    "ground, or turn it off by --light ground=off",
+        fmt::format("ground: a sky of patches has its own ground of reflectance {:g} below the "
+                    "horizon; leave out ground, or turn it off by --light ground=off",
                     defaults::ground_reflectance));
   }
   double lux = lights.sky ? lights.sky->illuminance : 0.0;
@@ -330,7 +329,7 @@ std::vector<std::pair<std::string, std::string>> sky_facts(const SceneLoadOption
   facts.emplace_back(
       "weather",
       fmt::format("{}, row {}/{} hour {}, which covers {}:00 to {}:00: {:g} W/m2 direct normal, "
-                  "{:g} W/m2 diffuse; the sun is that of {}:30",
+                  "{:g} W/m2 diffuse; the sun stands where it is at {}:30",
                   situation.weather.filename().string(), row.month, row.day, hour, hour - 1, hour,
                   row.irradiance.direct_normal, row.irradiance.diffuse_horizontal, hour - 1));
   return facts;

@@ -48,7 +48,7 @@ bool append_values_of_type(const draco::PointAttribute& attribute, std::size_t p
   }
 }
 
-constexpr const char* too_large = "larger than the file's packed meshes may be together";
+constexpr const char* too_large = "larger than the limit for the packed meshes of this file";
 
 /// A decoder of Draco's that knows the sizes of what it is to decode and refuses too much of it.
 template <class Decoder>
@@ -98,7 +98,7 @@ const char* decode(std::uint64_t most, draco::DecoderBuffer& buffer, draco::Mesh
   BoundedDecoder<Decoder> decoder(most);
   const draco::DecoderOptions options;
   if (decoder.Decode(options, &buffer, &mesh).ok()) return "";
-  return decoder.refused() ? too_large : "damaged, or older than glTF has it";
+  return decoder.refused() ? too_large : "damaged, or of a version older than glTF allows";
 }
 
 const char* unpack_draco(std::span<const unsigned char> packed, std::uint64_t most,
@@ -119,9 +119,9 @@ const char* unpack_draco(std::span<const unsigned char> packed, std::uint64_t mo
   }
   for (DracoAttribute& attribute : attributes) {
     const draco::PointAttribute* values = found.GetAttributeByUniqueId(attribute.id);
-    if (values == nullptr) return "without an attribute that the file names";
+    if (values == nullptr) return "missing an attribute that the file names";
     if (!append_values_of_type(*values, mesh.points, attribute)) {
-      return "of values that do not fit their accessor";
+      return "inconsistent with its accessor";
     }
   }
   return "";
@@ -152,6 +152,6 @@ using namespace photile::gltf;
   try {
     return unpack_draco(packed, most, attributes, mesh);
   } catch (const std::exception&) {  // no memory, or an array of no such size
-    return "larger than the memory, or damaged";
+    return "larger than the available memory, or damaged";
   }
 }

@@ -157,14 +157,14 @@ class MtlReader {
   double number(std::string_view word, const Range& range) const {
     const auto value = parse_signed(word);
     if (!value) {
-      refuse(fmt::format("'{}': '{}' is no number{}", statement_, word,
+      refuse(fmt::format("'{}': '{}' is not a number{}", statement_, word,
                          word.find(',') == std::string_view::npos
-                             ? "; mend the line"
+                             ? "; correct the line"
                              : "; write it with a decimal point"));
     }
     constexpr double rounding = 1e-4;  // 1.000001 is 1
     if (*value < range.least - rounding || *value > range.most + rounding) {
-      refuse(fmt::format("'{}': {:g} is not {}; mend the line", statement_, *value,
+      refuse(fmt::format("'{}': {:g} is not {}; correct the line", statement_, *value,
                          range.most == positive.most
                              ? "0 or more"
                              : fmt::format("between 0 and {:g}", range.most)));
@@ -174,7 +174,8 @@ class MtlReader {
 
   double only_number(const Words& words, const Range& range) const {
     if (words.size() != 1) {
-      refuse(fmt::format("'{}' has {} numbers, not one; mend the line", statement_, words.size()));
+      refuse(
+          fmt::format("'{}' has {} numbers, not one; correct the line", statement_, words.size()));
     }
     return number(words[0], range);
   }
@@ -198,7 +199,7 @@ class MtlReader {
     if (is_xyz) color = image::converted(image::rec709_of_xyz(), color);
     const glm::dvec3 within = glm::min(color, glm::dvec3(range.most));
     if (glm::length(color - within) > 1e-4) {
-      warn(fmt::format("'{}' is more than all light; 1 is used", statement_));
+      warn(fmt::format("'{}' exceeds 1; 1 is used", statement_));
     }
     return within;
   }
@@ -214,7 +215,7 @@ class MtlReader {
     const double d = is_d ? value : 1 - value;
     if (!is_d && has_d_) {
       // Some programs write Tr as they would write d.
-      if (material.d != d && material.d != value) warn_of_material("d is used, and not its Tr");
+      if (material.d != d && material.d != value) warn_of_material("d is used, Tr is ignored");
       return;
     }
     has_d_ |= is_d;
@@ -224,7 +225,7 @@ class MtlReader {
   void take_illumination_model(const Words& words) {
     const double value = only_number(words, {0, 10});
     if (value != std::floor(value))
-      refuse(fmt::format("'{}': no such model; give 0 to 10", statement_));
+      refuse(fmt::format("'{}': there is no such illumination model; give 0 to 10", statement_));
     materials_.back().illum = static_cast<int>(value);
   }
 
@@ -275,7 +276,7 @@ class MtlReader {
       const auto read = parse_signed(value);
       if (is_number && !read) {
         if (i >= found->least) break;  // the file
-        refuse(fmt::format("'{}': {} needs {} numbers; mend the line", statement_, option,
+        refuse(fmt::format("'{}': {} needs {} numbers; correct the line", statement_, option,
                            found->least));
       }
       if (is_number) values.push_back(*read);

@@ -41,7 +41,7 @@ glm::vec3 diffuse_of(const MtlMaterial& source, files::Warnings& warnings) {
   }
   if (!source.map_Kd.empty()) return glm::vec3(1.0f);
   if (emits(source)) return glm::vec3(0.0f);
-  warnings.add("material", source.name, "has no Kd; mid grey (0.5)");
+  warnings.add("material", source.name, "has no Kd; mid grey (0.5) is used");
   return glm::vec3(scene::missing_albedo);
 }
 
@@ -223,7 +223,7 @@ void add_missing_material(const std::string& name, reading::ImportContext& conte
 void report_findings(const ObjTextFindings& findings, files::Warnings& warnings) {
   if (findings.vertex_colors) warnings.add("vertex colours are ignored");
   for (const auto& [keyword, lines] : findings.ignored_statements) {
-    warnings.add("statement", keyword, "not a surface or not understood; ignored");
+    warnings.add("statement", keyword, "unknown, or not about polygons; ignored");
   }
 }
 
@@ -233,12 +233,12 @@ std::vector<std::uint32_t> add_materials(const ObjFile& file,
                                          const std::vector<MtlMaterial>& defined,
                                          reading::ImportContext& context) {
   if (file.material_names.size() + 1 > limits::max_materials) {
-    throw context.error(fmt::format("more than {} materials", limits::max_materials));
+    throw context.error(fmt::format("more than {} materials; merge some", limits::max_materials));
   }
   std::map<std::string, const MtlMaterial*> library;
   for (const MtlMaterial& material : defined) {
     if (!library.emplace(material.name, &material).second) {
-      context.warnings.add("material", material.name, "defined more than once; the first counts");
+      context.warnings.add("material", material.name, "defined more than once; the first is used");
     }
   }
   pictures::TextureStore textures(context.scene, context.folder);
@@ -248,7 +248,8 @@ std::vector<std::uint32_t> add_materials(const ObjFile& file,
     if (const auto found = library.find(name); found != library.end()) {
       add_mtl_material(*found->second, textures, context);
     } else {
-      context.warnings.add("material", name, "not defined in any material library; mid grey (0.5)");
+      context.warnings.add("material", name,
+                           "not defined in any material library; mid grey (0.5) is used");
       add_missing_material(name, context);
     }
   }
@@ -291,9 +292,9 @@ void add_face(const ObjFile& file, const ObjFace& face, std::uint32_t material,
   const Material& requested = context.scene.materials[material];
   const bool is_plain = !has_coordinates && requested.textured();
   if (is_plain || (!has_coordinates && emission.texture != none)) {
-    context.warnings.add("material", requested.name,
-                         "faces without texture coordinates have its factors, and mid grey (0.5) "
-                         "in place of map_Kd");
+    context.warnings.add(
+        "material", requested.name,
+        "faces without texture coordinates use its factors, and mid grey (0.5) in place of map_Kd");
     emission.texture = none;
   }
   const std::uint32_t light =
@@ -348,12 +349,16 @@ void move_to_origin(ObjFile& file, Scene& scene) {
 
 void import_obj(reading::ImportContext& context) {
   if (!context.options.panels.empty()) {
-    throw UsageError(fmt::format("panel at node {}: nodes are what glTF files have; this is an OBJ",
-                                 context.options.panels.front().node));
+    throw UsageError(
+        fmt::format("panel at node {}: only glTF files have nodes, and this is an OBJ file; leave "
+                    "the panel out",
+                    context.options.panels.front().node));
   }
   if (!context.options.scene.empty()) {
-    throw UsageError(fmt::format("scene {}: only glTF files hold several scenes; this is an OBJ",
-                                 context.options.scene));
+    throw UsageError(
+        fmt::format("scene {}: only glTF files hold several scenes, and this is an OBJ file; leave "
+                    "the scene out",
+                    context.options.scene));
   }
   const std::vector<unsigned char> bytes = context.folder.read_scene_file();
   std::string text(bytes.begin(), bytes.end());

@@ -213,7 +213,8 @@ void examine_vertex(std::string_view rest, std::uint64_t vertex, ObjTextFindings
 
 ObjTextFindings examine_obj_text(std::string& text, reading::ImportContext& context) {
   if (text.find('\0') != std::string::npos) {
-    throw files::ResourceError("NUL bytes: this is no plain text (UTF-16?); save it as UTF-8");
+    throw files::ResourceError(
+        "it contains NUL bytes and is not plain text (UTF-16?); save it as UTF-8");
   }
   join_continued_lines(text);
   constexpr std::array<std::string_view, 7> understood{"vn", "vt", "f", "o", "g", "usemtl", "s"};
@@ -275,7 +276,7 @@ void read_library(const std::string& name, std::vector<MtlMaterial>& materials,
   const std::vector<unsigned char> bytes = context.folder.read(name);
   std::string text(bytes.begin(), bytes.end());
   if (text.find('\0') != std::string::npos) {
-    throw files::ResourceError("'" + name + "': NUL bytes: this is no plain text (UTF-16?)");
+    throw files::ResourceError("'" + name + "' contains NUL bytes and is not plain text (UTF-16?)");
   }
   for (MtlMaterial& material : read_mtl(name, std::move(text), context)) {
     materials.push_back(std::move(material));

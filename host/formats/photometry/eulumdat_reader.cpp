@@ -42,7 +42,7 @@ class Lines {
     std::replace(text.begin(), text.end(), ',', '.');
     const auto value = parse_signed(text);
     if (!value)
-      throw files::ResourceError(fmt::format("line {}: no number, for the {}", line, what));
+      throw files::ResourceError(fmt::format("line {}: the {} is not a number", line, what));
     return *value;
   }
 
@@ -130,7 +130,7 @@ std::vector<double> ascending_angles(const std::string& what, std::size_t first_
     const bool ascends = i == 0 || angle - angles.back() >= least_angle_step;
     if (!(angle >= 0.0 && angle <= highest) || !ascends) {
       throw files::ResourceError(fmt::format(
-          "line {}: the {} is {}; angles ascend within 0 and {} degrees, by {:g} at least",
+          "line {}: the {} is {}; angles must ascend from 0 to {} degrees, by at least {:g}",
           first_line + i, what, angle, highest, least_angle_step));
     }
     angles.push_back(angle);
@@ -181,7 +181,8 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
   const std::size_t sets =
       lines.count("number of sets of lamps", set_count_line, 1, limits::max_photometric_angles);
   if (sets > 1) {
-    warnings.add("photometric file", name, fmt::format("{} sets of lamps; the first counts", sets));
+    warnings.add("photometric file", name,
+                 fmt::format("it has {} sets of lamps; the first is used", sets));
   }
   const std::size_t flux_line = set_count_line + flux_in_set;
   const double factor = conversion * lines.number("flux of the lamps", flux_line) / 1000.0;
@@ -203,7 +204,7 @@ IntensityDistribution read_eulumdat(const std::string& name, std::string_view te
     const double value = factor * lines.number("intensity", first_value + i);
     if (!(value >= 0.0) || !std::isfinite(static_cast<float>(value))) {
       throw files::ResourceError(
-          fmt::format("line {}: an intensity of {} cd", first_value + i, value));
+          fmt::format("line {}: an intensity of {} cd is not possible", first_value + i, value));
     }
     measured.push_back(static_cast<float>(value));
   }

@@ -30,7 +30,7 @@ Tilt find_tilt(const std::vector<std::string_view>& lines) {
     line = trimmed(line.substr(4));
     if (line.starts_with('=')) return {lower(trimmed(line.substr(1))), i + 1};
   }
-  throw files::ResourceError("no line starts with TILT=: this is no LM-63 file");
+  throw files::ResourceError("no line starts with TILT=, so this is not an LM-63 file");
 }
 
 /// The content of the keywords before the TILT= line. [MORE] continues the one before it; colours
@@ -83,7 +83,8 @@ void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
                files::Warnings& warnings) {
   if (tilt.value == "none") return;
   if (tilt.value != "include") {
-    warnings.add("photometric file", name, "its tilt file is not read: the lamp is not tilted");
+    warnings.add("photometric file", name,
+                 "its tilt file is not read; the lamp is taken as not tilted");
     return;
   }
   reader.number("lamp-to-luminaire geometry");
@@ -92,7 +93,8 @@ void skip_tilt(const Tilt& tilt, const std::string& name, NumberReader& reader,
   reader.numbers("tilt angle", count);
   const std::vector<double> factors = reader.numbers("tilt factor", count);
   if (std::any_of(factors.begin(), factors.end(), [](double factor) { return factor != 1.0; })) {
-    warnings.add("photometric file", name, "its tilt factors are ignored: the lamp is not tilted");
+    warnings.add("photometric file", name,
+                 "its tilt factors are ignored; the lamp is taken as not tilted");
   }
 }
 
@@ -111,9 +113,9 @@ std::vector<double> angles(const std::string& what, std::size_t count, double lo
   for (std::size_t i = 0; i < count; ++i) {
     const bool ascends = i == 0 || values[i] - values[i - 1] >= least_angle_step;
     if (values[i] < lowest || values[i] > highest || !ascends) {
-      throw files::ResourceError(
-          fmt::format("{} {} of {} is {}; angles ascend within {} and {} degrees, by {:g} at least",
-                      what, i + 1, count, values[i], lowest, highest, least_angle_step));
+      throw files::ResourceError(fmt::format(
+          "{} {} of {} is {}; angles must ascend from {} to {} degrees, by at least {:g}", what,
+          i + 1, count, values[i], lowest, highest, least_angle_step));
     }
   }
   return values;
@@ -139,8 +141,9 @@ Web read_web(std::size_t vertical, std::size_t horizontal, Photometry type, doub
     const std::string what = "candela value";
     const double value = factor * reader.number(what);
     if (!(value >= 0.0) || !std::isfinite(static_cast<float>(value))) {
-      throw files::ResourceError(fmt::format("{}: {} {} of {} makes {} cd", reader.place(), what,
-                                             i + 1, vertical * horizontal, value));
+      throw files::ResourceError(fmt::format("{}: {} {} of {} is {} cd, which is not possible",
+                                             reader.place(), what, i + 1, vertical * horizontal,
+                                             value));
     }
     web.candela.push_back(static_cast<float>(value));
   }
@@ -290,7 +293,7 @@ IntensityDistribution read_ies(const std::string& name, std::string_view text,
     factor *= next;
     if (edition == first_edition && next != 1.0) {
       warnings.add("photometric file", name,
-                   fmt::format("its ballast-lamp photometric factor of {:g} counts, since no line "
+                   fmt::format("its ballast-lamp photometric factor of {:g} is applied, as no line "
                                "before TILT= names LM-63 of 1995 or later",
                                next));
     }

@@ -20,8 +20,8 @@ IntensityDistribution read_photometry(const std::string& name, std::span<const u
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   try {
     if (bytes.size() > limits::max_photometry_bytes) {
-      throw files::ResourceError(
-          fmt::format("{} bytes; the limit is {}", bytes.size(), limits::max_photometry_bytes));
+      throw files::ResourceError(fmt::format("it has {} bytes; the limit is {}", bytes.size(),
+                                             limits::max_photometry_bytes));
     }
     IntensityDistribution distribution = ends_in(name, ".ldt") ? read_eulumdat(name, text, warnings)
                                                                : read_ies(name, text, warnings);
@@ -151,7 +151,7 @@ double NumberReader::number(const std::string& what) {
   const auto value = parse_signed(text);
   if (!value) {
     throw files::ResourceError(
-        fmt::format("{}: '{}' is no number, for the {}", place(), shown(text), what));
+        fmt::format("{}: the {} is '{}', not a number", place(), what, shown(text)));
   }
   return *value;
 }
@@ -205,8 +205,8 @@ std::vector<MeasuredPlane> planes_all_around(const std::vector<double>& azimuths
     planes.push_back({first + 360.0, 0});
   } else if (range != 360.0) {
     throw files::ResourceError(
-        fmt::format("the horizontal angles run from {} to {} degrees; 0, 0 to 90, 0 to 180, 90 to "
-                    "270 and 0 to 360 are understood",
+        fmt::format("the horizontal angles run from {} to {} degrees; they must be 0, or run from "
+                    "0 to 90, 0 to 180, 90 to 270 or 0 to 360",
                     first, last));
   }
   return planes;

@@ -125,10 +125,9 @@ Texture decode_texture(const std::string& name, std::span<const unsigned char> b
   try {
     OpenPicture picture(name, bytes);
     if (bytes_of_texels(picture.shape().width, picture.shape().height) > most_bytes) {
-      throw files::ResourceError(
-          fmt::format("{} x {} texels are more than pictures of so few bytes may have together; "
-                      "use smaller ones",
-                      picture.shape().width, picture.shape().height));
+      throw files::ResourceError(fmt::format(
+          "{} x {} texels exceed the limit for pictures of this many bytes; use smaller pictures",
+          picture.shape().width, picture.shape().height));
     }
     return Texture(name, picture.shape().width, picture.shape().height, decode(picture, content));
   } catch (const files::ResourceError& error) {
@@ -141,7 +140,7 @@ namespace {
 RadiancePicture radiance_of(OpenPicture& picture) {
   const PictureShape& shape = picture.shape();
   if (shape.sample != image::Sample::real) {
-    throw files::ResourceError("its pixels are no floating-point numbers");
+    throw files::ResourceError("its pixels are not floating-point numbers");
   }
   const std::vector<float> pixels = picture.light();
   const double white = picture.metadata().white_luminance;
@@ -206,7 +205,7 @@ RadiancePicture read_radiance_picture(const std::filesystem::path& file) {
         files::read_regular_file(file, limits::max_external_bytes);
     OpenPicture opened(file.string(), bytes);
     if (const std::string& projection = opened.metadata().projection; !projection.empty()) {
-      throw files::ResourceError("it says that it is " + projection);
+      throw files::ResourceError("its projection is " + projection);
     }
     RadiancePicture picture = radiance_of(opened);
     check_texels(picture);

@@ -71,7 +71,8 @@ std::vector<AreaLights::Origin> AreaLights::finish(files::Warnings& warnings) {
     light.two_sided =
         pending.emission.two_sided && !have_other_backs(scene_, coincident, light.triangles);
     if (!set_emission(pending, area[i], light, warnings)) {
-      warnings.add("light", light.name, "emits nothing (no area or no finite radiance); dropped");
+      warnings.add("light", light.name,
+                   "emits nothing (it has no area or no finite radiance); dropped");
       continue;
     }
     sources.push_back(&pending);

@@ -32,7 +32,7 @@ glm::dvec3 velocity(std::span<const double> times, std::span<const glm::dvec3> v
 Camera read_radiance_view(const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& reason) {
     throw InputError(
-        fmt::format("{}: {}; write it by rvu or rpict of Radiance, such as "
+        fmt::format("{}: {}; give a view as Radiance's rvu and rpict write it, such as "
                     "-vtv -vp 1 2 1.6 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 40",
                     file.string(), reason));
   };
@@ -43,7 +43,7 @@ Camera read_radiance_view(const std::filesystem::path& file) {
       view = line.substr(at);
     }
   }
-  if (view.empty()) refuse("is no view");
+  if (view.empty()) refuse("the file holds no view");
   std::istringstream words(view);
   Camera camera;
   camera.name = file.filename().string();
@@ -56,7 +56,7 @@ Camera read_radiance_view(const std::filesystem::path& file) {
       words >> next;
       const auto value = parse_signed(next);
       if (!value || std::abs(*value) > limits::max_coordinate) {
-        refuse(word + " has no number where it needs one");
+        refuse(word + " needs a number");
       }
       return *value;
     };
@@ -77,9 +77,9 @@ Camera read_radiance_view(const std::filesystem::path& file) {
     } else if (word == "-vv") {
       high = number();
     } else if (word == "-vs" || word == "-vl" || word == "-vo" || word == "-va") {
-      if (number() != 0) refuse(word + ": shifted and clipped views are not known");
+      if (number() != 0) refuse(word + ": shifted and clipped views are not supported");
     } else {
-      refuse(shortened(word, 20) + " is no part of a view");
+      refuse(shortened(word, 20) + " is not an option of a view");
     }
   }
   if (!(glm::length(direction) > 0) || !(glm::length(glm::cross(direction, up)) > 0)) {
@@ -87,7 +87,8 @@ Camera read_radiance_view(const std::filesystem::path& file) {
   }
   const double most = type == 'v' ? 179 : type == 'h' ? 180 : type == 'a' ? 360 : 1e9;
   if (!(across > 0 && high > 0 && across <= most && high <= most)) {
-    refuse(fmt::format("-vh {:g} -vv {:g} are not above 0 and at most {:g}", across, high, most));
+    refuse(
+        fmt::format("-vh {:g} and -vv {:g} must be above 0 and at most {:g}", across, high, most));
   }
   const double half_across = glm::radians(across / 2), half_high = glm::radians(high / 2);
   const std::string name = camera.name;
@@ -111,7 +112,7 @@ Camera read_radiance_view(const std::filesystem::path& file) {
       camera.orthographic_height = high;
       break;
     default:
-      refuse(fmt::format("-vt{}: is none of -vtv, -vth, -vta and -vtl", type));
+      refuse(fmt::format("-vt{} is not a view type; use -vtv, -vth, -vta or -vtl", type));
   }
   return camera;
 }
@@ -160,18 +161,19 @@ glm::dquat orientation_of(const Camera& camera) {
 void add(const JsonObject& keyframe, const Camera& base, Keyframes& all) {
   const double time = keyframe.number("time", -1e9, 1e9);
   if (!all.times.empty() && !(time > all.times.back())) {
-    keyframe.refuse("'time' is not after that of the keyframe before");
+    keyframe.refuse("'time' must be later than that of the previous keyframe");
   }
   if (keyframe.has("look_at") == keyframe.has("direction")) {
-    keyframe.refuse("needs either 'look_at' or 'direction'");
+    keyframe.refuse("give either 'look_at' or 'direction'");
   }
   const glm::dvec3 position = keyframe.vector("position");
   const bool at_point = keyframe.has("look_at");
   const glm::dvec3 target =
       at_point ? keyframe.vector("look_at") : position + keyframe.vector("direction");
-  if (target == position) keyframe.refuse("looks at its own position");
+  if (target == position)
+    keyframe.refuse("'look_at' is the camera's own position; give another point");
   const glm::dvec3 up = keyframe.has("up") ? keyframe.vector("up") : base.up;
-  if (!(glm::length(up) > 0)) keyframe.refuse("'up' has no length");
+  if (!(glm::length(up) > 0)) keyframe.refuse("'up' has length 0");
   const double fov = keyframe.has("fov") ? glm::radians(keyframe.number("fov", 0.01, 179))
                                          : base.vertical_field_of_view;
   all.times.push_back(time);
@@ -210,7 +212,7 @@ bool is_smooth(const json& content, const std::string& file) {
   if (!content.is_object() || !content.contains("interpolation")) return true;
   const json& word = content["interpolation"];
   if (word != "smooth" && word != "linear") {
-    throw InputError(fmt::format("{}: 'interpolation' is neither \"smooth\" nor \"linear\"", file));
+    throw InputError(fmt::format("{}: 'interpolation' must be \"smooth\" or \"linear\"", file));
   }
   return word == "smooth";
 }
@@ -221,9 +223,9 @@ CameraMotion read_camera_path(const std::filesystem::path& file, const Camera& b
   const json content = read_input_json(file);
   const json list = content.is_object() ? content.value("keyframes", json()) : content;
   if (!list.is_array() || list.empty()) {
-    throw InputError(
-        fmt::format("{}: no keyframes; write a list of {{\"time\", \"position\", \"look_at\"}}",
-                    file.string()));
+    throw InputError(fmt::format(
+        "{}: there are no keyframes; write a list of {{\"time\", \"position\", \"look_at\"}}",
+        file.string()));
   }
   auto all = std::make_shared<Keyframes>();
   all->smooth = is_smooth(content, file.string());

@@ -145,15 +145,15 @@ class Reader {
     std::error_code error;
     left_ = std::filesystem::file_size(file, error);
     stream_.open(file, std::ios::binary);
-    if (error || !stream_) refuse("cannot be read");
+    if (error || !stream_) refuse("the file cannot be read");
   }
 
   std::uint64_t left() const { return left_; }
 
   void read(void* bytes, std::uint64_t count) {
-    if (count > left_) refuse("is truncated; save it again");
+    if (count > left_) refuse("the file is truncated; save it again");
     if (!stream_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count))) {
-      refuse("cannot be read");
+      refuse("the file cannot be read");
     }
     if (hash_) hash_->add_bytes(bytes, count);
     left_ -= count;
@@ -163,7 +163,7 @@ class Reader {
   void begin_part() { hash_.emplace(); }
   /// Errors: InputError where the part has another digest.
   void end_part(const Part& part) {
-    if (hash_->digest() != part.digest) refuse("is damaged; save it again");
+    if (hash_->digest() != part.digest) refuse("the file is damaged; save it again");
     hash_.reset();
   }
 
@@ -172,7 +172,8 @@ class Reader {
   void read_array(Array& values) {
     std::uint64_t count = 0;
     read(&count, sizeof count);
-    if (count > left_ / sizeof(values[0])) refuse("is truncated or damaged; save it again");
+    if (count > left_ / sizeof(values[0]))
+      refuse("the file is truncated or damaged; save it again");
     values.resize(count);
     read(values.data(), count * sizeof(values[0]));
   }
@@ -190,24 +191,26 @@ class Reader {
 
 Header read_header(Reader& reader) {
   Header header{};
-  if (reader.left() < sizeof header) reader.refuse("holds no photon maps");
+  if (reader.left() < sizeof header) reader.refuse("the file holds no photon maps; give another");
   reader.read(&header, sizeof header);
-  if (header.magic != magic) reader.refuse("holds no photon maps");
+  if (header.magic != magic) reader.refuse("the file holds no photon maps; give another");
   if (header.byte_order != byte_order) {
-    reader.refuse("was saved on a machine of another byte order; save it again here");
+    reader.refuse("the file was saved on a machine with another byte order; save it again here");
   }
   if (header.version != version) {
-    reader.refuse(fmt::format("has version {} of the format, this photile reads {}; save it again",
-                              header.version, version));
+    reader.refuse(fmt::format(
+        "the file has version {} of the format, and this photile reads {}; save it again",
+        header.version, version));
   }
-  if (header.head != digest_of(header)) reader.refuse("is damaged; save it again");
-  if (header.whole != all_photons) reader.refuse("holds a part of the photons; save all of them");
+  if (header.head != digest_of(header)) reader.refuse("the file is damaged; save it again");
+  if (header.whole != all_photons)
+    reader.refuse("the file holds only a part of the photons; save all of them");
   const std::uint64_t left = reader.left();
   const bool whole =
       header.photons.bytes <= left && header.light_maps.bytes <= left - header.photons.bytes;
-  if (!whole) reader.refuse("is truncated; save it again");
+  if (!whole) reader.refuse("the file is truncated; save it again");
   if (header.photons.bytes + header.light_maps.bytes != left) {
-    reader.refuse("has bytes after its end; save it again");
+    reader.refuse("the file has bytes after its end; save it again");
   }
   return header;
 }
@@ -217,7 +220,7 @@ LightMapContents read_light_maps(Reader& reader, const Part& part) {
   reader.begin_part();
   for_each_light_map_array(contents, [&](auto& values) { reader.read_array(values); });
   reader.end_part(part);
-  if (reader.left() > 0) reader.refuse("is damaged; save it again");
+  if (reader.left() > 0) reader.refuse("the file is damaged; save it again");
   return contents;
 }
 
@@ -241,7 +244,7 @@ Contents read_photons(Reader& reader, const Header& header) {
   prepared.radius = numbers[0];
   prepared.groups.radius = numbers[1];
   prepared.groups.angle_degrees = numbers[2];
-  if (reader.left() != header.light_maps.bytes) reader.refuse("is damaged; save it again");
+  if (reader.left() != header.light_maps.bytes) reader.refuse("the file is damaged; save it again");
   if (reader.left() > 0) prepared.light_maps = read_light_maps(reader, header.light_maps);
   return contents;
 }
@@ -249,8 +252,9 @@ Contents read_photons(Reader& reader, const Header& header) {
 void refuse_other_settings(const Reader& reader, const std::string& saved,
                            const std::string& asked) {
   if (saved == asked) return;
-  reader.refuse(fmt::format(
-      "was saved with {}, not with {}; give the same options or save it again", saved, asked));
+  reader.refuse(
+      fmt::format("the file was saved with {}, not with {}; give the same options or save it again",
+                  saved, asked));
 }
 
 }  // namespace
@@ -295,15 +299,15 @@ TracedPhotons load(const std::filesystem::path& file, const Scene& scene,
   const Header header = read_header(reader);
   Contents contents = read_photons(reader, header);
   if (header.scene != digest_of(scene)) {
-    reader.refuse(
-        fmt::format("was saved from another scene than {}; save it again", scene.source.string()));
+    reader.refuse(fmt::format("the file was saved from another scene than {}; save it again",
+                              scene.source.string()));
   }
   refuse_other_settings(reader, contents.settings.photons, settings.photons);
   if (contents.prepared.has_groups()) {
     refuse_other_settings(reader, contents.settings.groups, settings.groups);
   }
   const std::string problem = problem_of(contents.prepared, scene);
-  if (!problem.empty()) reader.refuse(fmt::format("has {}; save it again", problem));
+  if (!problem.empty()) reader.refuse(fmt::format("the file has {}; save it again", problem));
   return std::move(contents.prepared);
 }
 
@@ -349,7 +353,7 @@ std::string problem_of(const TracedPhotons& prepared, const Scene& scene) {
   // Naive groups have an infinite radius.
   if (!std::isfinite(prepared.radius) || !(groups.radius >= prepared.radius) ||
       !(groups.angle_degrees >= 0) || !(groups.angle_degrees <= 180)) {
-    return "no sensible radius or angle";
+    return "no usable radius or angle";
   }
   return {};
 }

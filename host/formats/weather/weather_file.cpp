@@ -51,8 +51,8 @@ class Line {
   double number(std::size_t index, const char* what, double lowest, double highest) const {
     const auto value = parse_signed(field(index));
     if (!value || *value < lowest || *value > highest) {
-      refuse(fmt::format("field {} is '{}', no {} from {:g} to {:g}", index + 1, field(index), what,
-                         lowest, highest));
+      refuse(fmt::format("field {} is '{}'; the {} must be a number from {:g} to {:g}", index + 1,
+                         field(index), what, lowest, highest));
     }
     return *value;
   }
@@ -62,14 +62,14 @@ class Line {
     const double value = number(index, what, 0, 10 * missing_irradiance + 9);
     if (value >= missing_irradiance) refuse(fmt::format("the {} is missing", what));
     if (value > most_irradiance) {
-      refuse(fmt::format("the {} of {:g} W/m2 is more than the sun's above the atmosphere", what,
+      refuse(fmt::format("the {} of {:g} W/m2 exceeds that of the sun above the atmosphere", what,
                          value));
     }
     return value;
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}: line {}: {}; mend the line, or take another EPW file",
+    throw InputError(fmt::format("{}: line {}: {}; correct the line, or give another EPW file",
                                  file_.string(), number_, what));
   }
 
@@ -108,7 +108,8 @@ Day day_of(const Line& line, std::size_t index) {
   const auto month = parse_number<int>(trimmed(text.substr(0, slash)));
   std::string_view rest = slash == std::string_view::npos ? "" : text.substr(slash + 1);
   const auto day = parse_number<int>(trimmed(rest.substr(0, rest.find('/'))));
-  if (!month || !day) line.refuse(fmt::format("field {} is '{}', no month/day", index + 1, text));
+  if (!month || !day)
+    line.refuse(fmt::format("field {} is '{}', not a date of the form month/day", index + 1, text));
   return {*month, *day};
 }
 
@@ -122,10 +123,12 @@ Period period_of(const Line& line) {
   constexpr std::size_t periods = 1, records = 2, weekday = 4;
   if (lower(line.field(0)) != "data periods") line.refuse("DATA PERIODS is missing");
   if (line.number(periods, "number of data periods", 1, 366) != 1) {
-    line.refuse(fmt::format("{} data periods, where a year is one", line.field(periods)));
+    line.refuse(
+        fmt::format("there are {} data periods; only one is supported", line.field(periods)));
   }
   if (line.number(records, "number of records per hour", 1, 60) != 1) {
-    line.refuse(fmt::format("{} records per hour, where one is read", line.field(records)));
+    line.refuse(
+        fmt::format("there are {} records per hour; only one is supported", line.field(records)));
   }
   Period period{day_of(line, first_day_field), day_of(line, first_day_field + 1)};
   const auto* const named = std::find(weekdays.begin(), weekdays.end(), lower(line.field(weekday)));
@@ -146,7 +149,7 @@ bool follows(const WeatherHour& hour, const WeatherHour& before) {
 
 WeatherHour hour_of(const Line& line) {
   if (line.fields() > fields_of_hour) {
-    line.refuse(fmt::format("{} fields, where an hour has {}: numbers need a decimal point",
+    line.refuse(fmt::format("there are {} fields, and an hour has {}: numbers need a decimal point",
                             line.fields(), fields_of_hour));
   }
   WeatherHour hour;
@@ -167,10 +170,9 @@ WeatherYear read_weather_hours(const std::filesystem::path& file) {
   const std::string text = read_input_text(file);
   const std::vector<std::string_view> lines = lines_of(text);
   if (lines.size() <= header_lines) {
-    throw InputError(
-        fmt::format("{}: {} lines, where an EPW file has {} before its hours; give an "
-                    "EPW file",
-                    file.string(), lines.size(), header_lines));
+    throw InputError(fmt::format(
+        "{}: the file has {} lines, and an EPW file has {} before its hours; give an EPW file",
+        file.string(), lines.size(), header_lines));
   }
   WeatherYear year;
   year.site = site_of(Line(file, 1, lines.front()));
@@ -201,7 +203,7 @@ WeatherYear read_weather_hours(const std::filesystem::path& file) {
   const bool whole = year.hours.size() == hours_of_year || year.hours.size() == hours_of_leap_year;
   if (whole &&
       !(is_day(year.hours.front(), period.first) && is_day(year.hours.back(), period.last))) {
-    periods.refuse(fmt::format("{} to {} is not what follows, {}/{} to {}/{}",
+    periods.refuse(fmt::format("the data period {} to {} is not that of the hours, {}/{} to {}/{}",
                                periods.field(first_day_field), periods.field(first_day_field + 1),
                                year.hours.front().month, year.hours.front().day,
                                year.hours.back().month, year.hours.back().day));
@@ -213,7 +215,7 @@ WeatherYear read_weather(const std::filesystem::path& file) {
   const WeatherYear year = read_weather_hours(file);
   if (year.hours.size() != hours_of_year && year.hours.size() != hours_of_leap_year) {
     throw InputError(fmt::format(
-        "{}: {} hours; give a file of a whole year, {} or {} lines after "
+        "{}: the file has {} hours; give a file of a whole year, {} or {} lines after "
         "the first {}",
         file.string(), year.hours.size(), hours_of_year, hours_of_leap_year, header_lines));
   }
@@ -221,8 +223,9 @@ WeatherYear read_weather(const std::filesystem::path& file) {
     return hour.month == 2 && hour.day == 29;
   });
   if (is_leap != (year.hours.size() == hours_of_leap_year)) {
-    throw InputError(fmt::format("{}: {} hours, {} the 29th of February; give a file of one year",
-                                 file.string(), year.hours.size(), is_leap ? "with" : "without"));
+    throw InputError(
+        fmt::format("{}: the file has {} hours {} the 29th of February; give a file of one year",
+                    file.string(), year.hours.size(), is_leap ? "with" : "without"));
   }
   return year;
 }

@@ -262,8 +262,9 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
                          ? gltf::BinaryFile::head(json.dump(), parts.rest.size()).append(parts.rest)
                          : json.dump(2) + "\n");
   } catch (const Json::exception&) {  // its text is meaningful to programmers only
-    throw InputError(fmt::format(
-        "{}: its lights cannot be set, for it is malformed; export it again", scene.string()));
+    throw InputError(
+        fmt::format("{}: its lights cannot be set, because the file is malformed; export it again",
+                    scene.string()));
   }
 }
 

@@ -95,7 +95,7 @@ std::vector<LightSetting> settings_of(const loading::SourcedScene& sourced,
 void refuse_taken(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return;
   throw OutputError(
-      fmt::format("{}: is there already; remove it, or take another name", file.string()));
+      fmt::format("{}: the file exists already; remove it, or choose another name", file.string()));
 }
 
 // OBJ: the text of the file with a separate library, in which lamps have other Ke.
@@ -134,10 +134,9 @@ std::map<std::string, LightSetting> settings_of(std::span<const LightSetting> se
     if (!first && !same(entry->second, light)) torn[light.material] = light.name;
   }
   for (const auto& [material, name] : torn) {
-    left_out.push_back(
-        fmt::format("{} and {}: share the material {} but are set differently; give "
-                    "each its own",
-                    of.at(material).name, name, material));
+    left_out.push_back(fmt::format(
+        "{} and {} share the material {} but are set differently; give each its own material",
+        of.at(material).name, name, material));
     of.erase(material);
   }
   return of;
@@ -217,7 +216,8 @@ EditedScene write_edited_scene(const std::filesystem::path& scene, const SceneLo
   refuse_taken(copy.file);
   const std::vector<LightSetting> settings =
       settings_of(loading::load_sourced_scene(scene, options), options, mix, copy.left_out);
-  if (settings.empty()) throw OutputError(fmt::format("{}: has no light to set", scene.string()));
+  if (settings.empty())
+    throw OutputError(fmt::format("{}: the scene has no light to set", scene.string()));
   if (settings.front().source.node == none) {
     write_lit_obj(scene, copy.file, settings, copy.left_out);
   } else {

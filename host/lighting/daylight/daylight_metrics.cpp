@@ -39,9 +39,10 @@ std::vector<bool> read_schedule(const std::filesystem::path& file, std::size_t h
     const auto value = parse_signed(field);
     if (!value && number == 1) continue;  // names of columns
     if (!value || *value < 0) {
-      throw InputError(fmt::format(
-          "{}: line {}: '{}' is no number of 0 or more; give 1 for an occupied hour, 0 for others",
-          file.string(), number, field));
+      throw InputError(
+          fmt::format("{}: line {}: '{}' is not a number of 0 or more; give 1 for an occupied "
+                      "hour, 0 for others",
+                      file.string(), number, field));
     }
     occupied.push_back(*value > 0);
   }

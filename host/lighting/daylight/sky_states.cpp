@@ -26,9 +26,10 @@ constexpr double most_points = 0.02;
 void close(const BlindGroup& group, Material& material) {
   const auto transmittance = scene::pane_transmittance(material);
   if (!transmittance) {
-    throw UsageError(fmt::format(
-        "--blinds {}: '{}' is no thin pane of glass; give the scene with closed blinds as a file",
-        group.glob, material.name));
+    throw UsageError(
+        fmt::format("--blinds {}: '{}' is not a thin pane of glass; give the scene with closed "
+                    "blinds as a file",
+                    group.glob, material.name));
   }
   const double now = luminance(*transmittance);
   if (group.transmittance > now + 1e-6) {

@@ -182,7 +182,7 @@ SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayo
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
   const json content = read_input_json(file);
   const json list = content.is_array() ? content : json::array({content});
-  if (list.empty()) throw InputError(fmt::format("{}: holds no plane", file.string()));
+  if (list.empty()) throw InputError(fmt::format("{}: the file lists no planes", file.string()));
   std::vector<SensorGrid> grids;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
@@ -227,7 +227,7 @@ Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& 
     const auto number = parse_signed(words[i]);
     if (!number || std::abs(*number) > limits::max_coordinate) {
       throw InputError(
-          fmt::format("{}: '{}' is no number of metres; write x y z dx dy dz", where, words[i]));
+          fmt::format("{}: '{}' is not a number of metres; write x y z dx dy dz", where, words[i]));
     }
     numbers[i] = *number;
   }

@@ -45,7 +45,8 @@ WorkingPlane parse_working_plane(const std::string& text) {
   const auto metres = parse_number<double>(height);
   if (!metres || std::abs(*metres) > limits::max_coordinate || (plane.above_floor && !plus)) {
     throw UsageError(fmt::format(
-        "working plane {}: is no height; write floor+0.75, or metres in the scene's world", text));
+        "working plane {} is not a height; write floor+0.75, or metres in the scene's world",
+        text));
   }
   plane.height = *metres;
   return plane;

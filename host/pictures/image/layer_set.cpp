@@ -157,7 +157,7 @@ Json rgb_to_json(const glm::vec3& rgb) { return Json::array({rgb.r, rgb.g, rgb.b
 double read_amount(const Json& value, const char* what) {
   const double amount = value.is_number() ? value.get<double>() : -1.0;
   if (!(amount >= 0.0) || !std::isfinite(amount)) {
-    refuse(lights_attribute, fmt::format("a {} is no number of 0 or more", what));
+    refuse(lights_attribute, fmt::format("a {} is not a number of 0 or more", what));
   }
   return amount;
 }
@@ -166,7 +166,7 @@ glm::vec3 read_rgb(const Json& record, const char* key) {
   const auto found = record.find(key);
   if (found == record.end()) return glm::vec3(1.0f);
   if (!found->is_array() || found->size() != 3) {
-    refuse(lights_attribute, fmt::format("a {} has not three numbers", key));
+    refuse(lights_attribute, fmt::format("a {} does not have three numbers", key));
   }
   glm::vec3 rgb;
   for (int channel = 0; channel < 3; ++channel) {
@@ -179,7 +179,7 @@ glm::vec3 read_rgb(const Json& record, const char* key) {
 std::vector<std::string> read_members(const Json& record) {
   const auto found = record.find("lights");
   if (found == record.end()) return {};
-  if (!found->is_array()) refuse(lights_attribute, "the lights of a group are no list");
+  if (!found->is_array()) refuse(lights_attribute, "the lights of a group are not a list");
   std::vector<std::string> members;
   for (const Json& member : *found) {
     if (!member.is_string()) refuse(lights_attribute, "a light of a group has no name");
@@ -217,7 +217,7 @@ double read_efficacy(const PictureHeader& image) {
   const std::string& text = found->second;
   const auto efficacy = parse_number<double>(text);
   if (!efficacy || *efficacy <= 0) {
-    refuse(efficacy_attribute, fmt::format("'{}' is no number above 0", text));
+    refuse(efficacy_attribute, fmt::format("'{}' is not a number above 0", text));
   }
   return *efficacy;
 }
@@ -268,7 +268,7 @@ LightRecords read_light_records(const PictureHeader& image) {
   const auto found = image.attributes.find(lights_attribute);
   if (found == image.attributes.end()) return records;
   const Json lights = Json::parse(found->second, nullptr, /*allow_exceptions=*/false);
-  if (!lights.is_array()) refuse(lights_attribute, "it is no list of lights");
+  if (!lights.is_array()) refuse(lights_attribute, "it is not a list of lights");
   for (const Json& record : lights) {
     records.mix.lights.push_back(read_record(record, records.relative));
   }

@@ -30,7 +30,7 @@ SetColor parse_color(const LightChange& change) {
   const std::string_view digits = std::string_view(change.value).substr(1);
   const auto code = parse_number<std::uint32_t>(digits, 16);
   if (digits.size() != 6 || !code) {
-    refuse(change, "is no colour; use six hexadecimal digits such as #FFD8A0");
+    refuse(change, "is not a colour; use six hexadecimal digits such as #FFD8A0");
   }
   if (*code == 0) refuse(change, "is black; to turn the light off use 'off'");
   const auto channel = [&](unsigned shift) {
@@ -45,7 +45,7 @@ SetTemperature parse_temperature(const LightChange& change) {
       parse_amount(std::string_view(change.value).substr(0, change.value.size() - 1));
   if (!kelvin || *kelvin < limits::min_color_temperature ||
       *kelvin > limits::max_color_temperature) {
-    refuse(change, "is no colour temperature from 1000K to 40000K");
+    refuse(change, "is not a colour temperature from 1000K to 40000K");
   }
   return {*kelvin};
 }
@@ -66,9 +66,10 @@ SetPower parse_power(const LightChange& change) {
   }
   const std::optional<double> power = parse_amount(number);
   if (!power) {
-    refuse(change,
-           "is no change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, PERCENT%, "
-           "#RRGGBB, KELVINK or off");
+    refuse(
+        change,
+        "is not a change of a light; use POWER, POWERlm or POWERW (0 or more), xFACTOR, PERCENT%, "
+        "#RRGGBB, KELVINK or off");
   }
   return {*power, unit};
 }
@@ -81,14 +82,14 @@ Request understand(const LightChange& change) {
   if (change.value.ends_with('K')) return parse_temperature(change);
   if (change.value.starts_with('x')) {
     const std::optional<double> factor = parse_amount(std::string_view(change.value).substr(1));
-    if (!factor) refuse(change, "is no factor; use x and a number of 0 or more such as x1.5");
+    if (!factor) refuse(change, "is not a factor; use x and a number of 0 or more such as x1.5");
     return ScalePower{*factor};
   }
   if (change.value.ends_with('%')) {
     const std::string_view number =
         std::string_view(change.value).substr(0, change.value.size() - 1);
     const std::optional<double> percent = parse_amount(number);
-    if (!percent) refuse(change, "is no percentage; use a number of 0 or more such as 50%");
+    if (!percent) refuse(change, "is not a percentage; use a number of 0 or more such as 50%");
     return ScalePower{*percent / 100};
   }
   return parse_power(change);
@@ -157,7 +158,7 @@ LightChange LightChange::parse(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
     throw UsageError(
-        fmt::format("'{}' is no change of a light; use NAME=POWER, NAME=xFACTOR, NAME=#RRGGBB, "
+        fmt::format("'{}' is not a change of a light; use NAME=POWER, NAME=xFACTOR, NAME=#RRGGBB, "
                     "NAME=KELVINK or NAME=off",
                     text));
   }

@@ -180,7 +180,7 @@ void PictureFile::add_channel(const ExrInput::Part& part, std::size_t index) {
   if (names_.contains(name)) name = part.name + "." + own;
   // Control characters, which would leave the line of a list or a message.
   if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 127; })) {
-    refuse("has a channel whose name is no text; rename it");
+    refuse("has a channel whose name is not text; rename it");
   }
   if (!names_.insert(name).second) {
     refuse(fmt::format("has two channels named '{}'; rename one", own));

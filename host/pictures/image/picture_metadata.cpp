@@ -261,8 +261,9 @@ std::array<double, count> numbers_behind(std::string_view line) {
     rest.remove_prefix(word.size());
     const auto value = parse_signed(trimmed(word));
     if (!value || !(*value > 0)) {
-      throw DecodeError(fmt::format("its header's line '{}' has no {} numbers above 0; mend it",
-                                    trimmed(line), count));
+      throw DecodeError(
+          fmt::format("its header's line '{}' does not have {} numbers above 0; correct it",
+                      trimmed(line), count));
     }
     number = *value;
   }
@@ -356,7 +357,7 @@ RadianceHeader read_radiance_header(Encoded bytes) {
         "is not of the format 32-bit_rle_rgbe or 32-bit_rle_xyze; convert it with ra_rgbe");
   }
   if (!std::isfinite(metadata.scale.x + metadata.scale.y + metadata.scale.z)) {
-    throw DecodeError("its exposures multiply to no number; mend its lines EXPOSURE=");
+    throw DecodeError("the product of its exposures is not a number; correct its lines EXPOSURE=");
   }
   take_resolution(line(), header);
   return header;

@@ -1,5 +1,5 @@
-// Light in space, interpolated from the nodes around: shown on surface whose own nodes are not
-// valued yet.
+// Light in space, interpolated from the nodes around: shown on surface whose nodes have no light
+// yet.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace photile::cache {
 /// a position.
 class AmbientLight {
  public:
-  /// Takes some of the nodes, evenly.
-  ///   light   irradiance, per node; the fourth is not read
+  /// Uses some of the nodes, chosen evenly.
+  ///   light   irradiance, per node; the fourth component is not read
   void gather(const LightMaps& maps, const Scene& scene, std::span<const glm::vec4> light);
 
-  /// W/m2, linear RGB; zero before nodes were gathered.
+  /// W/m2, linear RGB; zero before nodes have been gathered.
   ///   normal   of unit length
   glm::vec3 irradiance(const glm::vec3& position, const glm::vec3& normal) const;
 

@@ -31,7 +31,7 @@ class BatchSums {
     Sums& sums = add(layer, batch, irradiance);
     if (smooth_) add_by_normal(sums, irradiance, direction, 0.0f, no_bound);
   }
-  /// Adds surface, met by a ray with the density of the cosine, which is likely to go on beyond the
+  /// Adds surface hit by a ray with the density of the cosine; it is likely to continue below the
   /// horizon of the point.
   void add_surface(std::uint32_t layer, std::uint32_t batch, const glm::vec3& irradiance,
                    const glm::vec3& direction) {
@@ -44,7 +44,7 @@ class BatchSums {
     if (smooth_) sums.by_normal.w += static_cast<float>(luminance(glm::dvec3(irradiance)));
   }
 
-  /// Light that no batch has to find, likewise.
+  /// Adds light that no batch has to find, in the same way.
   ///   relative_variance   of it
   void add_to_all(std::uint32_t layer, const glm::vec3& irradiance, double relative_variance);
 
@@ -54,7 +54,7 @@ class BatchSums {
  private:
   static constexpr float no_bound = std::numeric_limits<float>::infinity();
 
-  /// Of one layer, beside what each batch found.
+  /// Sums of one layer, besides what each batch found.
   struct Sums {
     glm::vec4 by_normal{0.0f};
     double shared_variance = 0;

@@ -51,7 +51,7 @@ struct NodeCoordinates {
 
 /// The charts of a scene, by a rule of geometry alone.
 ///
-/// The frame of a chart is that which encloses it most tightly, of the directions of its first
+/// The frame of a chart is the one that encloses it most tightly, among the directions of its first
 /// triangle's edges and of the axes, and the spacing divides the sides of that rectangle evenly:
 /// the borders of a rectangular wall, and the corners of a triangle smaller than the spacing, are
 /// nodes.
@@ -59,7 +59,7 @@ class Charts {
  public:
   ///   spacing         metres, > 0: of the coarsest nodes, at most
   ///   angle_degrees   largest angle between the normals of neighbours in a smooth component
-  /// Where there would be too many lattices, the spacing is larger.
+  /// Where this would give too many lattices, the spacing is larger.
   Charts(const Scene& scene, double spacing, double angle_degrees);
 
   std::size_t size() const { return charts_.size(); }
@@ -72,7 +72,7 @@ class Charts {
   std::uint32_t roots() const { return roots_; }
   std::uint64_t bytes() const;
 
-  /// Makes `support` of nodes on this chart quick. Not to be called for one chart by two threads.
+  /// Makes `support` of nodes on this chart quick. Two threads must not call it for the same chart.
   void prepare(std::uint32_t chart);
 
   struct Support {
@@ -81,9 +81,9 @@ class Charts {
   };
   /// The surface that a node stands for: the triangle of the chart whose projection is nearest to
   /// it, the lowest of several at one distance, and the nearest point of that, moved a little
-  /// towards its middle, because at an edge it is undefined on which side of a wall the node is. So
-  /// a node beyond an edge, or in a hole, stands for the surface at the edge. `prepare` has been
-  /// called.
+  /// towards its middle, because at an edge it would be undefined on which side of a wall the node
+  /// is. So a node beyond an edge, or in a hole, stands for the surface at the edge. `prepare` must
+  /// have been called.
   ///   levels   of refinement: spacing / 2^(levels - 1) is the finest
   Support support(const NodeCoordinates& node, int levels) const;
   /// The surface that any position of the chart stands for.
@@ -123,9 +123,9 @@ struct ChartGrowth {
 };
 
 /// Charts grow from the largest triangles over shared edges, as far as the surface stays near the
-/// plane of the first one and folds little, and over edges that run along each other, as those of
-/// tiles do, where it does not fold: the two sides of a plate, and plates that lie on each other,
-/// are separate charts. Triangles that coincide share a chart. A rule of geometry alone.
+/// plane of the first one and folds little, and over edges that run along each other, like those of
+/// tiles, where it does not fold: the two sides of a plate, and plates that lie on each other, are
+/// separate charts. Triangles that coincide share a chart. A rule of geometry alone.
 ///   spacing         metres, > 0: how far a chart may leave its plane
 ///   angle_degrees   largest angle between the normals of neighbours in a smooth component
 ChartGrowth grow_charts(const Scene& scene, double spacing, double angle_degrees);

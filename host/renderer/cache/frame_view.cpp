@@ -19,13 +19,13 @@
 namespace photile::cache {
 namespace {
 
-/// Seconds of valuing a position, before they are known: by photons, and by rays at it and around
+/// Seconds of filling a position, before they are known: by photons, and by rays at it and around
 /// it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
-/// Seconds of valuing positions after which it is checked whether the frame is to end.
+/// Seconds of filling positions after which it is checked whether the frame is to end.
 constexpr double seconds_of_batch = 0.015;
 
-/// Light in space is gathered anew when the number of valued nodes has grown by this factor.
+/// Light in space is gathered anew when the number of filled nodes has grown by this factor.
 constexpr double more_nodes = 1.1;
 
 /// A corner of a cell may be this many times as bright as all others.

@@ -1,4 +1,4 @@
-// Nodes of light maps valued by rays, and cleared of their noise.
+// Nodes of light maps whose light is gathered by rays, and the removal of its noise.
 #pragma once
 
 #include <tsl/robin_map.h>
@@ -21,8 +21,8 @@ struct GatheredNodesParameters {
 
 /// `coarse` rays at the coarsest level and a quarter of them at others, each with
 /// defaults::light_samples_per_ray light samples; where a sun or a sky shines, more rays, and the
-/// same number of light samples at all levels. Where the surface has room for few nodes only, each
-/// has more of both (defaults::few_nodes).
+/// same number of light samples at all levels. Where the surface has room for only a few nodes,
+/// each has more of both (defaults::few_nodes).
 ///   spacing   of the coarsest nodes, metres; 0 = whatever room there is
 GatheredNodesParameters rays_of_nodes(const Scene& scene, int coarse, double spacing);
 
@@ -38,11 +38,11 @@ struct GatheredPoints {
 /// Gathers irradiance at nodes. The noise of rays is removed by rules that depend on the noise
 /// itself (docs/method/filter.md): nodes of the coarsest level are averaged with those around them,
 /// finer ones with those next to them, as far as differences may be noise and nothing stands
-/// between the nodes. Direct light and light of other surfaces are treated apart.
+/// between the nodes. Direct light and light from other surfaces are treated separately.
 class GatheredNodes : public NodeSource {
  public:
   /// References are kept. One LightMaps uses it.
-  ///   rays     of a node, with those that it has in `former`
+  ///   rays     of a node, including those that it has in `former`
   ///   former   points of earlier light maps, with the same numbers. Those that are not requested
   ///            again are released with it
   GatheredNodes(IrradianceGather& gather, std::span<const double> layer_powers,
@@ -57,8 +57,8 @@ class GatheredNodes : public NodeSource {
   /// Takes the points at which rays gathered so far.
   GatheredPoints take_points() { return std::move(raw_); }
 
-  /// Standard errors of all nodes that were valued: of each light at power 1, in its colour.
-  ///   light   of these nodes, in the order in which they were valued
+  /// Standard errors of all nodes filled so far: of each light at power 1, in its colour.
+  ///   light   of these nodes, in the order in which they were filled
   LightTable errors(LightTable light) const;
 
  private:
@@ -73,7 +73,7 @@ class GatheredNodes : public NodeSource {
   GatheredNodesParameters rays_;
   GatheredPoints former_;
   GatheredPoints raw_;
-  std::vector<float> relative_errors_;  ///< of each light of each node that was valued
+  std::vector<float> relative_errors_;  ///< of each light of each filled node
 };
 
 }  // namespace photile::cache

@@ -1,5 +1,5 @@
-// Takes noise from irradiance at points that see much the same: each becomes the mean of itself and
-// its neighbours, as far as their light may differ by noise alone.
+// Removes noise from irradiance at points that see nearly the same: each becomes the mean of itself
+// and its neighbours, as far as their light may differ by noise alone.
 #pragma once
 
 #include <cstddef>
@@ -41,19 +41,19 @@ struct IrradianceFilterParameters {
 /// Replaces each point's light by the mean of it and its neighbours', weighted by
 /// exp(-d^2 / (t^2 (se_a^2 + se_b^2))), d the difference of luminance, se its standard errors and t
 /// those that are tolerated, and less where these differ more than is tolerated, a few times over.
-/// Where a layer differs by more than its own noise, that is its weight alone: the sun's border
-/// would leave the noise of lights in their layers. All others have that of their sum at
-/// `layer_powers`. Where neighbours lie to one side, as where surface ends, those that are nearer
-/// weigh more, as far as light changes along it: their mean is then that of a plane through them,
-/// at the point (a regression of the first order, as Bitterli et al. 2016 have for pixels). All
-/// batches of a layer have the same weights, so that errors are known afterwards, too. Points
-/// without error change only by points that are equal. Does not depend on threads, nor on whether
-/// they flush denormal numbers.
+/// Where a layer differs by more than its own noise, this weight is used for that layer alone:
+/// otherwise the border of the sun would leave the noise of lights in their layers. All other
+/// layers use the weight of their sum at `layer_powers`. Where neighbours lie to one side, as where
+/// surface ends, nearer ones get more weight, as far as light changes along it: their mean is then
+/// that of a plane through them, at the point (a regression of the first order, as in Bitterli et
+/// al. 2016 for pixels). All batches of a layer have the same weights, so that errors remain known
+/// afterwards. Points without error change only by points that are equal. Does not depend on
+/// threads, nor on whether they flush denormal numbers.
 LightTable filter_irradiance(LightTable irradiance, const PointLinks& links,
                              std::span<const double> layer_powers,
                              const IrradianceFilterParameters& parameters = {});
 
-/// One round of the same for some of the points alone, without the plane.
+/// One round of the same for only some of the points, without the plane.
 ///   rows     of `irradiance`: the points that links and `chosen` count
 ///   chosen   of these; the result has a row for each
 LightTable means_with_neighbours(const LightTable& irradiance, std::span<const std::uint32_t> rows,

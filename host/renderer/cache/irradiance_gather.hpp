@@ -30,16 +30,16 @@ struct IrradianceGatherParameters {
   /// The number of independent batches that rays and light samples are divided into, rounded up to
   /// a whole number in each: their scatter is the error.
   int batches = 8;
-  /// Surface nearer than this, metres, is not read but gathered from by one ray and one light
-  /// sample, for photon estimates blur over such distances and miss what hides there; and so are
-  /// slats narrower than half of it. Not where there are caustics, which only photons know. 0 = all
-  /// is read.
+  /// At surface nearer than this, metres, one ray and one light sample gather again instead of
+  /// reading photon estimates, which blur over such distances and miss what hides there; the same
+  /// holds for slats narrower than half of it. Not where there are caustics, which only photons
+  /// carry. 0 = all surface is read.
   double near = 0;
   /// Metres: the resolution of the light of hot spots (trace/hot_spots.hpp) at points. A light is
   /// taken to be no closer to the point than this, so that its hot spot is as wide, and as bright
-  /// altogether. 0 = as it is there; infinity = it is left out.
+  /// in total. 0 = its true distance; infinity = it is left out.
   double resolution = 0;
-  /// Photons of an estimate of caustics, which tell its error.
+  /// Photons of an estimate of caustics, which give its error.
   int caustic_neighbours = defaults::neighbours;
   std::uint64_t seed = defaults::seed;
   int max_specular_depth = defaults::max_specular_depth;  ///< mirrors and glass that a ray follows
@@ -49,8 +49,7 @@ struct IrradianceGatherParameters {
 struct GatheredParts {
   LightTable indirect;  ///< from other surfaces
   LightTable direct;    ///< of lights, and caustics
-  /// Per point: harmonic mean of the distances to what its rays met, metres; infinite where they
-  /// met nothing.
+  /// Per point: harmonic mean of the distances to what its rays hit, metres; infinite for none.
   std::vector<float> distance;
 
   std::uint64_t bytes() const {
@@ -59,19 +58,19 @@ struct GatheredParts {
 };
 
 /// Gathers the light of each layer at points, in three parts that together are all light
-/// (docs/method/gathering.md): directly from lights, by light samples and by the rays that meet
-/// them; over mirrors or through glass that bends it and nothing else, by the photons that brought
-/// it; all other, by rays with the density of the cosine that read the photons of all light where
-/// they end.
+/// (docs/method/gathering.md): directly from lights, by light samples and by the rays that hit
+/// them; over mirrors or through glass that bends it and nothing else, by the photons that carry
+/// it; all other light, by rays with the density of the cosine that read the photons of all light
+/// where they end.
 ///
-/// Ends read light maps whose nodes photon estimates value: what a point gets depends on itself and
-/// its number, and not on the points beside it. Ends on surfaces whose lobe reflects much have
-/// separate estimates; those of weaker lobes count as if they reflected the same light diffusely.
+/// Ray hits read light maps whose nodes photon estimates fill: what a point gets depends on itself
+/// and its number, and not on the points beside it. Hits on surfaces whose lobe reflects much have
+/// separate estimates; weaker lobes count as if they reflected the same light diffusely.
 class IrradianceGather {
  public:
   /// References are kept.
-  ///   photons    of all light but that of hot spots (trace_photons_beside_hot_spots); k of about
-  ///              100 suffices
+  ///   photons    of all light except that of hot spots (trace_photons_beside_hot_spots); k of
+  ///              about 100 suffices
   ///   ends       light maps of one level for these photons, read where rays meet surface
   ///   caustics   by photons that came by mirrors and glass alone; null where there are none
   /// Errors: UsageError for parameters out of range; InputError for an area light without area.
@@ -82,11 +81,11 @@ class IrradianceGather {
   /// Irradiance at points, in their order. What a point gets depends on itself and its number.
   ///   points   position, oriented_face, diffuse_albedo and, in glossy scenes, outgoing and lobe
   ///   number   of each point, below 2^48: the same number and point have the same rays
-  ///   rays, light_samples   in place of the parameters'
-  ///   before   what the points have already: the new rays and samples continue its sequences
-  /// Where several processes have the photon maps, all give the same points; each gathers at a part
-  /// of them, and all get all.
-  /// Errors: as estimate::PhotonEstimate; Interrupted, when `progress` says so.
+  ///   rays, light_samples   instead of those of the parameters
+  ///   before   what the points have already: the new rays and samples continue those sequences
+  /// Where several processes have the photon maps, all pass the same points; each gathers at a part
+  /// of them, and all get all results. Errors: as estimate::PhotonEstimate; Interrupted, when
+  /// `progress` says so.
   GatheredParts gather(const PrimaryHits& points, std::span<const std::uint64_t> number, int rays,
                        int light_samples, const Progress& progress = Progress::none(),
                        NodeRays before = {});

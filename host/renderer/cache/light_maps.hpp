@@ -1,4 +1,4 @@
-// Light maps: irradiance kept where it falls, at nodes on the surface, and read between them.
+// Light maps: irradiance stored at nodes on the surface, and interpolated between them.
 #pragma once
 
 #include <array>
@@ -30,20 +30,20 @@ struct LightMapParameters {
   double spacing = defaults::light_map_spacing;  ///< metres, > 0: of the coarsest nodes, at most
   int levels = defaults::light_map_levels;       ///< the finest is spacing / 2^(levels - 1)
   /// The number of coarsest levels that are split everywhere and have no nodes. The next level then
-  /// counts as the coarsest, and points have the same numbers as with fewer skipped levels and as
-  /// many fewer levels.
+  /// counts as the coarsest, and points have the same numbers as with fewer skipped levels and
+  /// correspondingly fewer levels.
   int skipped_levels = 0;
   double angle_degrees = defaults::group_angle_degrees;  ///< of neighbours in a smooth component
   /// Cells are split where their corners differ by this part of the brightest, and by its noise.
   double contrast = defaults::light_map_contrast;
-  /// Where the source knows how far away the surroundings are: cells larger than this part of it
+  /// Where the source knows the distance of the surroundings: cells larger than this fraction of it
   /// are split at a quarter of the contrast.
   double near = defaults::light_map_near;
   double neighbours = defaults::neighbours;  ///< noise is 1 / sqrt of this many photons ...
   /// ... and of fewer below this irradiance at the lights' powers, where fewer are found.
   double sparse_irradiance = 0;
   std::vector<double> powers;  ///< per layer of the scene, at which cells are compared
-  /// Processes that fill the same light maps, each for its own hits: all of them have all nodes.
+  /// Processes that fill the same light maps, each for its own hits; every process has all nodes.
   /// Null: this process alone.
   Communicator* processes = nullptr;
 };
@@ -70,36 +70,36 @@ struct LightMapStatistics {
 };
 
 /// Irradiance of every light at the nodes of lattices in the planes of the surface, finer where it
-/// varies. Nodes are valued when points first need them. The positions and values of nodes, and
+/// varies. Nodes are filled when points first need them. The positions and values of nodes, and
 /// which cells are split, depend on the scene, the parameters and the source alone, and not on
 /// earlier queries: see docs/method/light-maps.md.
 ///
-/// A chart goes on under things that stand on it, and behind what is let into it. Nodes there hold
-/// the light of their own position, which does not reach the visible surface beside them: nodes
-/// that something hides from a point do not count at the point.
+/// A chart continues under objects that stand on it, and behind what is set into it. Nodes there
+/// hold the light of their own position, which does not reach the visible surface beside them:
+/// nodes that are hidden from a point do not count at that point.
 class LightMaps {
  public:
-  /// For which points it is found out whether they see the nodes around them.
+  /// For which points the visibility of the nodes around them is tested.
   enum class Visibility {
     of_points,  ///< for each point around which nodes differ so much that it matters
     of_cells    ///< for the points of cells whose middle does not see all nodes; of one level
   };
 
   /// Finds the charts. References are kept.
-  ///   source   values nodes
+  ///   source   fills nodes
   /// Errors: UsageError for parameters out of range.
   LightMaps(const RayScene& rays, const LightMapParameters& parameters, NodeSource& source,
             Visibility visibility = Visibility::of_points);
 
-  /// Values all nodes that these hits on opaque surfaces need, or those of the next `rounds` levels
-  /// that each of them lacks. With fewer `levels` only that many of the coarsest are used. Errors:
+  /// Fills all nodes that these hits on opaque surfaces need, or those of the next `rounds` levels
+  /// that each of them lacks. With fewer `levels`, only that many of the coarsest are used. Errors:
   /// those of the source, after which the light maps are unchanged; Interrupted.
   void fill(const PrimaryHits& hits, const Progress& progress, int rounds = all_rounds,
             int levels = all_levels);
   static constexpr int all_rounds = 1 << 30, all_levels = 1 << 30;
 
   /// The nodes around a point of an opaque surface. Thread-safe between fills. Where nodes are not
-  /// valued yet it returns false, and the nodes of the finest level that is there; the first is
+  /// filled yet it returns false, and the nodes of the finest level that exists; the first is
   /// `none` where no level is.
   bool find(std::uint32_t oriented_face, const glm::vec3& position, BilinearWeights& bilinear,
             int levels = all_levels) const;
@@ -118,7 +118,7 @@ class LightMaps {
     std::vector<BilinearWeights> nodes;
     std::vector<std::uint8_t> seen;
   };
-  /// Values what the points need, and finds the nodes that count at each. Errors: those of `fill`.
+  /// Fills what the points need, and finds the nodes that count at each. Errors: those of `fill`.
   Around around(const PrimaryHits& points, const Progress& progress, int levels = all_levels);
 
   /// Whether nothing stands between two positions, metres, on the plane of a triangle's side.
@@ -130,7 +130,7 @@ class LightMaps {
                   float reach) const;
 
   /// Standard error of the light of all lights between nodes, relative; 0 where the source does not
-  /// tell it, or without light. Errors of neighbours are taken for the same.
+  /// know it, or without light. Errors of neighbours are assumed to be equal.
   double relative_error(const BilinearWeights& bilinear) const;
 
   /// Whether what stands between a position and its nodes matters: they differ by more than the
@@ -138,7 +138,7 @@ class LightMaps {
   bool uneven(const BilinearWeights& bilinear) const;
 
   /// Harmonic mean of the distances to what sends light to a node, metres; infinite where the
-  /// source does not tell it.
+  /// source does not know it.
   float distance(std::uint32_t node) const;
 
   /// The point of the surface that a node stands for.
@@ -154,11 +154,11 @@ class LightMaps {
   /// The contents now; `settings` are left empty.
   LightMapContents contents() const;
   /// Takes in what light maps of the same scene and parameters held. Nothing was filled before.
-  /// Errors: InputError where it does not fit them; then nothing here is of use.
+  /// Errors: InputError where it does not fit them; then this object must not be used.
   void restore(LightMapContents contents);
 
-  /// Forgets all but the cells whose corner of least column and row is to be kept, and what is
-  /// coarser there. Nodes get other numbers, in the same order; what is forgotten is valued again
+  /// Discards all but the cells whose corner of least column and row is to be kept, and what is
+  /// coarser there. Nodes get other numbers, in the same order; what is discarded is filled again
   /// when it is needed, to the same bits.
   ///   keep   per node
   /// Returns the former numbers of the nodes that are left.
@@ -181,7 +181,7 @@ class LightMaps {
   /// Numbers of the nodes at the corners of cells; new ones are appended to `added`.
   void number_corners(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
                       std::vector<NodeCoordinates>& added);
-  /// Takes numbers back.
+  /// Releases the numbers of nodes.
   void take_back(std::span<const std::pair<std::uint32_t, std::uint32_t>> cells,
                  std::span<const NodeCoordinates> added);
   void value(std::span<const NodeCoordinates> nodes, const Progress& progress);
@@ -192,7 +192,7 @@ class LightMaps {
   bool is_open(const BilinearWeights& cell) const;
   bool is_in_slit(const trace::SurfaceLocation& here, std::uint32_t node) const;
 
-  /// What the middle of a cell sees; unknown until a point asks.
+  /// What is visible from the middle of a cell; unknown until a point needs it.
   enum SeenByMiddle : std::uint8_t { unknown, all_nodes, not_all };
 
   const RayScene& rays_;

@@ -1,4 +1,4 @@
-// Nodes that are valued together: their points, and those around.
+// Nodes that are filled together: their points, and those around them.
 #pragma once
 
 #include <tsl/robin_map.h>

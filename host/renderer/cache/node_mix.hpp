@@ -16,16 +16,16 @@ namespace photile::cache {
 /// Irradiance of the lights together, linear RGB, at their powers and tints.
 class NodeMix {
  public:
-  /// Brings the mix to these powers: nodes that hold light whose power changed are summed anew, and
-  /// those that are new. Every sum is made whole, in one order: adding a difference would leave its
+  /// Updates the mix to these powers: nodes with light whose power changed, and new nodes, are
+  /// summed again. Every sum is computed in full, in one order: adding a difference would leave its
   /// rounding, and the mix would depend on the path that sliders took. Work is shared by TBB.
   ///   values   what the nodes hold, see LightMaps::values
   ///   powers   per layer: power x tint
   void mix(const LightTable& values, std::size_t nodes, std::span<const glm::vec3> powers);
 
-  /// Per node; the fourth is nothing.
+  /// Per node; the fourth component is unused.
   std::span<const glm::vec4> light() const { return light_; }
-  /// Per node the luminance by the normal, as LightTable has it; empty where nodes do not tell it.
+  /// Per node the luminance by the normal, as in LightTable; empty where nodes do not have it.
   std::span<const glm::vec4> by_normal() const { return by_normal_; }
   std::span<const glm::vec3> powers() const { return powers_; }
 
@@ -34,8 +34,8 @@ class NodeMix {
   std::vector<glm::vec4> light_, by_normal_;
 };
 
-/// Irradiance of a plane of unit normal n, in the colour of that of the surface.
-///   by_normal   as LightTable has it
+/// Irradiance of a plane of unit normal n, in the colour of the irradiance of the surface.
+///   by_normal   as in LightTable
 inline glm::vec3 turned(const glm::vec3& irradiance, const glm::vec4& by_normal,
                         const glm::vec3& normal) {
   const auto light = static_cast<float>(luminance(glm::dvec3(irradiance)));

@@ -1,4 +1,4 @@
-// The light of nodes, as light maps ask for it.
+// The light of nodes, as light maps request it.
 #pragma once
 
 #include <cstddef>
@@ -13,26 +13,26 @@
 
 namespace photile::cache {
 
-/// Nodes of light maps that are valued together.
+/// Nodes of light maps that are filled together.
 struct NodeBatch {
-  /// Where they are. Beyond the first `nodes` points follow positions that lie around them: see
+  /// Their positions. After the first `nodes` points, positions that lie around them follow: see
   /// NodeSource::surroundings.
   PrimaryHits points;
   std::size_t nodes = 0;
   std::vector<std::uint64_t> number;  ///< of each point: by its position alone, below 2^48
   std::vector<std::uint8_t> coarse;   ///< of each point: whether the coarsest lattice has it
-  /// The neighbours of points of the coarsest lattice and of nodes; others have none. Empty without
+  /// The neighbours of points of the coarsest lattice and of nodes; others have none; empty without
   /// surroundings.
   IndexRows neighbours;
 };
 
 /// The light of a batch's nodes.
 struct NodeValues {
-  LightTable light;  ///< a row for each; radiance is not looked at
+  LightTable light;  ///< a row for each; radiance is not read
   /// Per node: standard error of the luminance of all lights at their powers; empty where it is
   /// that of k photons.
   std::vector<float> error;
-  /// Per node: mean distance of what sends light there, metres; empty with `error`.
+  /// Per node: mean distance of the surfaces that send light there, metres; empty with `error`.
   std::vector<float> distance;
 };
 
@@ -57,7 +57,7 @@ class NodeSource {
   virtual void forget() {}
 };
 
-/// Values nodes by the light at their points.
+/// Fills nodes with the light at their points.
 class ValuedBy : public NodeSource {
  public:
   /// The reference is kept. What a point gets from it does not depend on the points beside it.

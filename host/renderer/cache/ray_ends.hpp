@@ -24,14 +24,14 @@ struct RayEnds {
   LightTable light;                    ///< ... and that light: a row for each
   std::vector<BilinearWeights> nodes;  ///< of the ends that may read light maps
 
-  /// Adds what the rays of a point of the run see; each of its batches has this many rays.
+  /// Adds what the rays of a point of the run hit; each of its batches has this many rays.
   ///   of_nodes   the light of the nodes
   void add_point(const LightTable& of_nodes, std::size_t point, std::uint32_t batches,
                  std::uint32_t rays_per_batch, BatchSums& sums) const;
 };
 
-/// Finds the light where rays end: that of light maps, but on surfaces whose lobe reflects much,
-/// and where an end sees none of its nodes, that of `photons`.
+/// Finds the light where rays end: that of light maps, except on surfaces whose lobe reflects much
+/// and where no node is visible from the hit, which get that of `photons`.
 ///   photons   what a point gets from it does not depend on the points beside it
 ///   maps      of one level
 /// Errors: those of both; Interrupted.

@@ -221,7 +221,7 @@ SurfaceCache::Reading SurfaceCache::read(const PrimaryHits& points, const Progre
                        : around(coarse, maps_, coarsest_level).nodes;
   fill_time_ += stopwatch.taken();
   if (!ends_) count_errors(points, coarse, coarse_nodes);
-  // Where photons value nodes they would say no more at a point which no node sees, and may have
+  // Where photons fill nodes they would say no more at a point which no node sees, and may have
   // to be traced first.
   if (ends_) {
     std::size_t kept = 0;

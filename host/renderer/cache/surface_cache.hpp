@@ -1,5 +1,5 @@
-// The cache on surfaces: light read between samples where those suffice, and asked for where they
-// do not; and which reflections need no light gathered at nodes.
+// The cache on surfaces: light interpolated between samples where these suffice, and requested
+// where they do not; and which reflections need no light gathered at nodes.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@ namespace photile::cache {
 
 class GatheredNodes;
 
-/// What photon estimates show of their noise.
+/// How visible the noise of photon estimates is.
 struct PhotonNoise {
-  double width;  ///< metres, over which estimates err alike
+  double width;  ///< metres, over which estimates have the same error
   double noise;  ///< relative
 };
 
 /// Whether the light that lobes reflect may be that of photon estimates: where they would add
-/// little noise to the pixel, for they err alike nearby and independently farther apart, and a
-/// pixel sees many of them in a rough or curved surface, or weighs them little. Depends on the hits
-/// of a pixel alone; so the same number of a pixel's samples must be there.
+/// little noise to the pixel, because errors are equal nearby and independent farther apart, and a
+/// pixel sees many estimates in a rough or curved surface, or gives them little weight. Depends on
+/// the hits of a pixel alone, so the same number of a pixel's samples must be present.
 ///   seen        hits of the pixels themselves
 ///   reflected   those that lobes reflect
-///   runs        of the samples of a pixel, as PrimaryHitParameters has them
+///   runs        of the samples of a pixel, as in PrimaryHitParameters
 /// Returns 1 or 0 for each of `reflected`.
 std::vector<std::uint8_t> suits_photons(const PrimaryHits& seen, const PrimaryHits& reflected,
                                         int runs, const PhotonNoise& noise);
@@ -46,26 +46,26 @@ struct LightAndErrors {
   LightTable light, errors;
 };
 
-/// Light read between nodes on the surface, where it does not ask from where it comes.
+/// Light interpolated between nodes on the surface, where its direction does not matter.
 class SurfaceCache : public light::LightAtPoints {
  public:
   /// References are kept.
-  ///   elsewhere   answers for points that no node answers: those with a specular lobe, and those
-  ///               with a normal map where photons value nodes, which ask where light comes from.
-  ///               What a point gets from it does not depend on the points beside it.
-  ///   source      values nodes
-  ///   ends        where rays value nodes, the light maps that they read where they end; points
+  ///   elsewhere   the source for points that nodes cannot serve: those with a specular lobe, and
+  ///               those with a normal map where photons fill nodes: the direction of light
+  ///               matters. What a point gets from it does not depend on the points beside it.
+  ///   source      fills nodes
+  ///   ends        where rays fill nodes, the light maps that they read where they end; points
   ///               read them, too, where PrimaryHits::coarse says that they suffice; null where
-  ///               photons value nodes: the coarsest nodes are read there
+  ///               photons fill nodes: the coarsest nodes are read there
   SurfaceCache(const RayScene& rays, const LightMapParameters& parameters,
                light::LightAtPoints& elsewhere, NodeSource& source, LightMaps* ends);
 
   /// The light at points in any order.
   LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
-  /// The same light, and its errors. Nodes around a point are taken to err alike; where photons
-  /// served, the error is that of a density from k of them.
-  ///   nodes   the source that values the nodes
+  /// The same light, and its errors. Nodes around a point are assumed to have equal errors; where
+  /// photons were used, the error is that of a density from k of them.
+  ///   nodes   the source that fills the nodes
   LightAndErrors with_errors(const PrimaryHits& points, const GatheredNodes& nodes,
                              const Progress& progress);
 
@@ -75,15 +75,15 @@ class SurfaceCache : public light::LightAtPoints {
   LightMaps& maps() { return maps_; }
   const LightMaps& maps() const { return maps_; }
 
-  /// Hits that were estimated where they are, so far.
+  /// The number of hits so far whose light was not read from nodes.
   std::uint64_t hits_alone() const { return hits_alone_; }
-  /// The errors of all light at hits read so far; zeros where photons value nodes.
+  /// The errors of all light read at hits so far; zeros where photons fill nodes.
   const ErrorSum& errors_read() const { return errors_read_; }
   TimeTaken fill_time() const { return fill_time_; }
 
  private:
-  /// Whether the light of a hit can be read: it has no specular lobe, which asks where light comes
-  /// from, nor a normal map, unless nodes tell how their light depends on the normal.
+  /// Whether the light of a hit can be read: it has no specular lobe, which depends on the
+  /// direction of light, nor a normal map, unless nodes store light by the normal.
   bool serves(const PrimaryHits& hits, std::size_t hit) const;
 
   struct Reading;

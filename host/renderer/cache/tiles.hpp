@@ -21,7 +21,7 @@ struct BilinearWeights {
 
 /// Cells of one level of a chart. Corner (x, y) of the tile is node[y * 9 + x].
 struct Tile {
-  std::uint64_t known = 0;  ///< cells that were compared: their corners are valued
+  std::uint64_t known = 0;  ///< cells that were compared: their corners have light
   std::uint64_t split = 0;  ///< of them, those that the next level refines
   std::array<std::uint32_t, 4> child{none, none, none, none};  ///< tiles of the four quadrants
   std::uint32_t chart = 0;
@@ -48,9 +48,9 @@ class Tiles {
  public:
   explicit Tiles(const Charts& charts) : charts_(charts), root_(charts.roots(), none) {}
 
-  /// The nodes around a position of a chart: of the cell that is not split, or of the last one
-  /// known above a missing one, which is returned then. Without any, nodes are none.
-  ///   levels   that are looked at, the coarsest first
+  /// The nodes around a position of a chart: of the cell that is not split, or of the last known
+  /// cell above a missing one, which is then returned. Without any, the nodes are `none`.
+  ///   levels   that are searched, the coarsest first
   std::optional<MissingCell> find(std::uint32_t chart, const glm::vec3& position,
                                   BilinearWeights& bilinear,
                                   int levels = std::numeric_limits<int>::max()) const {
@@ -92,7 +92,7 @@ class Tiles {
   ///   x, y   in cells of the level; those before the first, counted modulo 2^32, have no tile
   std::uint32_t tile_at(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
                         std::uint32_t y) const;
-  /// The node at the corner of cells of a level, wherever a tile has it; none where none has.
+  /// The node at the corner of cells of a level, from any tile that has it; else none.
   ///   x, y   in cells of the level
   std::uint32_t node(std::uint32_t chart, std::uint32_t level, std::uint32_t x,
                      std::uint32_t y) const;

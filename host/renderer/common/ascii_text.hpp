@@ -29,18 +29,18 @@ std::vector<std::string_view> lines_of(std::string_view text);
 /// deletions, insertions and reversals", 1966).
 std::size_t edits_between(std::string_view a, std::string_view b);
 
-/// The word with the fewest edits between it and `text`. "" of none.
+/// The word with the fewest edits between it and `text`; "" where there are no words.
 std::string_view nearest_word(std::string_view text, std::span<const std::string_view> words);
 
-/// The word of an enumerator, by a list of the words of all, in their order.
+/// The word of an enumerator, from a list of the words of all enumerators, in order.
 template <class Enum>
 std::string_view name_in(std::initializer_list<std::string_view> words, Enum value) {
   const auto index = static_cast<std::size_t>(value);
   return index < words.size() ? words.begin()[index] : "unknown";
 }
 
-/// The number that all of a text spells, with a decimal point, in digits of `base` where it is a
-/// whole one. Nothing for NaN, infinities and all else.
+/// The number that the whole of a text spells, with a decimal point, in digits of `base` for whole
+/// numbers. Nothing for NaN, infinities and all else.
 template <class Number>
 std::optional<Number> parse_number(std::string_view text, int base = 10) {
   Number value{};

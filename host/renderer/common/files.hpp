@@ -12,19 +12,19 @@
 
 namespace photile {
 
-/// What keeps it from being read, with the remedy: "no such file; check the path", "is not a
-/// regular file; name one". "" where nothing does.
+/// The reason why a file cannot be read, with the remedy: "no such file; check the path", "is not a
+/// regular file; name one". "" where it can be read.
 std::string why_no_regular_file(const std::filesystem::path& file);
 
-/// The whole content. Errors: InputError naming the file where it is missing, unreadable, no
+/// The whole content. Errors: InputError naming the file where it is missing, unreadable, not a
 /// regular file or larger than limits::max_input_text_bytes; those of note_input.
 std::string read_input_text(const std::filesystem::path& file);
 
 /// The content of a file that the run may write again: it is not noted as an input.
 std::string read_own_text(const std::filesystem::path& file);
 
-/// What `work` finds wrong with what a file holds, or with what is asked of it, by the file's name;
-/// without a file, as it is.
+/// Adds the file's name to errors of `work` about the content of a file, or about what is requested
+/// of it; without a file, errors stay as they are.
 template <class Work>
 auto about_file(const std::filesystem::path& file, const Work& work) {
   const auto named = [&](const std::string& what) {
@@ -42,26 +42,26 @@ auto about_file(const std::filesystem::path& file, const Work& work) {
 
 /// Written under a temporary name in the folder of its target, then renamed by `commit`. Destroyed
 /// without a commit, it leaves nothing behind and an earlier file under the name untouched. What a
-/// killed process leaves behind is removed by the next that writes into the folder.
+/// killed process leaves behind is removed by the next process that writes into the folder.
 class OutputFile {
  public:
   /// Opens the temporary file. A symbolic link is followed, so that the link stays one.
-  /// Errors: OutputError when the folder cannot be written, or when the name belongs to something
-  /// that is no regular file (a folder, a device). UsageError: those of refuse_input.
+  /// Errors: OutputError when the folder cannot be written, or when the name is that of something
+  /// other than a regular file (a folder, a device). UsageError: those of refuse_input.
   explicit OutputFile(const std::filesystem::path& file);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Bytes to the storage device, then under the final name.
+  /// Flushes the bytes to the storage device, then gives the file its final name.
   /// Errors: OutputError naming the file and the reason, also for any earlier write that failed.
   void commit();
 
   /// Throws the OutputError of this file: the first failed write's reason, or else `reason`.
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// At the position of the last write's end, or that of `seek`. Does nothing after a failure: what
-  /// encoders cannot report is reported by `commit`.
+  /// Writes at the end of the last write, or at the position of `seek`. Does nothing after a
+  /// failure: what encoders cannot report is reported by `commit`.
   void write(const void* bytes, std::size_t count);
   std::uint64_t position() const { return position_; }
   void seek(std::uint64_t position) { position_ = position; }
@@ -90,9 +90,8 @@ class RunFiles {
   RunFiles& operator=(const RunFiles&) = delete;
 };
 
-/// To be called by code that reads a file which the user named, or which such a file names. One
-/// that does not exist is not noted. Errors: UsageError naming both where it is an output of the
-/// run.
+/// To be called by code that reads a file named by the user, or by such a file. A file that does
+/// not exist is not noted. Errors: UsageError naming both where it is an output of the run.
 void note_input(const std::filesystem::path& file);
 
 /// For each file that the run is to write, as early as its name is known.
@@ -102,8 +101,8 @@ void note_output(const std::filesystem::path& file);
 /// Before any file is opened for writing. Errors: UsageError where it is an input of the run.
 void refuse_input(const std::filesystem::path& file);
 
-/// The file that a name stands for: symbolic links are followed, also to what does not exist yet.
-/// Absolute.
+/// The absolute path of the file that a name refers to: symbolic links are followed, even to what
+/// does not exist yet.
 std::filesystem::path target_of(const std::filesystem::path& file);
 
 }  // namespace photile

@@ -1,5 +1,5 @@
-// Text of others, such as names in scenes and of files, made fit for what it is written into: here
-// are all such conversions of photile, one function for each kind of output.
+// Text from outside, such as names in scenes and of files, converted for the output that it is
+// written to: all such conversions of photile, one function for each kind of output.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,11 @@
 
 namespace photile {
 
-/// Bytes of the UTF-8 sequence at the start of a text that is not empty, or 0 where it is none.
+/// The length in bytes of the UTF-8 sequence at the start of a non-empty text, or 0 where there is
+/// no valid one.
 std::size_t utf8_sequence_length(std::string_view text);
 
-/// Bytes that are no UTF-8 become U+FFFD.
+/// Bytes that are not UTF-8 become U+FFFD.
 std::string utf8_of(std::string_view text);
 
 /// UTF-8 without commands for a terminal: control characters except tabs and line ends become '?'.
@@ -33,18 +34,18 @@ std::string shortened(std::string_view text, std::size_t most);
 /// cannot hold become '?'.
 std::string escaped_xml(std::string_view text);
 
-/// A field as RFC 4180 has it: quoted where it must be, also for other separators. What a
+/// A field as in RFC 4180: quoted where necessary, also for other separators. What a
 /// spreadsheet would take for a formula, after blanks of any kind, begins with an apostrophe.
 std::string csv_field(std::string_view text);
 
-/// JSON and a line end; strings that are no UTF-8 hold U+FFFD.
+/// JSON and a line end; bytes that are not UTF-8 become U+FFFD.
 ///   indent   blanks a level; -1 = all in one line
 template <class Json>
 std::string json_text(const Json& json, int indent = 1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// While it lives, what a stream is given passes through terminal_text.
+/// While it lives, everything written to a stream passes through terminal_text.
 class TerminalText : public std::streambuf {
  public:
   explicit TerminalText(std::ostream& stream) : stream_(stream), sink_(stream.rdbuf(this)) {}
@@ -62,7 +63,7 @@ class TerminalText : public std::streambuf {
 
   std::ostream& stream_;
   std::streambuf* const sink_;
-  std::string line_;  ///< that has no end yet
+  std::string line_;  ///< the line that has no end yet
 };
 
 }  // namespace photile

@@ -1,4 +1,4 @@
-// Numbers in rows, all in one array: what belongs to each of many things.
+// Rows of numbers in one array: what belongs to each of many elements.
 #pragma once
 
 #include <tbb/parallel_for.h>

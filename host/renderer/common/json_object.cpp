@@ -25,7 +25,8 @@ json read_input_json(const std::filesystem::path& file) {
   const std::string text = read_input_text(file);
   check_json_depth(text, file.string());
   json content = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (content.is_discarded()) throw InputError(fmt::format("{}: is no JSON", file.string()));
+  if (content.is_discarded())
+    throw InputError(fmt::format("{}: this is not valid JSON", file.string()));
   return content;
 }
 
@@ -45,8 +46,9 @@ void check_json_depth(std::string_view text, const std::string& file) {
       --depth;
     }
     if (depth > limits::max_json_depth) {
-      throw InputError(fmt::format("{}: is nested more than {} deep; no such file needs that", file,
-                                   limits::max_json_depth));
+      throw InputError(
+          fmt::format("{}: the JSON is nested more than {} levels deep; no such file needs that",
+                      file, limits::max_json_depth));
     }
   }
 }
@@ -54,11 +56,11 @@ void check_json_depth(std::string_view text, const std::string& file) {
 JsonObject::JsonObject(const json& object, std::string where,
                        std::initializer_list<const char*> known)
     : object_(object), where_(std::move(where)) {
-  if (!object.is_object()) refuse("is no object {...}");
+  if (!object.is_object()) refuse("this is not an object {...}");
   for (const auto& [key, value] : object.items()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       constexpr std::size_t most_told = 60;
-      refuse(fmt::format("'{}' is not known; there are {}", key.substr(0, most_told),
+      refuse(fmt::format("'{}' is not a known key; there are {}", key.substr(0, most_told),
                          fmt::join(known, ", ")));
     }
   }
@@ -102,7 +104,7 @@ glm::dvec3 JsonObject::vector(const char* key) const {
 std::string JsonObject::text(const char* key, const std::string& otherwise) const {
   const json value = object_.value(key, json(otherwise));
   if (!value.is_string() || value.get<std::string>().empty()) {
-    refuse(fmt::format("'{}' is no text", key));
+    refuse(fmt::format("'{}' is not a text", key));
   }
   return value.get<std::string>();
 }

@@ -11,10 +11,10 @@
 namespace photile {
 
 /// The content of a file. Errors: those of read_input_text and check_json_depth; InputError where
-/// it is no JSON.
+/// it is not JSON.
 nlohmann::json read_input_json(const std::filesystem::path& file);
 
-/// Values are copied, compared and written recursively: brackets without end would overflow the
+/// Values are copied, compared and written recursively: deeply nested brackets would overflow the
 /// stack. Errors: InputError naming `file` where they are nested deeper than
 /// limits::max_json_depth.
 void check_json_depth(std::string_view text, const std::string& file);
@@ -25,7 +25,7 @@ class JsonObject {
   ///   object   must outlive this
   ///   where    the file and the object's position in it, for messages
   ///   known    the members that it may have
-  /// Errors: InputError where it is no object, or has a member that is not known.
+  /// Errors: InputError where it is not an object, or has an unknown member.
   JsonObject(const nlohmann::json& object, std::string where,
              std::initializer_list<const char*> known);
 

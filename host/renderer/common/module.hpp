@@ -13,11 +13,11 @@ class Module {
   /// Where the symbols of the module are visible: in itself, or also in what it loads in turn.
   enum class Symbols { own, global };
 
-  /// `file`: a path, or the name of one of photile's modules, which the run paths of the command,
-  /// of the Python module and of programs that link the library lead to.
+  /// `file`: a path, or the name of one of photile's modules, which is found by the run paths of
+  /// the command, of the Python module and of programs that link the library.
   explicit Module(const std::filesystem::path& file, Symbols symbols = Symbols::own);
 
-  /// Why it is not loaded, in a line, or "".
+  /// One line about why it is not loaded, or "".
   const std::string& error() const { return error_; }
 
   /// Null where it has no such function, or is not loaded.

@@ -7,7 +7,7 @@
 
 namespace photile {
 
-/// Variables of the environment that hold how many threads PoCL starts: before version 4, and from
+/// Environment variables that set how many threads PoCL starts: before version 4, and from
 /// it on.
 inline constexpr std::array pocl_thread_variables{"POCL_MAX_PTHREAD_COUNT",
                                                   "POCL_CPU_MAX_CU_COUNT"};
@@ -15,14 +15,14 @@ inline constexpr std::array pocl_thread_variables{"POCL_MAX_PTHREAD_COUNT",
 /// At least 1.
 int core_count();
 
-/// TBB and PoCL abort where a thread cannot be made; this is asked before them.
-/// Errors: Error where the system does not let the process have as many threads more.
+/// TBB and PoCL abort where a thread cannot be created, so this is checked first.
+/// Errors: Error where the system does not allow the process that many more threads.
 void require_threads(int count);
 
 /// Errors: Error where stacks are too small for the code that runs on them.
 void require_stack();
 
-/// A generous bound for the memory of a device's compiler, and of the host beside its buffers.
+/// A generous bound on the memory of a device's compiler, and of the host besides its buffers.
 inline constexpr std::uint64_t reserved_address_bytes = std::uint64_t{1} << 30;
 
 /// Bytes of addresses that the process may have beyond those it has (ulimit -v).

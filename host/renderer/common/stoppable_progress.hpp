@@ -1,4 +1,4 @@
-// Progress of work that others than the user may stop.
+// Progress of work that may be stopped by others than the user.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace photile {
 
-/// Passes on what is reported, and requests to stop; `stopped` requests it, too.
+/// Passes on reports and requests to stop; `stopped` is a further request to stop.
 class StoppableProgress : public Progress {
  public:
   /// Keeps a reference to `to`.

@@ -1,4 +1,4 @@
-// Large vectors that all cores write, whose memory they touch first, and memory that is given back.
+// Large vectors whose memory all cores touch first and write, and the return of memory.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -17,7 +17,7 @@
 namespace photile {
 
 /// A vector of zeros. The system clears memory page by page as it is touched first, which takes
-/// several times as long as writing to it: that is shared among all cores.
+/// several times as long as writing to it, so this is divided among all cores.
 template <class T>
 std::vector<T> touched_vector(std::size_t count) {
   constexpr std::size_t page = 4096, pages_per_task = 256;
@@ -63,8 +63,8 @@ std::vector<std::uint32_t> numbers_where(std::size_t count, const Is& is) {
       found.size(), [&](std::size_t task) -> const auto& { return found[task]; });
 }
 
-/// Gives back to the system what threads have freed: glibc keeps it for each thread apart, where
-/// large arrays have no use for it.
+/// Returns to the system what threads have freed: glibc keeps it separately for each thread, where
+/// large arrays cannot use it.
 inline void return_freed_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);

@@ -35,7 +35,7 @@ std::string text_of(const SettingValue& value);
 /// "a whole number from 1 to 4096", "one of disc, clipped".
 std::string text_of(const ValueRange& range);
 
-/// False for a NaN, and for a value of another kind.
+/// False for NaN, and for a value of another kind.
 bool contains(const ValueRange& range, const SettingValue& value);
 
 /// "'0' is not a whole number from 1 to 4096".
@@ -60,8 +60,8 @@ SettingValue setting_value(const T& field) {
   }
 }
 
-/// Refuses what is out of the range that the table of settings (render/setting.hpp) has for it: for
-/// stages, which others may call without a rendering. Errors: UsageError, which names the setting.
+/// Refuses what is out of the range in the table of settings (render/setting.hpp): for stages that
+/// can be called without a rendering. Errors: UsageError, which names the setting.
 void check_setting(std::string_view name, const SettingValue& value);
 
 }  // namespace photile

@@ -105,7 +105,7 @@ struct Denoiser::Library {
     function = module.find<Function>(name);
     if (!function) {
       throw UsageError(
-          fmt::format("--denoise: {} has no {}: it is no library of Open Image Denoise 2",
+          fmt::format("--denoise: {} has no {}: it is not a library of Open Image Denoise 2",
                       file.string(), name));
     }
   }

@@ -1,5 +1,5 @@
-// Where photile may keep files between runs, and where it may keep them during one; warnings of
-// trouble there, which never stops a run; and the results of device tests, which are kept there.
+// Where photile may keep files between runs and during a run; warnings about trouble there, which
+// never stops a run; and the results of device tests, which are kept there.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::uint64_t min_free_cache_bytes = 64ull << 20;
 /// $HOME/.cache/photile. None where neither can be written or has room.
 std::optional<std::filesystem::path> persistent_cache_folder();
 
-/// The folders of kernels that were compiled when photile was installed, which are read alone:
+/// The folders of kernels that were compiled when photile was installed, which are only read:
 /// photile/kernels below each of $XDG_DATA_DIRS, else below /usr/local/share and /usr/share.
 std::vector<std::filesystem::path> installed_kernel_folders();
 
@@ -37,7 +37,7 @@ inline constexpr const char* passed = "passed";
 /// kept.
 std::string kept_test_result(const DeviceInfo& device);
 
-/// Keeps a result. Nothing where no folder can be written, which is a warning.
+/// Keeps a result. Where no folder can be written, it only warns.
 void keep_test_result(const DeviceInfo& device, const std::string& result);
 
 }  // namespace photile::device

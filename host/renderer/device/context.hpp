@@ -23,7 +23,7 @@ class Context;
 struct ListedDevice;  // device_list.hpp
 
 /// Holds buffers whose content can be restored. It is asked to release memory where an allocation
-/// or a launch fails for lack of it, the one made last first. May outlive its context.
+/// or a launch fails for lack of it; the newest reclaimer is asked first. May outlive its context.
 class Reclaimer {
  public:
   explicit Reclaimer(Context& context);
@@ -73,16 +73,16 @@ class Buffer {
 };
 
 /// Whether memory that a device shares with the host counts towards the bound on the device's
-/// memory. What comes in parts does, so that a bound makes the parts small; what is there in any
-/// case does not.
+/// memory. Data that comes in parts does, so that a bound makes the parts small; data that exists
+/// in any case does not.
 enum class SharedMemory { uncounted, counted };
 
 /// The kind of memory that a buffer of a CPU device is made of.
 enum class MemoryPages {
   ordinary,
-  /// Large ones, where the operating system has them: for what is kept and read in many short
-  /// ranges. They do not pay for a buffer that lives for one call, because the system has to clear
-  /// them each time.
+  /// Large pages, where the operating system has them: for data that is kept and read in many short
+  /// ranges. They are not worthwhile for a buffer that lives for one call, because the system has
+  /// to clear them each time.
   large
 };
 
@@ -106,9 +106,9 @@ class Defines {
 
 /// The resources that a built kernel takes, as its device reports them.
 struct KernelResources {
-  std::uint64_t private_bytes = 0;  ///< of a work-item in memory, for lack of registers
+  std::uint64_t private_bytes = 0;  ///< of a work-item, in memory for lack of registers
   std::uint64_t local_bytes = 0;    ///< of a group
-  std::size_t largest_group = 0;    ///< work-items that the device can run of it together
+  std::size_t largest_group = 0;    ///< work-items of it that the device can run together
 };
 
 /// A kernel of a built program. Copyable; arguments are set by each Launch.
@@ -129,12 +129,12 @@ struct KernelTime {
   std::string kernel;
   std::uint64_t launches = 0;
   double seconds = 0;
-  /// The time until it could first run: the work that the runtime leaves to the first launch. The
-  /// time of its program is a ProgramTime.
+  /// The time until it could first run: work that the runtime defers to the first launch. The time
+  /// of its program is a ProgramTime.
   double preparation_seconds = 0;
 };
 
-/// Time until a program was there, built or loaded.
+/// Time until a program was ready, built or loaded.
 struct ProgramTime {
   std::string file;
   double seconds = 0;
@@ -142,7 +142,7 @@ struct ProgramTime {
 
 /// One device's context and in-order queue. Not thread-safe: one thread drives it.
 /// Every member throws DeviceError naming the call and the status; DeviceMemoryError where memory
-/// ran out although the queue was waited for and the reclaimers have released all they can.
+/// ran out even after waiting for the queue and releasing all that the reclaimers can release.
 class Context {
  public:
   /// Opens the one device that the selector means.
@@ -154,8 +154,7 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   const DeviceInfo& info() const;
-  /// Bytes that live buffers may take together: the device's memory, or less where the user says
-  /// so.
+  /// Bytes that live buffers may take together: the device's memory, or the user's bound.
   std::uint64_t memory_limit() const;
   /// Bytes of the largest buffer that can be allocated when no other is live.
   std::uint64_t largest_buffer() const;
@@ -174,8 +173,8 @@ class Context {
     write(buffer, values);
     return buffer;
   }
-  /// A buffer that kernels read and that holds `values`, which must stay as they are for its life:
-  /// over the host's memory itself where the device is the host's processor, else a copy.
+  /// A buffer that kernels read and that holds `values`, which must not change during its life: the
+  /// host's memory itself where the device is the host's processor, else a copy.
   template <class T>
   Buffer<T> share(std::span<const T> values, std::string_view what,
                   SharedMemory counts = SharedMemory::uncounted) {
@@ -183,8 +182,8 @@ class Context {
     return Buffer<T>(share_bytes(values.data(), values.size_bytes(), what, counts), values.size());
   }
   /// A buffer of zeros, to be read into `values`, which are zeros and must not move during its
-  /// life: over the host's memory itself where the device is the host's processor, so that nothing
-  /// is cleared or moved.
+  /// life: the host's memory itself where the device is the host's processor, so that nothing is
+  /// cleared or copied.
   template <class T>
   Buffer<T> share_output(std::span<T> values, std::string_view what) {
     if (shares_host_memory()) return share<T>(values, what, SharedMemory::counted);
@@ -192,7 +191,7 @@ class Context {
     fill(buffer, T{});
     return buffer;
   }
-  /// Allocates and has `set(values)` write all elements, into the memory of the device itself where
+  /// Allocates, and lets `set(values)` write all elements, directly into the device's memory where
   /// that is the host's.
   template <class T, class Set>
   Buffer<T> upload_by(std::size_t size, std::string_view what, const Set& set) {
@@ -239,7 +238,7 @@ class Context {
   /// The kernel `name` of the embedded kernel file `file` (path below kernels/, e.g.
   /// "grid/build.cl"), built with `defines`. Programs are built once per (file, defines), from the
   /// cache on disk where it holds them. Errors: KernelBuildError with the log; DeviceError where
-  /// the runtime does not tell the names of arguments.
+  /// the runtime does not report the names of arguments.
   Kernel kernel(const std::string& file, const std::string& name, const Defines& defines);
 
   /// Waits for everything enqueued.
@@ -251,8 +250,8 @@ class Context {
   std::uint64_t allocated_bytes() const;       ///< live buffers
   std::uint64_t peak_allocated_bytes() const;  ///< since construction
   std::vector<KernelTime> kernel_times() const;
-  /// Of writes and reads of buffers; 0 unless DeviceOptions::profile is set. What a device shares
-  /// with the host is not moved.
+  /// Of writes and reads of buffers; 0 unless DeviceOptions::profile is set. Memory that a device
+  /// shares with the host is not moved.
   double transfer_seconds() const;
   const std::vector<ProgramTime>& program_times() const;  ///< in the order of their first use
 
@@ -269,7 +268,7 @@ class Context {
   void write_bytes(const RawBuffer& buffer, const void* data, std::size_t bytes,
                    std::size_t offset);
   void read_bytes(const RawBuffer& buffer, void* data, std::size_t bytes, std::size_t offset);
-  /// Calls use(memory) where the host has these bytes of the buffer at hand; `flags` of OpenCL.
+  /// Maps these bytes of the buffer and calls use(memory); `flags` are OpenCL's.
   void map_bytes(const RawBuffer& buffer, std::uint64_t flags, std::size_t bytes, std::size_t first,
                  const std::function<void(void*)>& use);
   /// `set(memory)` writes these bytes.

@@ -48,9 +48,9 @@ class KernelTimes {
 
 /// The memory of a context's buffers. Shared with them: a buffer may outlive its context.
 ///
-/// What buffers release is kept for later ones. A batch of hits is like the one before, and new
-/// memory, which the operating system must clear first, takes as long as a good part of the
-/// estimates that are written to it.
+/// Released memory is kept for later buffers. A batch of hits is like the one before, and new
+/// memory, which the operating system must clear first, takes a considerable part of the time of
+/// the estimates that are written to it.
 class BufferMemory {
  public:
   struct Piece {
@@ -58,11 +58,11 @@ class BufferMemory {
     std::size_t bytes = 0;
   };
 
-  /// A kept piece of at least so many bytes, and less than twice as many; else none.
+  /// A kept piece of at least this many bytes, and less than twice as many; else none.
   Piece take_kept(std::size_t bytes);
   void keep(Piece piece);
   void release_kept();
-  /// Of live buffers and of what is kept.
+  /// Bytes of live buffers and of kept memory.
   std::uint64_t bytes() const { return live + kept_bytes_; }
 
   std::atomic<std::uint64_t> live{0};  ///< bytes in live buffers
@@ -77,7 +77,7 @@ class BufferMemory {
 struct Context::Impl {
   Impl(ListedDevice listed, const DeviceOptions& options);
 
-  /// Throws DeviceError unless `status` is CL_SUCCESS; `what` says what was asked for. Where memory
+  /// Throws DeviceError unless `status` is CL_SUCCESS; `what` names the request. Where memory
   /// ran out it is a DeviceMemoryError, and the message adds the limits and a remedy.
   void check(cl_int status, std::string_view call, const std::string& what) const;
 
@@ -88,7 +88,7 @@ struct Context::Impl {
   cl_int persevere(const Call& call) {
     cl_int status = call();
     if (!is_out_of_memory(status)) return status;
-    clFinish(queue.get());  // should it fail, so does the call
+    clFinish(queue.get());  // if it fails, so does the call
     do {
       memory->release_kept();
       status = call();
@@ -99,7 +99,7 @@ struct Context::Impl {
   /// Whether a reclaimer has released memory.
   bool reclaim();
 
-  /// Whether so many bytes more are within the limit on memory.
+  /// Whether this many more bytes are within the limit on memory.
   bool has_room(std::uint64_t bytes) const {
     return bytes <= memory_limit - std::min(memory_limit, memory->bytes());
   }
@@ -116,8 +116,8 @@ struct Context::Impl {
       kernels;  ///< file, name, defines
   std::shared_ptr<BufferMemory> memory = std::make_shared<BufferMemory>();
   std::shared_ptr<std::vector<Reclaimer*>> reclaimers =
-      std::make_shared<std::vector<Reclaimer*>>();  ///< the one to ask first at the end
-  bool reclaiming = false;  ///< what a reclaimer itself calls must not ask for memory again
+      std::make_shared<std::vector<Reclaimer*>>();  ///< the one to be asked first is last
+  bool reclaiming = false;  ///< calls by a reclaimer itself must not reclaim again
   bool profile = false;
   KernelTimes times;
   KernelTimes transfers;  ///< between host and device, both ways

@@ -1,4 +1,4 @@
-// The OpenCL devices of this machine, with their handles, and parts of them.
+// The OpenCL devices of this machine, with their handles, and sub-devices of them.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct DeviceList {
 DeviceList enumerate_devices();
 
 /// Sub-devices: splits `whole` by clCreateSubDevices into parts of `compute_units` each. A part's
-/// id is the whole's with ".0", ".1", ... ; its memory is an equal share of the whole's, since all
-/// parts fill the same. Errors: DeviceError when the device cannot be split like that.
+/// id is the whole's with ".0", ".1", ... ; its memory is an equal part of the whole's, since all
+/// parts share it. Errors: DeviceError when the device cannot be split like that.
 std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
                                            std::span<const std::uint32_t> compute_units);
 

@@ -29,11 +29,11 @@ struct DeviceChoice {
 std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string selector,
                                          std::span<const std::string> left_out = {});
 
-/// Why `chosen`, which "" means, is a CPU though there is a GPU, or a GPU that has not passed its
-/// test: one line; "" where neither is so.
+/// Why `chosen`, the choice for "", is a CPU although there is a GPU, or a GPU that has not passed
+/// its test: one line; "" where neither is the case.
 std::string untested_gpu(std::span<const DeviceInfo> devices, const DeviceInfo& chosen);
 
-/// Whether `selector`, or the environment in its place, leaves the choice to photile.
+/// Whether `selector`, or the environment variable used instead, leaves the choice to photile.
 bool chooses_best(const std::string& selector);
 
 }  // namespace photile::device

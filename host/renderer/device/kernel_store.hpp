@@ -25,10 +25,10 @@ CacheKey program_key(const DeviceInfo& device, std::string_view options, std::st
 
 struct CheckedRead {
   std::optional<std::string> payload;  ///< set only when every check passed
-  std::string problem;                 ///< why not; empty where there is no such file
+  std::string problem;                 ///< why it is not set; empty where there is no such file
 };
 
-/// Reads and verifies. Never throws on account of the file.
+/// Reads and verifies. Never throws because of the file.
 CheckedRead read_checked_file(const std::filesystem::path& file, const CacheKey& key);
 
 /// A reader sees the old file or the whole new one. Errors: OutputError.
@@ -42,11 +42,11 @@ class KernelStore {
   KernelStore(std::filesystem::path folder, std::vector<std::filesystem::path> installed,
               std::string ending);
 
-  /// What was stored under `key`, verified. None where no folder has such a file (silently) or none
-  /// is as it was written (a warning for each).
+  /// What was stored under `key`, verified. None where no folder has such a file (silently), or
+  /// where all such files are damaged (with a warning for each).
   std::optional<std::string> load(const CacheKey& key) const;
 
-  /// Stores `kernels` in the folder. What goes wrong is a warning, and false.
+  /// Stores `kernels` in the folder. A failure is a warning, and returns false.
   bool store(const CacheKey& key, std::string_view kernels) const;
 
   /// The file of a key in the folder.

@@ -37,9 +37,9 @@ class Launch {
   }
 
   /// Enqueues the kernel over at least `global_size` work-items, in groups of `local_size`: kernels
-  /// check their index. `local_size` 0 lets the device choose, and PoCL compile for each size that
-  /// it chooses. Nothing is enqueued for global_size 0. Errors: DeviceError, also where an argument
-  /// was not set.
+  /// check their index. With `local_size` 0 the device chooses, and PoCL compiles for each size
+  /// that it chooses. Nothing is enqueued for global_size 0. Errors: DeviceError, also where an
+  /// argument was not set.
   void run(std::size_t global_size, std::size_t local_size);
 
   /// Runs kernels that have memory for each work-item over `global_size` of them, rounded up to a
@@ -89,7 +89,8 @@ class LaunchPace {
       const Stopwatch stopwatch;
       launch(first, count);
       context_.finish();
-      if (count == part) items_ = next_launch(part, stopwatch.seconds());  // small rests say little
+      if (count == part)
+        items_ = next_launch(part, stopwatch.seconds());  // short remainders tell little
       first += count;
     }
   }

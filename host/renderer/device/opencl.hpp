@@ -21,7 +21,7 @@ std::string status_name(int status);
 /// "clFinish failed: out of memory, CL_OUT_OF_RESOURCES (-5)".
 std::string failure_text(std::string_view call, int status);
 
-/// True for the codes by which a runtime says that memory ran out or a buffer is too large.
+/// True for the codes by which a runtime reports that memory ran out or a buffer is too large.
 bool is_out_of_memory(int status);
 
 /// Throws DeviceError "<call> failed: <status by name>; <detail>".
@@ -72,7 +72,7 @@ T device_property(cl_device_id device, cl_device_info name) {
   check(clGetDeviceInfo(device, name, sizeof value, &value, nullptr), "clGetDeviceInfo");
   return value;
 }
-/// A text that query(bytes, text, &bytes_needed), one of the API's, tells. Errors: DeviceError that
+/// A text from query(bytes, text, &bytes_needed), a function of the API. Errors: DeviceError that
 /// names `call`.
 template <class Query>
 std::string text_of(std::string_view call, const Query& query) {

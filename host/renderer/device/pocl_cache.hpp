@@ -19,9 +19,9 @@
 
 namespace photile::device {
 
-/// The folder, which the first call creates and names to PoCL by POCL_CACHE_DIR: before the first
-/// OpenCL call. Empty where the user set POCL_CACHE_DIR to a folder that can be written, which is
-/// left alone. Errors: DeviceError when no folder can be written at all.
+/// The folder, which the first call creates and passes to PoCL in POCL_CACHE_DIR; to be called
+/// before the first OpenCL call. Empty where the user set POCL_CACHE_DIR to a folder that can be
+/// written, which is left alone. Errors: DeviceError when no folder can be written at all.
 const std::filesystem::path& pocl_work_folder();
 
 // PoCL's compiled kernels, kept between runs as one checked file per program.
@@ -41,7 +41,7 @@ class PoclCache {
   /// it. Returns true where PoCL found the program compiled. A damaged pack is a warning.
   bool build(const CacheKey& key, const std::function<void()>& build);
 
-  /// Stores every program that has files which its pack lacks. What goes wrong is a warning.
+  /// Stores every program that has files which its pack lacks. A failure is a warning.
   void publish() noexcept;
 
  private:

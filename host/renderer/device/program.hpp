@@ -12,7 +12,7 @@
 
 namespace photile::device {
 
-/// The names of a kernel's arguments, in their order; none where the runtime does not tell them.
+/// The names of a kernel's arguments, in their order; none where the runtime does not report them.
 std::optional<std::vector<std::string>> argument_names(cl_kernel kernel);
 
 /// The names of the arguments of each kernel of a program, by its name.
@@ -23,8 +23,8 @@ std::optional<ArgumentNames> argument_names(cl_program program);
 /// would stay held.
 bool in_compiler();
 
-/// Sets what is done when the process aborts, from the first compilation on: compilers of devices
-/// replace the signal's handler when they are loaded.
+/// Sets the handler for an abort of the process, from the first compilation on: compilers of
+/// devices replace the signal's handler when they are loaded.
 void handle_aborts_by(void (*handler)(int));
 
 /// Where programs are built.

@@ -39,7 +39,7 @@ class ProgramLibrary {
  private:
   std::string options(const std::string& defines) const;
   Program load_or_build(const std::string& file, const std::string& options);
-  /// From the cache of runtimes other than PoCL; an empty handle where it has none to be used.
+  /// From the cache of runtimes other than PoCL; an empty handle where it has no usable program.
   Program load(const CacheKey& key, const std::string& options);
 
   BuildTarget target_;

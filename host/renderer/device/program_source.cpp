@@ -54,8 +54,9 @@ std::filesystem::path kernel_folder() {
   for (const auto& [name, text] : registry().texts) {
     if (has(name)) return folder;
   }
-  throw UsageError(fmt::format("{}: {} holds no kernel file, such as {}; name a copy of kernels/",
-                               kernel_folder_variable, folder, embedded_files().front().path));
+  throw UsageError(
+      fmt::format("{}: the folder {} holds no kernel files such as {}; name a copy of kernels/",
+                  kernel_folder_variable, folder, embedded_files().front().path));
 }
 
 std::optional<std::string> source_in_folder(const std::string& name) {
@@ -155,7 +156,7 @@ Defines& Defines::set(std::string name, long long value) {
 Defines& Defines::set(std::string name, double value) {
   const auto single = static_cast<float>(value);
   if (!std::isfinite(single)) {
-    throw DeviceError(fmt::format("definition {} = {} is no finite float", name, value));
+    throw DeviceError(fmt::format("definition {} = {} is not a finite float", name, value));
   }
   // {} gives the shortest digits that read back as the same float.
   std::string literal = fmt::format("{}", single);

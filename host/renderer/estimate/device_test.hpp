@@ -1,4 +1,4 @@
-// A plane of random photons, seen from above: what kernels are compiled, tested and timed with.
+// A plane of random photons, seen from above, to compile, test and time kernels.
 #pragma once
 
 #include <cstddef>

@@ -48,18 +48,18 @@ struct LightSums {
 class EstimateBuffers {
  public:
   /// Those of the hits [first, first + hits) of a table, all zero, for kernels that are compiled
-  /// with the symbols of `sums`. Dense tables have zeros there, and stay for its life.
+  /// with the symbols of `sums`. Dense tables have zeros there, and must outlive this object.
   EstimateBuffers(device::Context& context, const LightSums& sums, LightTable& result,
                   std::size_t first, std::uint32_t hits);
 
-  /// What the kernels left becomes their estimates; with many lights it is appended. Waits for the
-  /// kernels.
+  /// Turns the output of the kernels into the estimates of these hits; with many lights they are
+  /// appended. Waits for the kernels.
   void read();
 
   device::Buffer<float> irradiance, radiance;  ///< 3 per estimate; radiance in glossy scenes
   // With many lights:
   device::Buffer<std::uint16_t> slot_light;   ///< of each slot
-  device::Buffer<std::uint32_t> slots_taken;  ///< per hit, and a 0
+  device::Buffer<std::uint32_t> slots_taken;  ///< per hit, and a final 0
 
  private:
   LightTable read_slots();

@@ -31,7 +31,7 @@ struct SurfaceBuffers {
 struct HitBuffers {
   std::uint32_t count = 0;
   device::Buffer<PhotileHit> hits = {};
-  device::Buffer<std::uint32_t> order = {};         ///< by map; empty: their own
+  device::Buffer<std::uint32_t> order = {};         ///< by map; empty: the order of the hits
   device::Buffer<PhotileHitSurface> surfaces = {};  ///< where normals are compared or areas clipped
   device::Buffer<PhotileHitLobe> lobes = {};        ///< in glossy scenes
 };
@@ -46,7 +46,7 @@ std::uint64_t hit_bytes(const SceneNeeds& needs, bool normals, bool clipped);
 ///   normals   per oriented face, if a map is filtered by normals (maps::MapStore::normals); or
 ///             empty
 ///   surface   where areas are clipped, else null
-///   needs     of which `glossy` asks for lobes
+///   needs     of which `glossy` requests lobes
 HitBuffers upload_hits(device::Context& context, const PrimaryHits& hits, std::size_t first,
                        std::span<const std::uint32_t> maps, std::span<const glm::vec3> normals,
                        const SurfaceBuffers* surface, const SceneNeeds& needs);
@@ -89,7 +89,7 @@ class HitBatches {
 
  private:
   device::Context& context_;
-  std::size_t most_ = static_cast<std::size_t>(-1);  ///< that have not failed
+  std::size_t most_ = static_cast<std::size_t>(-1);  ///< the most hits that have not failed
 };
 
 }  // namespace photile::estimate

@@ -19,8 +19,8 @@ namespace photile::estimate {
 void for_each_device(std::span<Device> devices, Progress& progress,
                      const std::function<void(std::size_t, Progress&)>& work);
 
-/// Shares hits by the throughput that each device has shown so far. The first hits are shared
-/// evenly: a few that are not measured, since they wait for kernels to be compiled, then a probe.
+/// Shares hits by the throughput that each device has shown so far. The first hits are divided
+/// evenly: a few that are not measured, since they wait for kernels, then some that are.
 class LoadBalance {
  public:
   explicit LoadBalance(std::size_t devices);
@@ -42,7 +42,7 @@ class LoadBalance {
  private:
   struct Work {
     std::size_t hits = 0;           ///< all
-    std::size_t measured_hits = 0;  ///< those of which the time counts
+    std::size_t measured_hits = 0;  ///< those whose time counts
     double seconds = 0;
   };
 

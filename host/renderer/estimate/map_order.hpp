@@ -1,4 +1,4 @@
-// The order in which hits are estimated, and some of them.
+// The order in which hits are estimated, and selections of hits.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace photile::estimate {
 
-/// Numbers of hits in ascending order of their maps, and on each map along a Morton curve: kernels
-/// find what is near one hit near the next. Empty where they are in the order of their maps
-/// already.
+/// Numbers of hits in ascending order of their maps, and on each map along a Morton curve: what
+/// kernels read for one hit is near what they read for the next. Empty where hits are in the order
+/// of their maps already.
 ///   maps, position   of the hits
 std::vector<std::uint32_t> order_by_map(std::span<const std::uint32_t> maps,
                                         std::span<const glm::vec3> position);

@@ -15,8 +15,8 @@
 
 namespace photile::estimate {
 
-/// Builds the same maps on every device, all at once; for one alone, photons are given back on the
-/// way. Errors: as PhotonMaps, see for_each_device.
+/// Builds the same maps on every device, all at once; with a single device, photons are released on
+/// the way. Errors: as PhotonMaps, see for_each_device.
 ///   requested   as PhotonMaps has it
 std::vector<PhotonMaps> build_maps_on_each(std::span<Device> devices, const Scene& scene,
                                            Photons photons, const NeighbourGroups& groups,
@@ -31,8 +31,8 @@ class PhotonEstimate : public light::LightAtPoints {
   struct Parts {
     std::shared_ptr<const std::vector<PhotonMaps>> maps;  ///< the same on each device
     EstimateParameters parameters;
-    /// Tells which photons of these maps are visible from a point: hidden ones do not count. Null:
-    /// all count.
+    /// Decides which photons of these maps are visible from a point: hidden ones do not count.
+    /// Null: all count.
     std::shared_ptr<const VisiblePhotons> seen = nullptr;
   };
   /// References are kept.
@@ -41,14 +41,14 @@ class PhotonEstimate : public light::LightAtPoints {
 
   LightTable at(const PrimaryHits& points, const Progress& progress) override;
 
-  /// Per oriented face, as PhotonMaps has it.
+  /// Per oriented face, as in PhotonMaps.
   std::span<const std::uint32_t> map_of() const { return maps_->front().map_of(); }
 
   /// Each device's part of all points so far.
   std::vector<double> fractions() const { return balance_.fractions(); }
 
  private:
-  /// Takes photons that their points do not see out of the estimates.
+  /// Removes photons that are hidden from their points from the estimates.
   void leave_out_hidden(const PrimaryHits& points, LightTable& result);
 
   std::span<Device> devices_;

@@ -1,4 +1,4 @@
-// What answers queries on one page of photon maps: kernels on the device.
+// Queries of one page of photon maps, by kernels on the device.
 #pragma once
 
 #include <algorithm>
@@ -29,18 +29,18 @@ class Query {
  public:
   virtual ~Query() = default;
 
-  /// What the kernels are compiled with, and what EstimateBuffers are to be made for.
+  /// The layout for which the kernels are compiled and EstimateBuffers are made.
   virtual const LightSums& sums() const = 0;
 
   /// `estimates` are those of sums().
   virtual void estimate(const PageHits& hits, EstimateBuffers& estimates) = 0;
 
-  /// k photon indices per hit, in any order. Before: none.
+  /// k photon indices per hit, in any order. Before: `none`.
   virtual void nearest(const PageHits& hits, device::Buffer<std::uint32_t>& photons,
                        device::Buffer<float>& squared_radius) = 0;
 };
 
-/// What kernels are compiled for and given.
+/// What kernels are compiled for, and their arguments.
 struct QueryParameters {
   std::uint32_t neighbours = 1;             ///< k
   std::uint32_t compiled_neighbours = 1;    ///< kernels are compiled for k up to this
@@ -48,10 +48,10 @@ struct QueryParameters {
   float least_radius = 0;                   ///< metres; smaller discs count as this
   EstimateTuning tuning;                    ///< of the grids' kernels
   const SurfaceBuffers* surface = nullptr;  ///< what areas are clipped to, or null for whole discs
-  DensityKernel kernel = DensityKernel::constant;  ///< what photons count
+  DensityKernel kernel = DensityKernel::constant;  ///< the weight of photons
 };
 
-/// The query of the store's grids, or as MapStore::make_query has it.
+/// The query of the store's grids, or that of MapStore::make_query.
 std::unique_ptr<Query> make_query(const maps::MapStore& store, const QueryParameters& parameters);
 
 /// Sets CLIPPED and DENSITY_KERNEL.
@@ -80,7 +80,7 @@ void for_each_page(const maps::MapStore& store, const HitBuffers& hits,
   }
 }
 
-/// What kernels are given about a page's hits.
+/// The arguments of kernels about the hits of a page.
 inline PhotileQuery query_of(const maps::MapStore& store, const PageHits& hits,
                              const QueryParameters& parameters) {
   return {.first_hit = 0,

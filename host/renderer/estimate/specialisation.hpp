@@ -1,4 +1,4 @@
-// The tunings that there are, and which variant of the estimate kernels a scene and a tuning need.
+// The available tunings, and the variant of the estimate kernels that a scene and a tuning need.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline constexpr int warp_width = 32;                    ///< of NVIDIA's device
 inline constexpr int max_hits_per_item = 64;
 inline constexpr int max_work_group_size = 256;
 
-/// "" for a tuning that kernels exist for, else what is wrong with it.
+/// "" for a tuning for which kernels exist, else what is wrong with it.
 std::string tuning_problem(const EstimateTuning& tuning);
 
 /// Private memory that the work-items of a group may use together. PoCL keeps a whole group's
@@ -52,7 +52,7 @@ struct Specialisation {
   /// Distances kept, in private memory by `select`, in local by `lanes`.
   int capacity = 256;
   int neighbours = 1;     ///< k
-  bool shuffles = false;  ///< `lanes` exchange values by instructions of NVIDIA's
+  bool shuffles = false;  ///< `lanes` exchange values by shuffle instructions
   int hits_per_item = 1;  ///< neighbouring hits that a work-item estimates in turn
   std::size_t work_group_size = 64;
   SceneNeeds needs;
@@ -81,7 +81,7 @@ Specialisation specialise(const EstimateTuning& tuning, const SceneNeeds& needs,
 /// The same by one work-item a hit, whose memory does not depend on k: any device runs it.
 Specialisation independent_of_k(Specialisation choice);
 
-/// Whether a device has what the built kernel of a choice takes.
+/// Whether a device has the resources that the built kernel of a choice takes.
 bool fits(const Specialisation& choice, const device::KernelResources& taken,
           const DeviceInfo& device);
 

@@ -18,8 +18,8 @@ namespace photile::estimate {
 
 /// The photons nearest to a hit may lie on the other side of a wall that stands on the same floor:
 /// a dark room would get the light of the yard, and a floor outside a ring of metal that of the
-/// caustic within it. Here the hit's lines of sight along the surface decide which photons count,
-/// and which part of the disc they lie on.
+/// caustic within it. Here visibility from the hit along the surface decides which photons count,
+/// and on which part of the disc they lie.
 class VisiblePhotons {
  public:
   /// Keeps a reference to `rays`, and copies of what it needs of the photons.
@@ -28,15 +28,15 @@ class VisiblePhotons {
   VisiblePhotons(const RayScene& rays, const Photons& photons, DensityKernel kernel, double radius);
 
   /// The hits whose estimate is not 0, and near which something stands on the surface: those whose
-  /// neighbours need to be looked at.
+  /// neighbours need to be tested.
   ///   radius   metres, from which no neighbour is farther
   std::vector<std::uint32_t> beside_something(const PrimaryHits& hits, const LightTable& estimates,
                                               double radius) const;
 
-  /// Where the photons of a light that a hit sees, on the area that it sees, give less than a
-  /// quarter of the light, replaces the light's estimate by that of these photons, and where more
-  /// than a tenth of the light lies behind the surface itself, as in the cavity above a ceiling.
-  /// Else the estimate stands: it has less noise, and knows the area exactly.
+  /// Replaces the estimate of a light by that of its visible photons over the visible area, where
+  /// these give less than a quarter of the light, or where more than a tenth of the light lies
+  /// behind the surface itself, as in the cavity above a ceiling. Otherwise the estimate stays: it
+  /// has less noise, and its area is exact.
   ///   chosen   of the hits
   ///   near     of the chosen hits
   void leave_out_hidden(const PrimaryHits& hits, std::span<const std::uint32_t> chosen,
@@ -58,27 +58,27 @@ class VisiblePhotons {
   bool is_before_cavity(const trace::SurfaceLocation& here, float radius) const;
   /// Whether a photon lies behind the surface of a disc, with a surface in between.
   bool is_behind(const trace::SurfaceLocation& here, const trace::SurfaceLocation& photon) const;
-  /// Looks at a few photons of each light that has some, and at all behind the surface. Returns
-  /// whether one is in doubt.
+  /// Tests a few photons of each light that has some, and all behind the surface. Returns whether
+  /// any light is in doubt.
   bool probe(const Disc& disc, std::vector<Layer>& layers) const;
-  /// Sums the photons of the lights that are in doubt, all and those that are seen.
-  ///   full   the farthest photon tells the radius
+  /// Sums the photons of the lights that are in doubt: all of them, and the visible ones.
+  ///   full   the farthest photon gives the radius
   void sum_seen(const Disc& disc, bool full, std::vector<Layer>& layers) const;
   /// The surface of about this normal, at most `within` metres above or below a point.
   std::optional<trace::SurfaceLocation> surface_at(const trace::SurfaceLocation& point,
                                                    float within) const;
-  /// What the kernel integrates to over the surface of a disc that is seen from its middle, m2.
+  /// The integral of the kernel over the surface of a disc that is visible from its middle, m2.
   double visible_area(const Disc& disc) const;
-  /// What a photon counts, by the square of its distance over the radius.
+  /// The weight of a photon, by the square of its distance over the radius.
   double weight(double relative_squared) const;
 
   const RayScene& rays_;
-  float rounding_;  ///< metres: surfaces that are nearer to each other count as one
+  float rounding_;  ///< metres: surfaces closer to each other than this count as one
   DensityKernel kernel_;
   std::vector<glm::vec3> position_;
   std::vector<std::uint32_t> oriented_face_;
   std::vector<float> flux_;           ///< luminance
-  std::vector<std::uint16_t> light_;  ///< empty for one alone
+  std::vector<std::uint16_t> light_;  ///< empty for a single light
   std::vector<std::uint32_t> cavity_faces_;
   geometry::BoxTree cavities_;  ///< of these faces
 };

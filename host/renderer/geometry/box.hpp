@@ -43,19 +43,19 @@ using Box = BoxOf<float>;
 inline float squared_distance(const Box& a, const Box& b) {
   const auto squared_gap = [&](int axis) {
     const float gap = std::max(a.lower[axis] - b.upper[axis], b.lower[axis] - a.upper[axis]);
-    return gap * std::max(0.0f, gap);  // a square of which compilers make no branch
+    return gap * std::max(0.0f, gap);  // a square that compilers turn into no branch
   };
   return squared_gap(0) + squared_gap(1) + squared_gap(2);
 }
 
-/// What squared_distance is at most of boxes `radius` metres apart, with room for its rounding, a
-/// few parts in 10^7.
+/// The most that squared_distance returns for boxes `radius` metres apart, with a margin for
+/// rounding of a few parts in 10^7.
 inline float squared_reach(double radius) {
   return static_cast<float>(radius * radius * (1 + 1e-5));
 }
 
-/// Whether they share a point. Without branches: most boxes are apart, along an axis that cannot be
-/// predicted.
+/// Whether they share a point. Without branches: most boxes are disjoint, along an unpredictable
+/// axis.
 inline bool overlap(const Box& a, const Box& b) {
   const auto overlap_along = [&](int axis) {
     return static_cast<int>(a.lower[axis] <= b.upper[axis]) &

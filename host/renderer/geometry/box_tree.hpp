@@ -1,5 +1,5 @@
-// A binary tree over boxes, for "is any of them within R": nearer children first, until told to
-// stop.
+// A binary tree over boxes, for "is any of them within R": nearer children are visited first, until
+// a visit ends the search.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class BoxTree {
         box, limit, [](std::size_t) { return true; }, visit);
   }
 
-  /// The same, without nodes that enter(node) denies and all below them.
+  /// The same, without nodes that enter(node) rejects and all nodes below them.
   template <class Enter, class Visit>
   void visit_within(const Box& box, float limit, Enter&& enter, Visit&& visit) const {
     if (nodes_.empty() || !(squared_distance(nodes_[0].box, box) <= limit)) return;
@@ -65,7 +65,7 @@ class BoxTree {
     }
   }
 
-  /// Per node what join(a, b) makes of the values of(index of a box) of all boxes below it.
+  /// Per node, the values of(index of a box) of all boxes below it, combined by join(a, b).
   template <class Value, class Of, class Join>
   std::vector<Value> folded(const Value& of_none, const Of& of, const Join& join) const {
     std::vector<Value> values(nodes_.size(), of_none);
@@ -80,7 +80,7 @@ class BoxTree {
   }
 
   /// Calls visit(index of a box) for all boxes that overlap `box`.
-  ///   boxes   those that the tree was built of
+  ///   boxes   those from which the tree was built
   template <class Visit>
   void visit_overlapping(std::span<const Box> boxes, const Box& box, Visit&& visit) const {
     if (nodes_.empty()) return;

@@ -1,4 +1,4 @@
-// Numbers that are joined to sets: triangles that go on over edges, pixels of one source.
+// Numbers that are joined into sets: triangles connected over edges, pixels of one source.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace photile::geometry {
 
-/// The smallest number of a set stands for it, whatever the order in which sets were joined.
+/// The smallest number of a set represents it, whatever the order in which sets were joined.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {

@@ -1,11 +1,11 @@
-// The radii of search that the arithmetic holds for.
+// The search radii for which the arithmetic holds.
 #pragma once
 
 #include "photile/scene.hpp"
 
 namespace photile {
 
-/// Metres between opposite corners of the box around the scene: nothing is farther from anything.
+/// Metres between opposite corners of the box around the scene: the largest distance in it.
 double scene_diagonal(const Scene& scene);
 
 /// The smallest radius, metres, that check_radius takes.

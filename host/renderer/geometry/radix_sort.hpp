@@ -14,13 +14,13 @@
 
 namespace photile::geometry {
 
-/// Sorts items in ascending order of key_of(item), an unsigned number below 2^bits, of 64 bits at
-/// most; equal ones keep their order. Digits from the lowest on, each shared among all cores:
-/// 2 (bits / 8) moves of an item, and room for all of them once more. (Zagha and Blelloch, "Radix
-/// sort for vector multiprocessors", Supercomputing 1991.)
+/// Sorts items in ascending order of key_of(item), an unsigned number below 2^bits, of at most 64
+/// bits; items with equal keys keep their order. Digits are processed from the lowest on, each by
+/// all cores: 2 (bits / 8) moves per item, and memory for a second copy of all items. (Zagha and
+/// Blelloch, "Radix sort for vector multiprocessors", Supercomputing 1991.)
 template <class Item, class KeyOf>
 void radix_sort(std::vector<Item>& items, int bits, const KeyOf& key_of) {
-  constexpr int digit_bits = 8;  // as many positions to write to as caches and TLBs keep at hand
+  constexpr int digit_bits = 8;  // as many write positions as caches and TLBs can hold
   constexpr std::size_t digits = std::size_t{1} << digit_bits, least_chunk = 4096;
   const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
   const std::size_t chunks = std::clamp<std::size_t>(items.size() / least_chunk, 1, threads);

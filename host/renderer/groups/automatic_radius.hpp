@@ -13,8 +13,8 @@ namespace photile::groups {
 /// The most photons among which distances are found.
 inline constexpr std::size_t max_subsample = 1u << 18;
 
-/// Index of the i-th of `count` samples spread over `size` elements, each in the middle of its
-/// share.
+/// Index of the i-th of `count` samples spread over `size` elements, each in the
+/// middle of its part.
 inline std::size_t spread_index(std::size_t i, std::size_t count, std::size_t size) {
   return (2 * i + 1) * size / (2 * count);
 }
@@ -24,7 +24,7 @@ inline std::size_t spread_index(std::size_t i, std::size_t count, std::size_t si
 /// over the photons of a block run in vectors.
 class PhotonBlocks {
  public:
-  /// Takes `most` of the positions, in equal steps, or all where they are fewer.
+  /// Takes `most` of the positions, in equal steps, or all where there are fewer.
   PhotonBlocks(const std::vector<glm::vec3>& positions, std::size_t most);
 
   std::size_t size() const { return position_on_curve_.size(); }

@@ -1,5 +1,5 @@
-// Patches that are merged, side by side or turned over, and a sample of the photons by the maps
-// that hold them.
+// Patches that are merged, in the same orientation or turned over, and a sample of the photons by
+// the maps that hold them.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -18,8 +18,8 @@
 
 namespace photile::groups {
 
-/// A union of disjoint sets with parity: each patch knows the set it is in, and whether its front
-/// belongs to the set's front or back.
+/// A union of disjoint sets with parity: each patch has its set, and whether its front belongs to
+/// the set's front or back.
 class PatchUnion {
  public:
   explicit PatchUnion(std::size_t patch_count);

@@ -1,6 +1,5 @@
-// Neighbour groups: whether two triangles are near each other, by cheap bounds first and the exact
-// distance where they leave it open, and the lists of both sides that one search per triangle
-// gives.
+// Neighbour groups: whether two triangles are near each other, by cheap bounds first and by the
+// exact distance where these do not decide, and the lists of both sides, found together.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace photile::groups {
 
-/// What the cheap tests read of a triangle: one cache line.
+/// The data of a triangle for the cheap tests: one cache line.
 struct alignas(64) TriangleBound {
   glm::dvec3 centre;  ///< of the smallest enclosing ball; a point of the triangle
   double radius;      ///< of that ball, metres
@@ -55,8 +54,8 @@ class ProximityTest {
 inline constexpr std::uint32_t equal_sides = 1, opposite_sides = 2;
 
 /// The normal test of photile::normals_agree for both pairs of sides. In single precision, as
-/// kernels/structures/search.clh filters: faces of a cylinder may meet the angle within rounding,
-/// and every structure must decide alike.
+/// kernels/structures/search.clh filters: the faces of a cylinder may have exactly the angle within
+/// rounding, and every structure must decide alike.
 inline std::uint32_t agreeing_sides(const glm::dvec3& a, const glm::dvec3& b, double cos_angle) {
   const glm::vec3 u(a), v(b);
   const float cosine = (u.x * v.x + u.y * v.y) + u.z * v.z;
@@ -73,9 +72,8 @@ void check(const NeighbourGroupParameters& parameters);
 
 /// Groups of both sides of all triangles, searched in parallel. Errors: UsageError when they have
 /// more members than limits.hpp allows; Interrupted.
-///   landed   per oriented face: 1 where a group is requested, 0 where an empty one will do; empty:
-///   all
-///            are requested
+///   landed   per oriented face: 1 where a group is requested, 0 where an empty one suffices;
+///            empty: all are requested
 NeighbourGroups collect_groups(std::size_t triangle_count,
                                const NeighbourGroupParameters& parameters,
                                const AppendNeighbours& append_neighbours, Progress& progress,

@@ -10,7 +10,7 @@
 
 namespace photile::groups {
 
-/// What clustering reads of each triangle, computed once.
+/// The data of each triangle for clustering, computed once.
 struct TriangleFacts {
   std::vector<glm::vec3> normal;  ///< unit, of side 0
   std::vector<float> area;        ///< square metres
@@ -18,8 +18,8 @@ struct TriangleFacts {
   explicit TriangleFacts(const Scene& scene);
 };
 
-/// An oriented box around triangles. Heights are measured along `axis`, which is the direction that
-/// the normals share best, whichever way the triangles are wound.
+/// An oriented box around triangles. Heights are measured along `axis`, the direction closest to
+/// all normals, whichever way the triangles are wound.
 struct PatchShape {
   glm::dvec3 axis{0, 0, 1}, u_axis{1, 0, 0}, v_axis{0, 1, 0};  ///< orthonormal
   glm::dvec3 low{0}, high{0};  ///< coordinates along u_axis, v_axis, axis, metres

@@ -1,5 +1,5 @@
-// Clustering from the top down: all triangles, split until each part is flat and whole enough to
-// serve as a patch.
+// Clustering from the top down: all triangles, split until each part is flat enough and has no
+// large gaps, so that it can be a patch.
 #pragma once
 
 #include <tbb/concurrent_vector.h>

@@ -1,4 +1,4 @@
-// The one question that rendering asks: what light arrives at points of surfaces.
+// The interface at the centre of rendering: the light that arrives at points of surfaces.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace photile::light {
 
-/// Tells the irradiance and the reflected radiance of every light at points of opaque surfaces.
-/// The photon estimate answers from photons; rays that gather query another source where they end;
-/// a cache interpolates samples that another source valued; and an exchange asks the process that
+/// Returns the irradiance and the reflected radiance of every light at points of opaque surfaces.
+/// The photon estimate computes them from photons; rays that gather query another source where they
+/// end; a cache interpolates samples from another source; and an exchange queries the process that
 /// has the photons. PassLight chooses which of them a rendering uses.
 class LightAtPoints {
  public:

@@ -9,7 +9,7 @@
 
 namespace photile {
 
-/// Calls visit(light, illuminance, radiance) for all that reaches a pixel, at power 1.
+/// Calls visit(light, illuminance, radiance) for all lights that reach a pixel, at power 1.
 template <class Layers, class Visit>
 void for_each_light(Layers& layers, std::size_t x, std::size_t y, const Visit& visit) {
   if (layers.sparse()) {

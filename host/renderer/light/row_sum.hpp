@@ -16,9 +16,9 @@
 
 namespace photile::light {
 
-/// What lights add to a row, with room for every light: the lights that were added to are listed,
-/// so that only these are read and reset. Sums run in the order in which they are added.
-///   Sums   of one light; those made by default are of nothing
+/// The sums of lights in a row, with room for every light: lights with a sum are listed, so that
+/// only these are read and reset. Sums run in the order in which they are added.
+///   Sums   the sums of one light; zero by default
 template <class Sums>
 class RowSum {
  public:
@@ -34,10 +34,10 @@ class RowSum {
   }
   bool has(std::size_t light) const { return is_lit_[light] != 0; }
 
-  /// The lights that were added to, in the order in which they came.
+  /// The lights with a sum, in the order of their first addition.
   std::span<const std::uint16_t> lit() const { return lit_; }
 
-  /// Calls visit(light, its sums) for those that were added to, ascending, and forgets them.
+  /// Calls visit(light, its sums) for these lights, ascending, and clears the sums.
   template <class Visit>
   void take_lit(const Visit& visit) {
     std::sort(lit_.begin(), lit_.end());
@@ -74,8 +74,8 @@ class RowSum {
   std::vector<std::uint16_t> lit_;
 };
 
-/// What a light brings to a point, W/m2 or lm/m2, and what the point reflects of it, W/(m2 sr) or
-/// cd/m2.
+/// The irradiance of a light at a point, W/m2 or lm/m2, and the radiance that the point reflects of
+/// it, W/(m2 sr) or cd/m2.
 struct Reflection {
   glm::vec3 irradiance{0.0f}, radiance{0.0f};
 

@@ -17,20 +17,20 @@ namespace photile::maps {
 
 /// Builds one map per oriented face or side of a patch. Fills the pages and statistics of `store`,
 /// whose device, needs and parameters are set.
-///   consumed    the same photons where their arrays may be given back on the way, else null
+///   consumed    the same photons where their arrays may be released on the way, else null
 ///   requested   as PhotonMaps has it
 void build_maps_of_groups(MapStore& store, const Scene& scene, const Photons& photons,
                           Photons* consumed, const NeighbourGroups& groups,
                           std::span<const std::uint8_t> requested, Progress& progress);
 
-/// Where maps lie, and which photons may enter them.
+/// The surfaces of maps, and the photons that may enter them.
 struct MapPlan {
   CandidateMaps candidates;
   MapShapes surfaces;                ///< of pairs of maps
   std::vector<float> density_ratio;  ///< per map, see photon_density_ratio
   float reach = 0;                   ///< metres: photons within it of a surface enter its maps
   bool normals = false;              ///< normals of photons may disagree with those of hits
-  /// What messages call a pair.
+  /// The name of a pair in messages.
   std::function<std::string(std::uint32_t pair)> name_of;
 };
 
@@ -43,8 +43,8 @@ void build_maps(MapStore& store, const Photons& photons, Photons* consumed, MapP
 /// Adds a page whose maps are built to the store and its statistics.
 void add_page(MapStore& store, MapPage page);
 
-/// The radius that photons must lie within of a surface to enter its map, metres: grown by what
-/// rounding may do to positions as large as the scene's, so that no neighbour is lost.
+/// The distance from a surface within which photons enter its map, metres: enlarged by the possible
+/// rounding of positions as large as the scene's, so that no neighbour is lost.
 float reach_of(const Scene& scene, double radius);
 
 /// Unit normals of oriented faces.

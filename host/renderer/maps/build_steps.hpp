@@ -22,18 +22,18 @@ namespace photile::maps {
 /// (works_in_groups).
 device::KernelSet build_kernels(const MapStore& store, bool patches);
 
-/// Per map: how many photons it holds, and whether their normals may disagree with its triangles'.
+/// Per map: the number of its photons, and whether their normals may disagree with its triangles'.
 struct MapCounts {
   device::Buffer<std::uint32_t> photons, normal_filtered;  ///< `normal_filtered` only with patches
 };
 
-/// What every step needs.
+/// The data that every step needs.
 struct Build {
   device::Context& context;
   const MapStore& store;
   device::KernelSet kernels;
   bool patches;         ///< maps may be of several triangles
-  float squared_reach;  ///< square metres: within it of a triangle photons enter its map
+  float squared_reach;  ///< square metres: photons within it of a triangle enter its map
   float radius;         ///< metres, of the search
   device::Buffer<std::uint32_t> map_of = {};    ///< per oriented face
   device::Buffer<float> normals = {};           ///< 3 per oriented face; only with patches
@@ -76,8 +76,8 @@ struct PhotonRelease {
 struct RecordCopying {
   /// 3 floats per oriented face, where the records keep normals; else null.
   const device::Buffer<float>* normals = nullptr;
-  /// Is called as soon as no kernel reads what it releases, where photons are one page; null:
-  /// photons are needed for further pages of maps.
+  /// Called as soon as no kernel reads what it releases, where photons are one page; null: photons
+  /// are needed for further pages of maps.
   const PhotonRelease* release = nullptr;
   device::MemoryPages memory = device::MemoryPages::large;
 };

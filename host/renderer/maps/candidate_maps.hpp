@@ -1,5 +1,5 @@
 // Which maps each photon may have to enter (its neighbour group, narrowed down where the group is
-// large), and numbers for the maps that there are.
+// large), and the numbering of the maps that exist.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 namespace photile::maps {
 
 /// Lists of maps in compressed sparse rows; photons that lie close together on an oriented
-/// face share a list. A large triangle has thousands of neighbours of which a photon on it
-/// reaches a few: without the lists the build would try them all.
+/// face share a list. A large triangle has thousands of neighbours, of which a photon on it reaches
+/// only a few: without the lists the build would test them all.
 struct CandidateMaps {
   std::vector<std::uint32_t> list_of_photon;
   std::vector<std::uint64_t> first_list_of;  ///< per oriented face, and the number of lists
@@ -36,8 +36,8 @@ CandidateMaps find_candidate_maps(const Scene& scene, const Photons& photons,
 std::vector<geometry::Box> map_boxes(const Scene& scene, const Patches& patches);
 
 /// Pairs of maps (both sides of a triangle, or of a patch) of which a photon may enter one,
-/// numbered without gaps in ascending order of their triangles or patches. What no photon comes
-/// near has no map and takes no memory.
+/// numbered without gaps in ascending order of their triangles or patches. Surfaces without photons
+/// nearby have no map and take no memory.
 struct MapNumbers {
   std::vector<std::uint32_t> pairs;   ///< per pair: its triangle; with patches, its patch
   std::vector<std::uint32_t> map_of;  ///< per oriented face: its map, or `none`
@@ -49,7 +49,7 @@ struct MapNumbers {
 ///   face_count   oriented faces of the scene
 MapNumbers number_maps(CandidateMaps& candidates, const Patches& patches, std::size_t face_count);
 
-/// `values` of all oriented faces' or patches' maps: those of the numbered ones.
+/// Of `values` for the maps of all oriented faces or patches, those of the numbered maps.
 std::vector<float> of_numbered(const MapNumbers& numbers, std::span<const float> values);
 
 }  // namespace photile::maps

@@ -1,4 +1,4 @@
-// Checks of photons from outside.
+// Checks of photons from outside the library.
 #pragma once
 
 #include <algorithm>

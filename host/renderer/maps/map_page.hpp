@@ -1,6 +1,6 @@
-// Pages of photon maps: the photons of a run of maps, and what finds them, as they lie on the
-// device; the symbols by which kernels know what the photon records of a scene hold; and which maps
-// share a page, cut where they are too large.
+// Pages of photon maps: the photons of a run of maps and the grids that find them, as they lie on
+// the device; the symbols that tell kernels the contents of photon records; and which maps share a
+// page, which is cut where it is too large.
 #pragma once
 
 #include <cstdint>
@@ -126,8 +126,8 @@ class PageQueue {
  public:
   using NameMap = std::function<std::string(std::uint32_t map)>;
 
-  /// `map_count`: photons per map, for the life of the queue. `name_map` says what a map serves,
-  /// for errors.
+  /// `map_count`: photons per map, for the life of the queue. `name_map` returns the name of a
+  /// map's surface, for errors.
   PageQueue(std::span<const std::uint32_t> map_count, const PageLimits& limits, NameMap name_map);
 
   /// The next page, as far as possible within the limits; nothing at the end. Errors:
@@ -142,7 +142,7 @@ class PageQueue {
   /// Device memory that a page is expected to take.
   std::uint64_t bytes(const MapRange& page) const;
 
-  /// The page is the next one, as it is.
+  /// Puts the page back: it is the next one, unchanged.
   void put_back(const MapRange& page) { pages_.push_front(page); }
 
  private:

@@ -30,7 +30,7 @@ MapShapes map_shapes(const Scene& scene, const Patches& patches,
 /// Per map: the density that its photons see around them, on average over the photons, as a
 /// multiple of the mean density over the map's surface. 1 where photons are uniform or few. Cells
 /// that are to hold some photons each where the photons are must be smaller by this factor than
-/// those that hold as many on average over the surface, which is empty for a good part.
+/// cells that hold as many on average over the surface, a large part of which is empty.
 ///
 /// It is found from counts n in bins of area A (small triangles, and parts of large ones): the sum
 /// of n (n - 1) / A is an unbiased estimate of the integral of the squared density, for n (n - 1)

@@ -28,7 +28,8 @@ struct MapStore {
   SceneNeeds needs;
   PhotonMapParameters parameters;
   PhotonMapStatistics statistics;
-  mutable ResidentMaps pages;  ///< maps without photons may lie in none; using one moves others
+  mutable ResidentMaps
+      pages;  ///< maps without photons may lie in no page; using a page may move others
   /// Per oriented face; `none` where no photon comes near. Empty where that is the map itself.
   std::vector<std::uint32_t> map_of;
   double angle_degrees = 0;           ///< largest angle between normals of neighbours
@@ -37,7 +38,7 @@ struct MapStore {
   std::vector<std::uint32_t> landed;  ///< per oriented face: photons that landed there
   std::vector<glm::vec3> normals;     ///< per oriented face; only if a page has record_normal
 
-  /// Makes the queries of these maps where they are not grids: the structures that grids are
+  /// Makes the queries of these maps where they are not grids, but structures that grids are
   /// compared with (bench/structures). Empty for grids.
   std::function<std::unique_ptr<estimate::Query>(const MapStore&, const estimate::QueryParameters&)>
       make_query;
@@ -53,13 +54,13 @@ inline constexpr std::size_t work_group_size = 64;
 /// The group size of the kernels whose work-items work together in local memory.
 inline constexpr std::size_t group_size = PHOTILE_COOPERATIVE_GROUP;
 
-/// Whether such kernels are used: anywhere but on CPUs, where work-items of a group run in turn,
-/// and on devices of smaller groups.
+/// Whether such kernels are used: on all devices except CPUs, where work-items of a group run in
+/// turn, and devices with smaller groups.
 inline bool works_in_groups(const DeviceInfo& device) {
   return device.type != DeviceType::cpu && device.max_work_group_size >= group_size;
 }
 
-/// What programs with such kernels are built with.
+/// The definitions with which programs with such kernels are built.
 inline device::Defines group_defines(const DeviceInfo& device) {
   device::Defines defines;
   if (works_in_groups(device)) defines.set("IN_GROUPS");

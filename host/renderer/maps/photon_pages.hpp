@@ -44,8 +44,8 @@ struct PhotonRange {
   }
 };
 
-/// Splits photons so that no buffer of a page is larger than `max_bytes`, except by the lists of
-/// one oriented face that alone are larger. Errors: DeviceError when those are beyond 32 bits.
+/// Splits photons so that no buffer of a page is larger than `max_bytes`, except where the lists of
+/// a single oriented face are larger. Errors: DeviceError when these exceed 32 bits.
 std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const CandidateMaps& candidates,
                                            std::uint64_t max_bytes);
 
@@ -72,7 +72,7 @@ class PhotonPages final : private Residents {
   void for_each(const Visit& visit) {
     for_each_entering(0, none, visit);
   }
-  /// The same for those that maps of [first_map, last_map) may hold photons of.
+  /// The same for pages whose photons may be in maps of [first_map, last_map).
   template <class Visit>
   void for_each_entering(std::uint32_t first_map, std::uint32_t last_map, const Visit& visit) {
     for (std::size_t i = 0; i < pages_.size(); ++i) {
@@ -94,7 +94,7 @@ class PhotonPages final : private Residents {
   void release_records();
   bool released() const { return released_; }
 
-  /// Smaller pages from now on. False where they are as small as is sensible.
+  /// Smaller pages from now on. False where they are already as small as is useful.
   bool halve();
 
  private:

@@ -11,8 +11,8 @@
 namespace photile::maps {
 
 /// Items that are loaded when they are used and unloaded when memory runs out. Users go through the
-/// items in ascending order, again and again: so the one used last is the one needed latest and is
-/// unloaded first, and as many as fit stay through all rounds.
+/// items in ascending order, again and again: so the item used last is the one needed latest and is
+/// unloaded first, and as many as fit stay loaded through all rounds.
 class Residents : public device::Reclaimer {
  public:
   explicit Residents(device::Context& context) : Reclaimer(context) {}
@@ -71,7 +71,7 @@ class ResidentMaps final : private Residents {
   std::uint64_t spilled_bytes() const;
 
  private:
-  using HostCopy = std::vector<std::vector<std::byte>>;  ///< a buffer each; empty: none was made
+  using HostCopy = std::vector<std::vector<std::byte>>;  ///< one per buffer; empty: not copied
 
   struct Entry {
     MapPage page;

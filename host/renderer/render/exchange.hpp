@@ -21,11 +21,11 @@ namespace photile {
 /// Sends points to the owners of their maps, and returns their estimates. What a point gets
 /// must not depend on the points beside it. Collective: all processes ask at the same time, each
 /// for its own points or for none. Where all of them ask for the same points, such as nodes of
-/// light maps, each estimates those of its maps, and all have all.
+/// light maps, each estimates those of its maps, and all get all results.
 class Exchange : public light::LightAtPoints {
  public:
   /// References are kept.
-  ///   here   answers for maps of this process
+  ///   here   the source for maps of this process
   ///   none   light of the scene at no points
   ///   sent   is added to
   Exchange(Communicator& processes, std::shared_ptr<const MapOwners> owners,
@@ -54,18 +54,18 @@ class Exchange : public light::LightAtPoints {
   SentData& sent_;
 };
 
-/// Refuses work that is not the same on all processes: their parts would make a mixed picture.
+/// Refuses work that differs between processes: their parts would form an inconsistent picture.
 /// Collective.
 ///   what   the work, in the words of the refusal
 /// Errors: UsageError, on all of them.
 void require_same(Communicator& processes, const ContentHash& work, std::string_view what);
 
-/// Brings the rows of each process, its Shard of them all, to rank 0. The layers of the others stay
+/// Sends the rows of each process, its Shard of all rows, to rank 0. The layers of the others stay
 /// as they are. Collective.
 void bring_rows(Communicator& processes, LightLayers& layers);
 void bring_rows(Communicator& processes, LobeFilm& film);
 
-/// The memory of all machines; of this one where there is one process. Collective.
+/// The memory of all machines together; of this machine where there is one process. Collective.
 std::uint64_t host_bytes_of_all(Communicator* processes);
 
 /// Replaces counts by those of all processes, and fills in their figures. Times stay those of this

@@ -1,4 +1,4 @@
-// Pictures of the light on surfaces alone, quick enough to walk in: a ray and a query a sample.
+// Pictures of the light on surfaces alone, quick enough to walk in: a ray and a query per sample.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,9 @@
 
 namespace photile {
 
-/// Draws frames from light maps. Rays through the same positions of each pixel; mirrors, glass and
-/// cutouts are followed; a specular lobe is taken for matt reflection of the same strength, and
-/// normal maps are left out.
+/// Draws frames from light maps. Rays pass through the same positions in every pixel; mirrors,
+/// glass and cutouts are followed; a specular lobe is replaced by matt reflection of the same
+/// strength, and normal maps are left out.
 class FrameRenderer {
  public:
   /// References are kept.
@@ -31,12 +31,12 @@ class FrameRenderer {
   cache::FrameView& view() { return view_; }
 
   /// Draws a picture of the film's size, linear RGB radiance, row 0 at the top. Points for which
-  /// light maps have no light show that of `coarser`; those without that, the light of nodes
-  /// around.
+  /// light maps have no light show that of `coarser`; points without that, the light of the nodes
+  /// around them.
   ///   powers    per layer: power x tint
   ///   filling   of nodes which pixels lack: the coarsest, on charts that take most of the picture
   ///             first, then finer ones where light differs most; their pixels are drawn again
-  ///   coarser   of the same scene, whose nodes are valued first; null = none
+  ///   coarser   of the same scene, whose nodes are filled first; null = none
   /// Errors: those of LightMaps::fill.
   DrawnFrame draw(const Camera& camera, const Film& film, std::span<const glm::vec3> powers,
                   const FrameFilling& filling, std::span<glm::vec3> picture,
@@ -57,7 +57,7 @@ class FrameRenderer {
 
   /// The data of a triangle that a frame needs, close together.
   struct Surface {
-    glm::vec3 reflects;  ///< radiance per irradiance, where it is plain
+    glm::vec3 reflects;  ///< radiance per irradiance, where it is uniform
     enum Kind : std::uint32_t { plain, textured, light, followed } kind;
   };
 

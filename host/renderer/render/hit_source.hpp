@@ -1,4 +1,4 @@
-// Where light is estimated: what a camera sees, or sensors in the scene. Both fill a film.
+// Where light is estimated: at what a camera sees, or at sensors in the scene. Both fill a film.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ using TraceHits = std::function<PrimaryHitBatch(
 
 struct HitSource {
   TraceHits trace;
-  /// Adds what tells these hits from others of the same scene and film.
+  /// Adds what distinguishes these hits from others of the same scene and film.
   std::function<void(ContentHash& hash)> add_to;
   /// Whether automatic light maps are read: hits lie so close that many share nodes.
   bool dense = false;
@@ -42,12 +42,12 @@ enum class FindsHotSpots : bool { no, yes };
 /// Sensor i is pixel i of a film that is one row high.
 HitSource sensor_hits(std::span<const Sensor> sensors, FindsHotSpots finds_hot_spots);
 
-/// What sensors in the air look at. Sensor i is row i of a film that is one pixel wide.
+/// What sensors in the air see. Sensor i is row i of a film that is one pixel wide.
 HitSource gathered_hits(const Scene& scene, std::span<const Sensor> sensors,
                         SensorResponse response, FindsHotSpots finds_hot_spots);
 
 /// `render` and `trace_paths` for any hits.
-///   film   that they fill, in place of the parameters'
+///   film   that they fill, instead of that of the parameters
 RenderResult render_hits(const Scene& scene, const HitSource& hits, const Film& film,
                          std::span<Device> devices, const RenderParameters& parameters,
                          Progress& progress);

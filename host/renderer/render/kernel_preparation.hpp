@@ -16,15 +16,16 @@ namespace photile {
 /// kept.
 class KernelPreparation {
  public:
-  /// Begins with those devices that have not run any kernel yet. Until wait() returns, no other
+  /// Starts on those devices that have not run any kernel yet. Until wait() returns, no other
   /// code may use the devices. References are kept.
-  ///   lists      of neighbours will be asked for, beside estimates
+  ///   lists      of neighbours will be requested, besides estimates
   ///   caustics   will have separate estimates
   KernelPreparation(const Scene& scene, std::span<Device> devices,
                     const RenderParameters& parameters, bool lists, bool caustics);
 
-  /// Returns once the kernels are there; at once from the second call on. Errors: DeviceError, but
-  /// no DeviceMemoryError: where the sample finds no room, kernels are compiled when they are used.
+  /// Returns once the kernels are ready; immediately from the second call on. Errors: DeviceError,
+  /// but not DeviceMemoryError: where there is no memory for the sample, kernels are compiled when
+  /// they are used.
   void wait();
 
  private:
@@ -33,7 +34,7 @@ class KernelPreparation {
 
 /// Compiles the kernels that scenes of many triangles need in pictures of the qualities draft and
 /// good: of matt and glossy surfaces, with and without normal maps, and of up to max_dense_lights
-/// layers. Where kernels are kept between runs, they are there from now on.
+/// layers. Where kernels are kept between runs, they are available from now on.
 void compile_usual_kernels(Device& device, Progress& progress);
 
 }  // namespace photile

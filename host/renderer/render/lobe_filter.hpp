@@ -1,5 +1,5 @@
-// The filter of gloss: the noise of rays that follow lobes is averaged over pixels whose surfaces
-// and light are alike. What light maps hold is not touched, so that textures and shadows stay
+// The filter of gloss: the noise of rays that follow lobes is averaged over pixels with similar
+// surfaces and light. The light of light maps is not changed, so that textures and shadows stay
 // sharp.
 #pragma once
 
@@ -27,10 +27,10 @@ struct LobeFilm {
 
 /// Adds what rays found in lobes to a picture, each pixel as a mean over pixels around it. Weights
 /// come from the surfaces, and from a comparison of 3x3 pixels in relation to their noise
-/// (non-local means). Those by one half of the samples average the other half: light has no say in
-/// its own weight, so that the mean of a surface stays (Rousselle, Knaus and Zwicker, "Adaptive
-/// rendering with non-local means filtering", 2012). All layers have the same weights, so that
-/// mixing stays linear.
+/// (non-local means). The weights of one half of the samples average the other half: light does not
+/// influence its own weight, so that the mean of a surface is preserved (Rousselle, Knaus and
+/// Zwicker, "Adaptive rendering with non-local means filtering", 2012). All layers have the same
+/// weights, so that mixing stays linear.
 ///   powers    of the picture's layers, as in `mixed`
 ///   samples   of each run
 void add_filtered(LightLayers& picture, const LobeFilm& film, std::span<const double> powers,

@@ -10,7 +10,7 @@
 
 namespace photile {
 
-/// How one photon pass is estimated.
+/// The parameters of the estimate in one photon pass.
 struct PassEstimate {
   double radius = 0;   ///< metres
   int neighbours = 0;  ///< k
@@ -28,27 +28,27 @@ struct PassEstimate {
 PassEstimate estimate_of_pass(int pass, const PassEstimate& first);
 
 /// Bytes installed, or the limit of the process's control group where that is less: the same on
-/// every run, whatever else is running. The largest number where nothing is known.
+/// every run, whatever else is running. The largest number where it is unknown.
 std::uint64_t installed_host_bytes();
 
-/// Host memory that one stored photon takes at most at a time: while it is traced and sorted, or
+/// The most host memory that one stored photon takes at a time: while it is traced and sorted, or
 /// while its maps are built, a few references each. An estimate: references depend on the mesh.
 std::uint64_t bytes_per_stored_photon(const SceneNeeds& needs);
 
-/// Passes so that the photons of one take at most half of `memory_bytes`, and are not more than
-/// can be indexed; at least 1.
-///   stored_per_path   photons that a path leaves
+/// The number of passes for which the photons of one take at most half of `memory_bytes`, and are
+/// not more than can be indexed; at least 1.
+///   stored_per_path   photons that a path stores
 int passes_within(std::uint64_t paths, double stored_per_path, std::uint64_t bytes_per_photon,
                   std::uint64_t memory_bytes);
 
-/// Passes for `memory` bytes of all hosts together. Traces a few paths to know what one leaves;
-/// says so in one line where there is more than one pass. Errors: UsageError where there would be
-/// more than limits::max_passes.
+/// The number of passes for `memory` bytes of all hosts together. Traces a few paths to find out
+/// how many photons one stores; reports in one line where there is more than one pass. Errors:
+/// UsageError where there would be more than limits::max_passes.
 int automatic_passes(const RayScene& rays, const PhotonTracerParameters& parameters,
                      Progress& progress, std::uint64_t memory);
 
-/// Tells of a picture that takes more than a gigabyte. Errors: UsageError for one that takes more
-/// than is installed.
+/// Reports the memory of a picture that takes more than a gigabyte. Errors: UsageError for one that
+/// takes more than is installed.
 void check_picture_memory(int width, int height, std::size_t lights, double bytes,
                           Progress& progress);
 /// The same before anything is traced for it, where each pixel has all lights of the scene.

@@ -42,14 +42,14 @@ class PathEstimator {
 // One path of the path tracer: from a point of an opaque surface towards the light that it
 // receives.
 
-/// What one light gives to the point where a path starts, that light's layer at power 1.
+/// The contribution of one light to the start of a path, with that light's layer at power 1.
 struct PathLight {
   std::uint32_t layer;
   glm::vec3 irradiance;  ///< W/m2 or lm/m2
   glm::vec3 radiance;    ///< reflected against the ray that arrived, W/(m2 sr) or cd/m2
 };
 
-/// Traces one path and appends what it finds, in its order: an unbiased sample of irradiance and
+/// Traces one path and appends what it finds, in order: an unbiased sample of irradiance and
 /// reflected radiance (Kajiya, "The rendering equation", 1986). At each surface point a light is
 /// sampled and a direction is followed; where both can find the same light, the power heuristic
 /// weighs them (Veach and Guibas, "Optimally combining sampling techniques for Monte Carlo

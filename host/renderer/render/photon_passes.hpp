@@ -20,23 +20,23 @@
 
 namespace photile {
 
-/// The photons of one pass, and what follows from them.
+/// The photons of one pass, and the data derived from them.
 struct PassPhotons {
   using Light = std::shared_ptr<light::LightAtPoints>;
 
   double radius = 0;  ///< of the first pass, metres
   Light all;
-  Light at_ends;   ///< by fewer neighbours: of rays, where nodes gather; else null
+  Light at_ends;   ///< by fewer neighbours: for ray hits, where nodes gather; else null
   Light caustics;  ///< that came by mirrors and glass alone; null without any
-  /// The estimate of most points; null where maps are built when they are needed.
+  /// The estimate for most points; null where maps are built only when they are needed.
   std::shared_ptr<const estimate::PhotonEstimate> estimate;
   /// Where light maps are read: of them, and of those at ray ends.
   cache::LightMapParameters maps, ends;
-  /// What such light maps held, if they were kept.
+  /// The contents of such light maps, if they were kept.
   std::optional<LightMapContents> contents = std::nullopt;
 };
 
-/// The light of a scene by the photons of one pass: a chain of answers, as the plan has it.
+/// The light of a scene by the photons of one pass: a chain of sources, according to the plan.
 class PassLight {
  public:
   /// References are kept. Errors: those of SurfaceCache.
@@ -48,7 +48,7 @@ class PassLight {
   ///   points   at which rays gathered before
   void make_light(int parts, cache::GatheredPoints points);
 
-  /// The light at hits, and its standard errors where these are asked for; else they are empty.
+  /// The light at hits, and its standard errors where these are requested; else they are empty.
   cache::LightAndErrors at(const PrimaryHits& hits, bool with_errors, const Progress& progress) {
     if (!cache_) return {photons_.all->at(hits, progress), {}};
     if (with_errors) return cache_->with_errors(hits, *gathered_, progress);
@@ -58,14 +58,14 @@ class PassLight {
   /// Null where light maps are not read.
   cache::SurfaceCache* cache() { return cache_ ? &*cache_ : nullptr; }
   const cache::SurfaceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
-  /// Where rays value nodes; else null.
+  /// Where rays fill nodes; else null.
   const cache::GatheredNodes* gathered() const { return gathered_ ? &*gathered_ : nullptr; }
-  /// Takes the points at which rays gathered, for the light of further photons.
+  /// Takes out the points at which rays gathered, for the light of further photons.
   cache::GatheredPoints take_points() { return gathered_->take_points(); }
 
   /// The order in which a pixel's hits are summed: per oriented face, the map of a hit; empty where
-  /// it is that of the faces: where light maps are read, and where processes share the photon maps,
-  /// because each has other ones.
+  /// it is the order of the faces: where light maps are read, and where processes share the photon
+  /// maps, because each process has different maps.
   std::span<const std::uint32_t> map_of() const;
   /// Each device's part of all points so far; empty where that is not known.
   std::vector<double> fractions() const;
@@ -75,9 +75,9 @@ class PassLight {
   const RenderPlan& plan_;
   const PassPhotons photons_;
   const std::vector<double> layer_powers_;
-  std::optional<cache::IrradianceGather> gather_;  ///< where rays value nodes
+  std::optional<cache::IrradianceGather> gather_;  ///< where rays fill nodes
   std::optional<cache::GatheredNodes> gathered_;
-  std::optional<cache::ValuedBy> by_photons_;  ///< where photons value nodes
+  std::optional<cache::ValuedBy> by_photons_;  ///< where photons fill nodes
   std::optional<cache::SurfaceCache> cache_;
 };
 
@@ -92,9 +92,9 @@ class PhotonPasses {
                RenderCosts& costs);
 
   /// The next pass. What it returns refers to this object.
-  ///   prepared   of the first pass: photons and groups in place of traced ones, or null; taken.
-  ///              Where it has light maps of these settings, photon maps are built when an estimate
-  ///              is first needed.
+  ///   prepared   of the first pass: photons and groups instead of traced ones, or null;
+  ///              consumed. Where it has light maps of these settings, photon maps are built
+  ///              when an estimate is first needed.
   ///   keep       is given those of the first pass, or null
   ///   parts      where light maps are read: the factor on the number of photons
   /// Errors: those of the stages.
@@ -104,7 +104,7 @@ class PhotonPasses {
   /// The radius of the first pass, metres.
   double radius() const { return radius_; }
 
-  /// In words: what nodes depend on beside the scene and the photons.
+  /// In words: what nodes depend on besides the scene and the photons.
   std::string light_map_settings() const;
 
  private:
@@ -113,13 +113,13 @@ class PhotonPasses {
   PassPhotons build(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   PassPhotons build_later(TracedPhotons& prepared, const KeepPhotons* keep);
   void check_map_memory() const;
-  /// Photons of the pass, with all that is found before there are maps.
+  /// The photons of the pass, with all data found before the maps are built.
   PhotonTracerResult trace(TracedPhotons* prepared, const KeepPhotons* keep, Progress& progress);
   Parts build_maps(Photons photons, DensityKernel kernel, bool leaves_out_hidden,
                    Progress& progress);
-  /// The estimate as it is asked for where several processes have the maps.
+  /// The estimate as it is requested where several processes have the maps.
   PassPhotons::Light shared(std::shared_ptr<estimate::PhotonEstimate> estimate);
-  /// What follows from the photons of the pass.
+  /// Derives the data of the pass from its photons.
   PassPhotons facts(const Photons& photons);
   /// Where several processes share the rendering: sends photons to the owners of their maps.
   void move_to_owners(PhotonTracerResult& traced, Progress& progress);

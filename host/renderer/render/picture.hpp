@@ -21,25 +21,25 @@ class Picture {
  public:
   /// References are kept.
   ///   passes    that are added before `finish`
-  ///   mixdown   of its layers, before they take memory; null = each for itself
+  ///   mixdown   of its layers, before they take memory; null = all layers stay separate
   Picture(const RayScene& rays, const RenderPlan& plan, std::span<Device> devices, const Film& film,
           int passes, const LayerMixdown* mixdown, RenderCosts& costs);
 
   /// Adds what is seen by the light of the next pass. Errors: those of LightAtPoints.
   void add(const HitSource& source, PassLight& light, Progress& progress);
 
-  /// The picture; it is gone from here.
+  /// Returns the picture, which is moved out of this object.
   ///   radius   of the first pass, metres
   RenderResult finish(double radius);
 
  private:
   bool filters() const { return !lobes_.lobes.empty(); }
-  /// The powers at which layers are seen together.
+  /// The powers at which layers are shown together.
   std::vector<double> powers() const;
   LightLayers black_layers(int columns_per_pixel) const;
   /// Makes the films that are filled beside the picture.
   void begin_film(const HitSource& source);
-  /// Adds what rays found in lobes to the film where that is not done yet.
+  /// Adds what rays found in lobes to the film, unless this is already done.
   void add_lobes();
   /// Rows of the film that this process makes.
   Shard own_rows() const;
@@ -61,11 +61,11 @@ class Picture {
   const LayerMixdown* mixdown_;
   RenderCosts& costs_;
   LightLayers layers_;
-  LightLayers runs_;  ///< where errors are asked for: of each run of a pixel's samples
+  LightLayers runs_;  ///< where errors are requested: of each run of a pixel's samples
   LobeFilm lobes_;    ///< where gloss is filtered; otherwise empty
   std::vector<double> fractions_;
   TimeTaken asked_;         ///< for light
-  std::uint64_t hits_ = 0;  ///< at which light was asked for
+  std::uint64_t hits_ = 0;  ///< at which light was requested
 };
 
 }  // namespace photile

@@ -15,7 +15,7 @@
 
 namespace photile {
 
-/// Times add up over passes; bytes are those of the pass that took most.
+/// Times add up over passes; bytes are those of the pass that took the most.
 struct StageCost {
   TimeTaken time;
   std::uint64_t host_bytes = 0;
@@ -24,17 +24,17 @@ struct StageCost {
   void add(const TimeTaken& time, std::uint64_t host_bytes = 0, std::uint64_t device_bytes = 0);
 };
 
-/// The cost of a stage, as a record of a run has it.
+/// The cost of a stage, in the form of a run's record.
 StageStatistics stage(const char* name, const StageCost& cost,
                       std::vector<std::pair<std::string, double>> figures = {});
 
 /// Adds time to the row of a stage; to a new one at the end where there is none.
 void add_time(RunStatistics& stages, const char* name, const TimeTaken& time);
 
-/// What the light of a pass has taken and given so far.
+/// The time and the hits of the light of a pass so far.
 struct LightTotals {
   TimeTaken asked;             ///< all of it
-  TimeTaken filling;           ///< of that: valuing nodes; without light maps as `building`
+  TimeTaken filling;           ///< of that: filling nodes; without light maps as `building`
   TimeTaken building;          ///< of that: building photon maps, where these are first needed
   double compile_seconds = 0;  ///< of kernels, where there are no light maps
   std::uint64_t hits = 0;      ///< that had an estimate

@@ -1,5 +1,5 @@
-// How a rendering is made: the settings, checked once, and all that follows from them. Every stage
-// has its own parameters from here, and from nowhere else.
+// The plan of a rendering: the settings, checked once, and all that follows from them. Every stage
+// gets its parameters from here, and from nowhere else.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace photile {
 /// are not used, or light samples from the hits replace a part of the light.
 bool nodes_gather(const RenderParameters& asked);
 
-/// What finds the light of matt surfaces.
+/// How the light of matt surfaces is found.
 enum class LightBy {
   photons,         ///< an estimate at each hit
   cached_photons,  ///< a cache, whose nodes have estimates
@@ -48,15 +48,15 @@ class RenderPlan {
     return used_.light_map_rays > 0 ? LightBy::cached_rays : LightBy::cached_photons;
   }
   bool reads_light_maps() const { return light_by() != LightBy::photons; }
-  /// Photons that came by mirrors and glass alone are then kept on their own.
+  /// Photons that came by mirrors and glass alone are then kept separately.
   bool gathers_at_nodes() const { return light_by() == LightBy::cached_rays; }
 
   int passes() const { return used_.passes; }
-  /// Whether the photons of all passes may be kept at once: their number was asked for, and does
-  /// not follow from the memory.
+  /// Whether the photons of all passes may be kept at once: their number was given, and does not
+  /// follow from the memory.
   bool may_keep_passes() const { return passes() == 1 || asked_passes_ > 0; }
   /// Whether photons that something hides from a point do not count there. Estimates at the hits of
-  /// a picture's rays, as the paper has them, count all.
+  /// a picture's rays, the method of the paper, count all of them.
   bool leaves_out_hidden() const { return leaves_out_hidden_; }
   /// Whether shadow rays find the light of hot spots (trace/hot_spots.hpp), and photons leave it
   /// out: at points, and where rays gather at nodes.
@@ -98,13 +98,13 @@ class RenderPlan {
   cache::IrradianceGatherParameters node_gathering(double radius,
                                                    const cache::LightMapParameters& maps) const;
 
-  /// Passes share the samples of a pixel, at least one in each: photons of one pass make the errors
-  /// of neighbouring samples alike, those of another do not.
+  /// The samples of a pixel are divided between passes, with at least one in each: errors of
+  /// neighbouring samples are similar for photons of one pass, and independent between passes.
   ///   passes   at least 1
   PrimaryHitParameters hits(const Film& film, int passes) const;
 
  private:
-  /// The reach of an estimate there where one by all neighbours reaches `radius` metres.
+  /// The radius of an estimate there, where one with all neighbours has `radius`, metres.
   double reach_at_ends(double radius) const;
 
   RenderParameters used_;

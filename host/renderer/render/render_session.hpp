@@ -31,21 +31,19 @@ class RenderSession {
                 const RenderParameters& parameters, Progress& progress,
                 HitsAsk hits = HitsAsk::pictures);
 
-  /// Prepares all passes, which are kept for many pictures: `prepared` and `keep` are those of
-  /// SceneRenderer, and so are errors.
+  /// Prepares all passes, kept for many pictures. `prepared`, `keep`, errors: see SceneRenderer.
   void keep_passes(TracedPhotons* prepared, const KeepPhotons& keep, Progress& progress);
 
   /// A picture. Where passes are not kept, each is made for it, and released before the next.
   RenderResult render(const HitSource& hits, const Film& film, Progress& progress,
                       const LayerMixdown* mixdown = nullptr);
 
-  /// Adds parts to the work done so far (render/refinement.hpp), the first of which keeps the
-  /// passes. Later ones are of light maps whose nodes gather: `parts` times the requested rays are
-  /// added at the nodes that are read from now on, and photons are traced anew where
-  /// `photons_of_parts` says so. Pictures are then those of `of_parts`, if as many were made on the
-  /// way.
+  /// Adds parts to the work done so far (render/refinement.hpp); the first keeps the passes. Later
+  /// parts are for light maps whose nodes gather: `parts` times the requested rays are added at the
+  /// nodes that are read from now on, and photons are traced anew where `photons_of_parts` says so.
+  /// Pictures are then those of `of_parts`, if as many were made on the way.
   void add_parts(int parts, Progress& progress);
-  /// The film asked for, with the samples of all parts.
+  /// The requested film, with the samples of all parts.
   Film film() const { return with_work(plan_.used(), parts_).film; }
 
   bool reads_light_maps() const { return plan_.reads_light_maps(); }
@@ -65,7 +63,7 @@ class RenderSession {
   RenderCosts costs_;
   std::optional<PhotonPasses> photons_;
   std::vector<std::unique_ptr<PassLight>> passes_;  ///< that are kept
-  int parts_ = 0;                                   ///< of the work that was asked for, if added
+  int parts_ = 0;                                   ///< of the requested work, if added
   std::optional<FrameRenderer> frames_;
 };
 

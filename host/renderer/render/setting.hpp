@@ -14,7 +14,7 @@
 
 namespace photile {
 
-/// A row of the table; or of a command's own settings, which are no parameters of a rendering.
+/// A row of the table, or of a command's own settings, which are not parameters of a rendering.
 struct Setting {
   std::string_view name = {};    ///< in records and refusals, such as "photons_emitted"
   std::string_view unit = {};    ///< "" = none
@@ -22,19 +22,19 @@ struct Setting {
   std::string_view group = {};   ///< of options: Picture, Photons or Estimate
   std::string_view reader = {};  ///< the stage that reads it
   std::string_view help = {};
-  /// What applies where it is not given, which the value 0 stands for. "" = it always has a value
-  /// in its range.
+  /// What applies by default, as the value 0. "" = it always has a value in its range.
   std::string otherwise = {};
   ValueRange range = {};
   /// The value for each of all_qualities, where they set it.
   std::vector<SettingValue> by_quality = {};
-  /// What photons and their groups depend on, in words; "" = not on this. Null: they never do.
+  /// How photons and their groups depend on the setting, in words; "" = not for these values. Null:
+  /// they never do.
   std::string (*kept)(const Setting& setting, const RenderParameters& parameters) = nullptr;
-  bool kept_for_groups = false;  ///< photons alone do not depend on it
+  bool kept_for_groups = false;  ///< only groups depend on it, not photons
 
   SettingValue (*value)(const RenderParameters& parameters) = nullptr;
   void (*set)(RenderParameters& parameters, const SettingValue& value) = nullptr;
-  /// In lists of what a command can set: sets the value, within its range, where that is kept.
+  /// In lists of what a command can set: stores the value, which is within its range.
   std::function<void(const SettingValue& value)> assign = {};
 
   bool is_of_quality() const { return !by_quality.empty(); }
@@ -44,7 +44,7 @@ struct Setting {
 /// All rows, by group.
 std::span<const Setting> settings();
 
-/// The row of this name, which has to be there.
+/// The row of this name, which must exist.
 const Setting& setting_named(std::string_view name);
 
 /// Whether a setting is of the group Picture, which path tracing has, too.
@@ -56,10 +56,10 @@ SettingValue scaled(const Setting& setting, const RenderParameters& parameters, 
 /// "45 degrees".
 std::string text_with_unit(const Setting& setting, const RenderParameters& parameters);
 
-/// What photons depend on beside the scene, in words that a refusal can name.
+/// What photons depend on besides the scene, in words for refusals.
 std::string photon_settings(const RenderParameters& parameters);
 
-/// What neighbour groups depend on beside the photons.
+/// What neighbour groups depend on besides the photons.
 std::string group_settings(const RenderParameters& parameters);
 
 /// A setting is out of its range. The message begins with its name.
@@ -72,7 +72,7 @@ struct SettingError : UsageError {
   std::string problem;  ///< without the name
 };
 
-/// Errors: SettingError for the first setting out of its range, or that goes with no other.
+/// Errors: SettingError for the first setting that is out of its range or does not fit the others.
 void check(const RenderParameters& parameters);
 
 }  // namespace photile

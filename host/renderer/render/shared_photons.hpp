@@ -1,5 +1,5 @@
-// Photons of several processes: which process holds which photon maps, what is known of all
-// photons, and each where its maps are.
+// Photons of several processes: which process holds which photon maps, the data of all photons, and
+// the sending of photons to their maps.
 #pragma once
 
 #include <cstdint>
@@ -40,15 +40,16 @@ class MapOwners {
 ///         oriented face
 std::shared_ptr<const PhotonsOfAll> photons_of_all(Communicator& processes, const Photons& own);
 
-/// What a process sent to others of the same rendering, and what it holds for them.
+/// The data that a process sent to others of the same rendering, and holds for them.
 struct SentData {
   std::uint64_t photons = 0, photon_bytes = 0, photons_held = 0;
   std::uint64_t points = 0, point_bytes = 0;  ///< of the picture; with their light
 };
 
 /// Sends photons to the processes whose maps they may enter, those near a border to several, in
-/// rounds of defaults::exchange_round_bytes. Returns those of the own maps as one process would
-/// have them: sorted by oriented face, within it in the order light, path, bounce. Collective.
+/// rounds of defaults::exchange_round_bytes. Returns the photons of this process's maps as a single
+/// process would have them: sorted by oriented face, within it in the order light, path, bounce.
+/// Collective.
 ///   own      as photons_of_all; `of_all` is set
 ///   radius   of the maps, metres
 ///   sent     is added to

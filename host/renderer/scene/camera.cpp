@@ -16,9 +16,8 @@ namespace {
 /// Rays of a camera that fails here would be NaN or infinite, which Embree does not survive.
 void check_camera(const Camera& camera) {
   if (!scene::within_limit(camera.position)) {
-    throw UsageError(
-        fmt::format("camera '{}': its position is no number within {:g} m of the origin",
-                    camera.name, limits::max_coordinate));
+    throw UsageError(fmt::format("camera '{}': its position must lie within {:g} m of the origin",
+                                 camera.name, limits::max_coordinate));
   }
   for (const glm::dvec3& axis : {camera.forward, camera.up, camera.right}) {
     if (std::abs(glm::length(axis) - 1) < 1e-3) continue;

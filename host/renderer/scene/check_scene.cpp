@@ -122,8 +122,8 @@ class SceneCheck {
       refuse(scene_, fmt::format("triangle {} has front side {}; there are 0 and 1", t,
                                  scene_.front_side[t]));
     }
-    refuse(scene_, fmt::format("triangle {} has light {}, which is no area light of {} lights", t,
-                               scene_.triangle_light[t], scene_.lights.size()));
+    refuse(scene_, fmt::format("triangle {} has light {}, which is not an area light of {} lights",
+                               t, scene_.triangle_light[t], scene_.lights.size()));
   }
 
   template <class Corners>
@@ -172,7 +172,7 @@ class SceneCheck {
                        material.opacity_cutoff + material.normal_scale) ||
         (is_glass &&
          !(material.index_of_refraction > 0 && std::isfinite(material.index_of_refraction)))) {
-      refuse(scene_, owner + " has a factor that is no number, or glass without a refraction");
+      refuse(scene_, owner + " has a factor that is not a number, or glass without a refraction");
     }
     if (material.roughness < 0 || material.roughness > 1) {
       refuse(scene_,
@@ -214,7 +214,7 @@ class SceneCheck {
     if (!std::isfinite(numbers) || !std::isfinite(glm::length(direction)) ||
         !std::isfinite(glm::length(glm::dvec3(light.x_axis))) ||
         !scene::within_limit(glm::dvec3(light.position))) {
-      refuse(scene_, owner + " has a colour, position, direction or angle that is no number");
+      refuse(scene_, owner + " has a colour, position, direction or angle that is not a number");
     }
     check_index(light.emission_texture, scene_.textures.size(), "emission texture", owner);
     check_index(light.distribution, scene_.distributions.size(), "distribution", owner);

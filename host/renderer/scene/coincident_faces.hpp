@@ -13,11 +13,10 @@
 
 namespace photile::scene {
 
-/// Triangles overlap where their planes agree within rounding and they share an area. At each
-/// point one oriented face counts among those that look the same way: a front, or a back where no
-/// front looks that way; of several a light, then the first in the order of the file. Two fronts
-/// that face away from each other are thus the two sides of one surface, each with its own
-/// material.
+/// Triangles overlap where their planes agree within rounding and they share an area. At each point
+/// one oriented face counts among those that face the same way: a front, or a back where no front
+/// faces that way; among several, a light, then the first in the order of the file. Two fronts that
+/// face away from each other are thus the two sides of one surface, each with its own material.
 class CoincidentFaces {
  public:
   CoincidentFaces() = default;

@@ -1,6 +1,6 @@
-// What lights emit, from what people know of them: flux in closed form, colour, and the surface of
-// a textured light in cells of even radiance. SI units: radiance (or luminance) per square metre
-// and steradian, intensity per steradian, irradiance per square metre.
+// The emission of lights, from the quantities by which people describe them: flux in closed form,
+// colour, and the surface of a textured light in cells of even radiance. SI units: radiance (or
+// luminance) per square metre and steradian, intensity per steradian, irradiance per square metre.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ class EmissionCells {
     std::uint32_t triangle;  ///< into Scene::triangles
     double u, v;             ///< barycentric weights of the second and third corner
   };
-  /// Numbers in [0, 1) to a point: a cell by its luminance times its area, then evenly over the
-  /// cell. No cell is left out: each counts at least a fiftieth of the mean luminance.
+  /// Maps numbers in [0, 1) to a point: a cell in proportion to its luminance times its area, then
+  /// evenly over the cell. Each cell counts at least a fiftieth of the mean luminance.
   Point sample(double cell, double u1, double u2) const;
   /// The density of `sample` at a position, per square metre.
   double density(const Point& point) const;
@@ -48,10 +48,10 @@ class EmissionCells {
 
   const Light* light_;
   std::vector<Triangle> triangles_;   ///< of the light's, in their order
-  std::vector<double> weight_up_to_;  ///< of the cells up to and with this one
+  std::vector<double> weight_up_to_;  ///< of the cells up to and including this one
   /// For 2^n equal parts of all weight the cell in which each begins, and the number of cells:
-  /// where to look for a weight (Chen and Asau's guide table, 1974). Without it half of the time
-  /// of a sample of a light with a large picture goes into a search through all cells.
+  /// where to look for a weight (Chen and Asau's guide table, 1974). Without it, half of the time
+  /// of sampling a light with a large picture would go into a search through all cells.
   std::vector<std::uint32_t> first_of_fraction_;
   glm::dvec3 integral_{0.0};
 };

@@ -1,4 +1,4 @@
-// From loose triangles to the scene's indexed soup in canonical order.
+// Builds the scene's indexed triangle soup, in canonical order, from loose triangles.
 #pragma once
 
 #include <tsl/robin_map.h>
@@ -23,7 +23,7 @@ struct Corner {
   double handedness = 1.0;  ///< its sign is that of the bitangent along normal x tangent
 };
 
-/// Which attributes of corners some material needs.
+/// The attributes of corners that materials need.
 struct CornerNeeds {
   bool uv = false, emission_uv = false, normals = false, tangents = false;
 };
@@ -37,11 +37,11 @@ class MeshBuilder {
 
   /// Adds a triangle whose front is the side from which `corners` run counter-clockwise. Triangles
   /// with a corner that is not finite or beyond limits::max_coordinate, triangles without area and
-  /// duplicates are counted and left out; false then. `light` is an area light's index, or `none`.
-  /// Errors: InputError beyond a limit.
+  /// duplicates are counted and left out; it then returns false. `light` is an area light's index,
+  /// or `none`. Errors: InputError beyond a limit.
   bool add(const std::array<Corner, 3>& corners, std::uint32_t material, std::uint32_t light);
 
-  /// Attributes that the triangles from now on need, too; those so far have zeros.
+  /// Adds attributes that triangles need from now on; earlier triangles get zeros.
   void also_need(const CornerNeeds& needs);
 
   /// Drops normals and tangents when the file turned out to have none.
@@ -69,10 +69,11 @@ class MeshBuilder {
   CornerNeeds needs_;
   bool any_normal_ = false, any_tangent_ = false;
   tsl::robin_map<glm::vec3, std::uint32_t, BytesHash> index_of_position_;
-  /// Triangles, with their hashes: comparing two looks them up.
+  /// Triangles, with their hashes; comparing two of them looks up their corners.
   tsl::robin_set<std::uint32_t, TriangleHash, TriangleEqual, std::allocator<std::uint32_t>, true>
       distinct_;
-  tsl::robin_set<std::uint32_t> both_sides_;  ///< those that a second one turned round repeats
+  tsl::robin_set<std::uint32_t>
+      both_sides_;  ///< triangles that a second one with the other winding repeats
 };
 
 }  // namespace photile::scene

@@ -85,7 +85,7 @@ void SceneBuilder::Impl::check_surface(std::uint32_t material, std::uint32_t lig
                        scene.lights.size()));
   }
   if (scene.lights[light].kind != LightKind::area) {
-    refuse(fmt::format("a triangle has {}, which is no area light", light_name(light)));
+    refuse(fmt::format("a triangle has {}, which is not an area light", light_name(light)));
   }
 }
 
@@ -283,7 +283,7 @@ void SceneBuilder::add(Camera camera) {
                      camera.vertical_field_of_view;
   if (!std::isfinite(sum)) {
     impl_->refuse(
-        fmt::format("camera '{}' has a position or an axis that is no number", camera.name));
+        fmt::format("camera '{}' has a position or an axis that is not a number", camera.name));
   }
   impl_->scene.cameras.push_back(std::move(camera));
 }

@@ -34,7 +34,7 @@ glm::dvec3 position_in_scene(const Scene& scene, const glm::dvec3& world) {
   const glm::dvec3 position = direction_in_scene(scene, world) - scene.origin;
   if (scene::within_limit(position)) return position;
   throw InputError(
-      fmt::format("({:g}, {:g}, {:g}) is no place within {:g} m of the scene; give another",
+      fmt::format("({:g}, {:g}, {:g}) is not within {:g} m of the scene; give another point",
                   world.x, world.y, world.z, limits::max_coordinate));
 }
 

@@ -16,13 +16,13 @@ namespace photile::scene {
 
 geometry::Box bounds_of(const Scene& scene);
 
-/// Of all vertices, without its sign, metres: what rounding is in proportion to.
+/// The largest absolute coordinate of all vertices, metres: rounding is proportional to it.
 float largest_coordinate(const Scene& scene);
 
 /// Per material: edges of its triangles that no other triangle of solid glass touches, so that the
 /// glass ends in the open there. 0 for all but solid glass. Solids may consist of several meshes
-/// and materials, whose corners need not be welded, nor meet: an edge is touched where its middle
-/// is, to a millionth of the scene's size.
+/// and materials, whose corners need not be welded, nor meet: an edge counts as touched if its
+/// middle is, to a millionth of the scene's size.
 std::vector<std::uint32_t> open_edges_of_glass(const Scene& scene);
 
 /// Neither NaN, infinite nor beyond limits::max_coordinate.
@@ -32,11 +32,11 @@ inline bool within_limit(const glm::dvec3& position) {
          std::abs(position.z) <= most;
 }
 
-/// Adds the geometry of surfaces and how they reflect, without the texels of pictures.
+/// Adds the geometry of surfaces and their reflection, without the texels of pictures.
 void add_surfaces(const Scene& scene, ContentHash& hash);
 
 /// Adds everything that light depends on: geometry, materials, texels, lights with their groups,
-/// and the unit; not cameras and names of files.
+/// and the unit; not cameras or file names.
 void add_scene(const Scene& scene, ContentHash& hash);
 
 }  // namespace photile::scene

@@ -15,7 +15,7 @@ inline constexpr double mirror_metallic = 0.99;
 /// At or above this Phong exponent an MTL reflection (illum 3 and 5) counts as a perfect mirror.
 inline constexpr float mirror_phong_exponent = 1000.0f;
 
-/// Lambertian albedo for a surface whose file colour cannot be had.
+/// Lambertian albedo of a surface whose colour cannot be read from its file.
 inline constexpr float missing_albedo = 0.5f;
 
 /// GGX alpha of a perceptual roughness in [0,1] (glTF, MTL Pr): its square, at least
@@ -30,7 +30,7 @@ float ggx_alpha_from_phong_exponent(double exponent);
 /// Reflectance at normal incidence between air and a dielectric: ((n-1)/(n+1))^2.
 double f0_from_index_of_refraction(double index);
 
-/// What an opaque surface reflects at a point: the parameters of device/bsdf.h.
+/// The reflection of an opaque surface at a point: the parameters of device/bsdf.h.
 struct Reflectance {
   glm::vec3 albedo{0.0f};  ///< of the Lambertian base
   glm::vec3 f0{0.0f};      ///< of the coat
@@ -50,12 +50,12 @@ void set_metallic_roughness(const MetallicRoughness& model, Material& material);
 /// Scales diffuse and specular together where their sum exceeds 1 in a channel. True if it did.
 bool conserve_energy(Material& material);
 
-/// The needs of these materials, whether or not a triangle has them: importers must choose what to
-/// read of a mesh before the first triangle. light_count stays 0.
+/// The needs of these materials, whether or not a triangle has them: importers must decide what to
+/// read of a mesh before its first triangle. light_count stays 0.
 SceneNeeds needs_of_materials(std::span<const Material> materials);
 
-/// Removes shading normals where none is needed: all are those of their triangles, or lie on what
-/// scatters no light, and by the needs no material is specular or glossy.
+/// Removes shading normals where they are not needed: all equal those of their triangles, or lie on
+/// what scatters no light, and according to the needs no material is specular or glossy.
 void drop_flat_normals(Scene& scene, const SceneNeeds& of_materials);
 
 /// The fraction of light from all directions that an opaque surface sends back, per channel: the
@@ -65,15 +65,15 @@ glm::dvec3 hemispherical_reflectance(const Reflectance& surface);
 /// What lighting design calls a material's reflectance: luminous, for light from all directions.
 struct MaterialReflectance {
   double whole = 0;
-  double matt = 0;  ///< of the diffuse colour alone, as the file has it
+  double matt = 0;  ///< of the diffuse colour alone, as in the file
 };
 
-/// With a texture for the mean, by area, of what the surface shows of it. Of panes that of all
-/// their surface (panes.hpp). None for glass that bends light.
+/// With a texture, the mean by area of the part that the surface shows. For panes, that of their
+/// whole surface (panes.hpp). None for glass that bends light.
 std::optional<MaterialReflectance> reflectance_of(const Scene& scene, const Material& material);
 
-/// Scales the diffuse colour of an opaque material so that it reflects that fraction, and with it
-/// what varies by textures; a black one becomes grey. A mirror's colour is scaled as a whole.
+/// Scales the diffuse colour of an opaque material so that it reflects that fraction, together with
+/// what textures vary; a black one becomes grey. A mirror's colour is scaled as a whole.
 ///   fraction   from 0 to 1; of panes, that of all their surface
 /// Returns false where that cannot be: glass that bends light, a lobe that alone reflects more
 /// already, or a colour that would exceed 1 in a channel.

@@ -1,4 +1,4 @@
-// Edges that no other has both corners of, and those of them that run along each other.
+// Edges that share both corners with no other edge, and those of them that run along each other.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,8 @@ bool run_along(const BoundaryEdge& a, const BoundaryEdge& b, double tolerance);
 /// separated by it.
 class BoundaryEdges {
  public:
-  /// No more edges than this that run along an edge are found from either end. More edges within
-  /// the tolerance bound no real surface, and testing all of their pairs would take too long.
+  /// At most this many edges that run along an edge are found from either end. More edges within
+  /// the tolerance bound no real surface, and testing all pairs would take too long.
   static constexpr int most_along = 64;
 
   /// \param tolerance metres, as that of run_along

@@ -19,8 +19,8 @@ struct BorderEdge {
 };
 
 struct CoplanarRegions {
-  /// Per triangle: its region where hits look at the region's border, PHOTILE_NO_REGION where they
-  /// look at the triangles, because those are few.
+  /// Per triangle: its region where hits test the region's border, PHOTILE_NO_REGION where they
+  /// test the triangles, because these are few.
   std::vector<std::uint32_t> of_triangle;
   /// Per triangle: a number that the triangles of its region share, bordered or not.
   std::vector<std::uint32_t> plane;
@@ -29,12 +29,12 @@ struct CoplanarRegions {
 
 /// Grows regions from the largest triangles on. Normals within a region differ by less than the
 /// slack of normals_agree, heights by less than a thousandth of the radius.
-///   dark   per oriented face: no region goes on where that of one of its sides changes; or empty
+///   dark   per oriented face: a region ends where the value of one of its sides changes; or empty
 CoplanarRegions find_coplanar_regions(const SurfaceMesh& mesh, double radius,
                                       std::span<const std::uint8_t> dark = {});
 
 /// A hierarchy over the triangles that count, whose nodes store whether all of their triangles
-/// belong to one region: the middle of a large wall is left out at once, however finely it is
+/// belong to one region: the middle of a large wall is skipped at once, however finely it is
 /// tessellated.
 class PlaneTree {
  public:

@@ -1,5 +1,5 @@
-// How much of a triangle is open to light, and how much is covered by what lies on it: the wall
-// behind tiles, the desk under a book.
+// The fraction of a triangle that is open to light, and not covered by what lies on it, like the
+// wall behind tiles or the desk under a book.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace photile::surface {
 
 /// Per oriented face: the fraction of its points above which, within a fifth of the radius, no
 /// surface faces it on which no photon landed. 1 where that is half of them or more: surface that
-/// is covered only in places counts as open, so that estimates are right where it is open.
+/// is covered only in places counts as open, so that estimates are correct where it is open.
 ///   lit   per component
 std::vector<float> find_open_fractions(const SurfaceMesh& mesh, const CoplanarRegions& regions,
                                        const SmoothComponents& components,

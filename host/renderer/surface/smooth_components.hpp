@@ -14,10 +14,11 @@ struct SmoothComponents {
   std::uint32_t count = 0;        ///< numbered in the order of their first oriented faces
 };
 
-/// Two triangles that go on across an edge: side i of the one as side i ^ flip of the other.
+/// Two triangles that continue each other across an edge: side i of one as side i ^ flip of the
+/// other.
 struct Connection {
   std::uint32_t a, b, flip;
-  bool shared;  ///< the edge is one of both; else theirs run along each other
+  bool shared;  ///< both have this edge; else their edges run along each other
 };
 
 /// Calls visit(a, b) for the oriented faces that connect, each pair of a connection once.
@@ -29,18 +30,18 @@ void for_each_pair_of_sides(std::span<const Connection> connections, const Visit
 }
 
 /// Triangles connect where they share both corners of an edge, or where their edges run along each
-/// other, however unlike their ends (as tiles do); each pair once or more. Of the many that share
-/// an edge in a fan not all pairs are listed, but enough of them to join the same triangles.
+/// other, even where their ends differ (as with tiles); each pair once or more. Of the many that
+/// share an edge in a fan not all pairs are listed, but enough of them to join the same triangles.
 ///   radius   metres: edges at most a thousandth of it apart run along each other
 std::vector<Connection> find_connections(const SurfaceMesh& mesh, double radius,
                                          double angle_degrees);
 
-/// What connects, without pairs of sides of which one is dark and the other is not.
+/// The connections, without pairs of sides of which one is dark and the other is not.
 ///   dark   per oriented face, or empty
 SmoothComponents join_components(const SurfaceMesh& mesh, std::span<const Connection> connections,
                                  std::span<const std::uint8_t> dark = {});
 
-/// All that connects.
+/// All connections.
 SmoothComponents find_smooth_components(const SurfaceMesh& mesh, double radius,
                                         double angle_degrees);
 

@@ -24,7 +24,7 @@ struct MeshEdge {
 struct SurfaceMesh {
   explicit SurfaceMesh(const Scene& scene);
 
-  /// Edges with the same two corners, which stand together in `edges`.
+  /// Edges with the same two corners, which are consecutive in `edges`.
   template <class Visit>
   void for_each_edge(const Visit& visit) const {
     for_each_edge_from(0, edges.size(), visit);
@@ -49,7 +49,7 @@ struct SurfaceMesh {
   std::vector<glm::dvec3> normal;  ///< of side 0, per triangle
   std::vector<MeshEdge> edges;     ///< of triangles that are their own originals
 
-  /// Whether none of the triangles before coincides with it.
+  /// Whether no earlier triangle coincides with it.
   bool counts(std::uint32_t triangle) const { return original[2 * triangle] == 2 * triangle; }
   /// Whether photons are stored on it: not on mirrors and glass.
   bool stores(std::uint32_t triangle) const {
@@ -80,8 +80,8 @@ inline std::uint32_t flip_between(const MeshEdge& a, const MeshEdge& b) {
   return a.forward == b.forward ? 1 : 0;
 }
 
-/// The cosine of the angle by which the surface folds at such an edge; below all where photons are
-/// stored on one side of it alone.
+/// The cosine of the angle by which the surface folds at such an edge; below all cosines where
+/// photons are stored on only one of its sides.
 inline double fold_cosine(const SurfaceMesh& mesh, const MeshEdge& a, const MeshEdge& b) {
   if (mesh.stores(a.triangle) != mesh.stores(b.triangle)) return -2;
   const double cosine = glm::dot(mesh.normal[a.triangle], mesh.normal[b.triangle]);

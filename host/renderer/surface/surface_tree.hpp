@@ -16,7 +16,7 @@ struct SurfaceTree {
 };
 
 /// Splits by the surface area heuristic over 16 bins of the boxes' centres (Wald 2007), and at the
-/// median where that ends nowhere. The same pieces give the same tree.
+/// median where that does not split the boxes. The same pieces give the same tree.
 SurfaceTree build_surface_tree(const std::vector<SurfacePiece>& pieces);
 
 }  // namespace photile::surface

@@ -9,7 +9,7 @@
 
 namespace photile::trace {
 
-/// Rays that are traced together: four times as fast as one by one, where they run alike.
+/// Rays that are traced together: four times as fast as one by one where they are coherent.
 inline constexpr int coherent_rays = 16;
 
 struct CoherentDirections {
@@ -17,13 +17,13 @@ struct CoherentDirections {
 };
 
 struct CoherentHits {
-  std::array<std::uint32_t, coherent_rays> triangle;  ///< none where nothing is met
-  std::array<std::uint32_t, coherent_rays> side;      ///< that the ray arrives at
+  std::array<std::uint32_t, coherent_rays> triangle;  ///< none where nothing is hit
+  std::array<std::uint32_t, coherent_rays> side;      ///< at which the ray arrives
   std::array<float, coherent_rays> u, v;              ///< as in TriangleHit;
   std::array<float, coherent_rays> distance;          ///< metres
 };
 
-/// The nearest hit of each ray. It is as robust as a ray alone: none slips between two triangles.
+/// The nearest hit of each ray. It is as robust as single rays: none slips between two triangles.
 /// Thread-safe; the caller's thread must flush denormals (ray_query.hpp). Directions must be
 /// finite.
 void intersect(const RayScene& rays, const glm::vec3& origin, const CoherentDirections& directions,

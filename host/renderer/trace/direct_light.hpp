@@ -28,21 +28,21 @@ struct LightNumbers {
   RandomBlock choice, position;  ///< which light, and where on it
 };
 
-/// The positions of scrambled sequences (random_stream.hpp) that the light samples of a shading
-/// point take: point `first` and those after it.
+/// The positions in scrambled sequences (random_stream.hpp) of the light samples of a shading
+/// point: point `first` and those after it.
 class LightSampleNumbers {
  public:
-  /// `sequences`: shading points that share them, as the samples of a pixel do, take others of
-  /// their points each.
+  /// `sequences`: shading points that share them, such as the samples of a pixel, each use
+  /// different points of them.
   ///   surface   of a path, counted from 0: each has its own sequences
   LightSampleNumbers(const RandomStream& sequences, std::uint32_t first, std::uint32_t surface = 0);
 
-  /// Random numbers of one light sample, and of a direction of the shading point's own.
+  /// Random numbers of one light sample, and of one direction chosen by the shading point.
   struct Sample : LightNumbers {
     RandomBlock lobe, direction;  ///< of the shading point
   };
   Sample sample(std::uint32_t number) const;
-  /// Its numbers for the light alone.
+  /// Only the numbers for the light.
   LightNumbers light(std::uint32_t number) const;
 
  private:
@@ -58,12 +58,12 @@ enum class ReflectedPart : std::uint8_t {
 };
 
 /// Estimates the direct light at a point of an opaque surface, or through panes of thin
-/// glass and cutouts: exactly what photons carry that are not scattered before. `count` times a
-/// light is sampled, and a direction of the surface's own is followed; what both would find is
-/// weighed (Veach and Guibas 1995, power heuristic). The sum over what is appended to `found` is
-/// unbiased.
+/// glass and cutouts: exactly the light of photons that have not been scattered. `count` times a
+/// light is sampled, and a direction drawn from the surface's reflection is followed; what both
+/// would find is weighted (Veach and Guibas 1995, power heuristic). The sum over what is appended
+/// to `found` is unbiased.
 ///   direction   of the ray that arrived at the point, unit
-///   part        of the reflection that the radiance has
+///   part        of the reflection that counts in the radiance
 void find_direct_light(const RayScene& rays, const LightSampler& light_sampler,
                        const SurfacePoint& point, const glm::vec3& direction, ReflectedPart part,
                        int count, const LightSampleNumbers& samples,
@@ -78,23 +78,23 @@ class ShadowRays {
 
   /// Takes one light sample.
   ///   weight       of what the light sample finds
-  ///   directions   followed for each light sample; what both would find is weighed
-  ///   tag          that is found again with the light
+  ///   directions   followed for each light sample; what both would find is weighted
+  ///   tag          that is returned with the light
   void add(const SurfacePoint& point, const std::optional<LightSample>& light,
            const glm::vec3& weight, float directions, std::uint32_t tag);
 
   struct Found {
     std::uint32_t tag, layer;
-    glm::vec3 irradiance;  ///< weighed, lm/m2
+    glm::vec3 irradiance;  ///< weighted, lm/m2
     glm::vec3 direction;   ///< towards the light, unit
   };
   /// The light samples that nothing occludes, in their order.
   std::span<const Found> found(const RayScene& rays);
 
-  /// The light of a sun that is sampled apart, without weights; none where all of it is hidden. It
-  /// is sampled in the same directions from all points, more of them where a part of it is hidden:
-  /// neighbours do not differ by chance, and the dark beside the border of its light stays dark.
-  /// Clears all samples.
+  /// The light of a sun that is sampled separately, without weights; none where all of it is
+  /// hidden. It is sampled in the same directions from all points, in more directions where a part
+  /// of it is hidden: so neighbours do not differ at random, and the dark beside the border of its
+  /// light stays dark. Clears all samples.
   std::optional<Found> light_of_sun(std::uint32_t light, const RayScene& rays,
                                     const LightSampler& light_sampler, const SurfacePoint& point);
 

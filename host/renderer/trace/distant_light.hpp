@@ -1,4 +1,4 @@
-// Light from beyond the scene that rays can meet (surroundings, the disc of a sun), and directions
+// Light from beyond the scene that rays can hit (surroundings, the disc of a sun), and directions
 // towards it in proportion to its luminance.
 #pragma once
 
@@ -14,14 +14,14 @@
 
 namespace photile::trace {
 
-/// A row of the map by its luminance, then a texel of the row, then a direction uniformly over the
-/// texel's solid angle (Pharr, Jakob and Humphreys, "Physically Based Rendering", 12.5).
+/// Chooses a row of the map by its luminance, then a texel of the row, then a direction uniformly
+/// over the texel's solid angle (Pharr, Jakob and Humphreys, "Physically Based Rendering", 12.5).
 class EnvironmentSampler {
  public:
   /// A reference is kept. `map` is not black.
   explicit EnvironmentSampler(const EnvironmentMap& map);
 
-  /// In proportion to luminance times a factor, of the middle of each texel, >= 0.
+  /// In proportion to luminance times a factor, given for the middle of each texel, >= 0.
   EnvironmentSampler(const EnvironmentMap& map,
                      const std::function<double(const glm::dvec3& direction)>& factor);
   /// Whether there is a direction to choose.
@@ -40,8 +40,10 @@ class EnvironmentSampler {
   double weight(int column, int row) const;
 
   const EnvironmentMap* map_;
-  std::vector<double> row_up_to_;  ///< luminance x solid angle of the rows up to and with this one
-  std::vector<double> texel_up_to_;  ///< luminance of the texels of a row up to and with this one
+  std::vector<double>
+      row_up_to_;  ///< luminance x solid angle of the rows up to and including this one
+  std::vector<double>
+      texel_up_to_;  ///< luminance of the texels of a row up to and including this one
 };
 
 /// A light beyond the scene as rays see it.
@@ -61,11 +63,11 @@ class DistantLight {
   const Light* source_;
   const EnvironmentMap* map_ = nullptr;
   std::uint32_t light_;
-  glm::vec3 factor_;  ///< radiance of the disc, or what the map's radiance is multiplied by
+  glm::vec3 factor_;  ///< radiance of the disc, or the factor of the map's radiance
 };
 
-/// All of a scene. Where they are many, most are patches of a sky and discs of suns: which of them
-/// a direction can meet is found by cells of the sphere.
+/// All distant lights of a scene. Where there are many, most are patches of a sky and discs of
+/// suns: those that a direction can hit are found by cells of the sphere.
 class DistantLights {
  public:
   explicit DistantLights(const Scene& scene);
@@ -75,7 +77,7 @@ class DistantLights {
   auto end() const { return lights_.end(); }
   const DistantLight& operator[](std::size_t index) const { return lights_[index]; }
 
-  /// The lights that may shine from a unit direction, as indices; all that do are among them.
+  /// The lights that may shine from a unit direction, as indices; the list contains all that do.
   std::span<const std::uint32_t> towards(const glm::vec3& direction) const {
     return cells_.size() == 1 ? cells_.front() : cells_[cell_towards(direction)];
   }

@@ -1,5 +1,5 @@
-// Where photons start on a light, and in which direction: points of area lights by what they emit,
-// directions of lights without surface by their intensity.
+// The positions and directions in which photons leave a light: points of area lights by their
+// emission, directions of lights without surface by their intensity.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class AreaSampler {
   /// References are kept. Errors: InputError for a light whose triangles have no area.
   AreaSampler(const Scene& scene, const Light& light);
 
-  /// A point of the light: uniformly, or of a textured light about in proportion to its luminance.
+  /// A point of the light: uniformly, or for a textured light about in proportion to its luminance.
   /// Uses all words.
   TriangleHit sample(const RandomBlock& random) const;
   /// A sample on the front of the surface.
@@ -43,8 +43,8 @@ class AreaSampler {
 
   const Scene* scene_;
   const Light* light_;
-  std::vector<Front> fronts_;                  ///< of the triangles; none of a textured light
-  std::vector<double> area_up_to_;             ///< area of the triangles up to and with this one
+  std::vector<Front> fronts_;       ///< of the triangles; none of a textured light
+  std::vector<double> area_up_to_;  ///< area of the triangles up to and including this one
   std::optional<scene::EmissionCells> cells_;  ///< of a textured light
 };
 
@@ -68,7 +68,7 @@ struct SpotFalloff {
   double edge;   ///< cosine of the inner cone less that of the outer one
 };
 
-/// A light shines along the -z axis of its space.
+/// The axes of a light, which shines along the -z axis of its space.
 struct LightAxes {
   explicit LightAxes(const Light& light)
       : x(light.x_axis), z(-glm::dvec3(light.direction)), y(glm::cross(z, x)) {}
@@ -104,13 +104,13 @@ class IntensitySampler {
   IntensitySampler(const Scene& scene, const Light& light);
 
   /// A direction in the scene, density intensity / flux: a cell of the grid by its flux, and in it
-  /// a direction by rejection, which takes 4 tries at most on average.
+  /// a direction by rejection, which takes at most 4 tries on average.
   glm::vec3 sample(const RandomStream& random) const;
 
  private:
   const IntensityDistribution* distribution_;
   LightAxes axes_;
-  std::vector<double> flux_up_to_;  ///< of the cells up to and with this one, column by column
+  std::vector<double> flux_up_to_;  ///< of the cells up to and including this one, column by column
 };
 
 }  // namespace photile::trace

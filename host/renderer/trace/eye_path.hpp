@@ -20,7 +20,7 @@
 
 namespace photile::trace {
 
-/// The data of each hit that PrimaryHits keeps.
+/// The data of each hit for PrimaryHits.
 struct EyeHit {
   glm::vec3 position;
   std::uint32_t oriented_face;
@@ -46,7 +46,7 @@ struct EyeRecord {
   std::uint64_t rays = 0;
 };
 
-/// How hits get the light that comes directly from lights, where it is not left to the photons.
+/// How hits get direct light, where it is not left to the photons.
 struct DirectRays {
   const RayScene& rays;
   const LightSampler& light_sampler;
@@ -65,13 +65,13 @@ struct EyeSetup {
   const FilmDirections* film = nullptr;  ///< of the camera; null where rays do not start at one
   glm::vec3 eye{0.0f};                   ///< where they start
   const PrimaryHitParameters* parameters;
-  /// Per light, of white texels, and what rays that leave the scene see. Both null where rays ask
-  /// for surfaces alone.
+  /// Per light, of white texels, and the light that rays see which leave the scene. Both null where
+  /// rays only search surfaces.
   const std::vector<glm::vec3>* emitted_radiance = nullptr;
   const DistantLights* distant = nullptr;
   const DirectRays* direct = nullptr;  ///< null where photons carry all light
   const LobeRays* lobes = nullptr;     ///< null where hits reflect with their lobes
-  /// Finds the light of hot spots at hits; null where it is not asked for there.
+  /// Finds the light of hot spots at hits; null where it is not requested there.
   const LightSampler* hot_spots = nullptr;
   /// Only what comes by a mirror, by glass that bends or reflects it, or by a glossy lobe.
   bool reflections_only = false;
@@ -92,23 +92,23 @@ struct EyeRay {
   double radiance_factor = 1;  ///< of Scattered, so far; not in `throughput`
   int depth = 0;               ///< mirrors and glass so far
   bool unscattered = true;     ///< except by panes of thin glass, which light samples pass
-  std::uint32_t cutouts = 0;   ///< that were looked at so far
+  std::uint32_t cutouts = 0;   ///< tested so far
   float fraction = 1.0f;       ///< of its sample, where glass split it
-  float sample_share = 1.0f;   ///< of its sample in a usual one, of which its pixel has fewer
+  float sample_share = 1.0f;   ///< of its sample in a usual sample, of which its pixel has fewer
   const BesideHotSpots* beside = nullptr;  ///< null where no rays are aimed
 
-  /// The part of a usual sample that it is.
+  /// The fraction of a usual sample that it represents.
   float share() const { return fraction * sample_share; }
-  /// The factor from radiance that the ray meets to its start.
+  /// The factor from the radiance where the ray ends to that at its start.
   glm::vec3 radiance_weight() const { return throughput * static_cast<float>(radiance_factor); }
 };
 
-/// Appends what a ray that meets an opaque surface sees there.
+/// Appends what a ray that hits an opaque surface sees there.
 void append_hit(const RayScene::Impl& rays, const SurfacePoint& point, const EyeRay& ray,
                 EyeRecord& record);
 
 /// Calls visit(sample, what arrives) for the light of each hot spot at a point: as LightSample, and
-/// what of its `received` gets there.
+/// the part of its `received` that arrives.
 template <class Visit>
 void for_each_hot_light(const RayScene::Impl& rays, const LightSampler& light_sampler,
                         const SurfacePoint& point, const Visit& visit) {
@@ -122,8 +122,8 @@ void for_each_hot_light(const RayScene::Impl& rays, const LightSampler& light_sa
   });
 }
 
-/// Appends what a ray that is known to meet an opaque surface sees there, and the light of hot
-/// spots where that is asked for. The surface reflects with its lobe.
+/// Appends what a ray that is known to hit an opaque surface sees there, and the light of hot spots
+/// where that is requested. The surface reflects with its lobe.
 void append_eye_hit(const EyeSetup& setup, const SurfacePoint& point, const EyeRay& ray,
                     EyeRecord& record);
 
@@ -133,20 +133,20 @@ struct EyeEnd {
   EyeRay ray;
 };
 
-/// Sampling lights, as another technique that finds those which a ray meets at once, or through
-/// panes.
+/// Sampling of lights as a second technique, which also finds the lights that a ray hits directly
+/// or through panes.
 struct LightTechnique {
   const LightSampler& light_sampler;
   float density;      ///< of the ray's direction, per steradian
-  bool only = false;  ///< lights that it does not find have no weight
+  bool only = false;  ///< lights that it does not find get no weight
   const SelectionProbabilities& probabilities = by_power_alone;  ///< at the ray's start
-  /// Lights within the scene that the ray meets at once, or through panes, count nothing.
+  /// Lights within the scene that the ray hits directly, or through panes, do not count.
   bool distant_only = false;
 };
 
 /// Follows a ray through mirrors and glass to an opaque surface and appends what it sees to
-/// `record`. Lights that `other` would find as well are weighed by the power heuristic. Returns the
-/// surface if it has a lobe that rays are to follow, which is not in the hit then.
+/// `record`. Lights that `other` would find as well are weighted by the power heuristic. Returns
+/// the surface if it has a lobe that rays are to follow, which is not in the hit then.
 ///   light_samples   of the hit, where EyeSetup::direct is set
 ///   split   where given, nothing is left to chance whose lesser part counts enough
 ///           (defaults::least_glass_fraction), neither between reflection and refraction by glass
@@ -158,31 +158,30 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
                                      const LightSampleNumbers* light_samples = nullptr,
                                      std::vector<EyeRay>* split = nullptr);
 
-/// Traces sample `sample` of pixel (x, y), which has `times` times as many as others, and appends
-/// what it sees.
+/// Traces sample `sample` of pixel (x, y), which has `times` times as many samples as others, and
+/// appends what it sees.
 ///   record      of the surface that the pixel sees
-///   reflected   of those which lobes reflect
+///   reflected   of the surfaces that lobes reflect
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, int times, EyeRecord& record,
                     EyeRecord& reflected);
 
-/// Whether a pixel shows an edge, or a border of a texture: whether what its first samples meet,
-/// over mirrors and through glass, is not one surface of about one colour. Adds the rays to
-/// `record`.
+/// Whether a pixel shows an edge, or a border of a texture: whether its first samples, over mirrors
+/// and through glass, hit more than one surface of about one colour. Adds the rays to `record`.
 bool shows_edge(const EyeSetup& setup, int x, int y, EyeRecord& record);
 
-/// Where a sample of a pixel has its random numbers from.
+/// The source of the random numbers of a pixel's sample.
 struct PixelSample {
   const RandomStream& of_pixel;  ///< sequences that all samples of the pixel share
   std::uint32_t index;           ///< of the sample, into them
   std::uint64_t path;            ///< of the sample alone, as RandomStream numbers them
-  std::uint32_t ray = 0;         ///< of those that follow the sample's first lobe
+  std::uint32_t ray = 0;  ///< the ray's number among those that follow the sample's first lobe
 };
 
 /// Follows the lobe of `end`, and those of the surfaces met, and appends what each reflects beside
 /// its lobe to `record`, and lights seen in lobes: at each surface a light is sampled, and one
-/// direction of the lobe is followed; what both would find is weighed by the power heuristic (Veach
-/// and Guibas 1995). Directions are those of visible normals (opaque_bsdf.hpp). What reflects
-/// little goes on by Russian roulette.
+/// direction of the lobe is followed; what both would find is weighted by the power heuristic
+/// (Veach and Guibas 1995). Directions are those of visible normals (opaque_bsdf.hpp). Paths that
+/// reflect little continue by Russian roulette.
 void follow_lobes(const EyeSetup& setup, EyeEnd end, const PixelSample& sample, EyeRecord& record);
 
 }  // namespace photile::trace

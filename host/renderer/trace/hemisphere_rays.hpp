@@ -1,5 +1,4 @@
-// Rays from points of surfaces to all sides, by the cosine: what indirect irradiance is summed
-// from.
+// Rays from points of surfaces in all directions, by the cosine, for indirect irradiance.
 #pragma once
 
 #include <cstddef>
@@ -17,22 +16,22 @@ namespace photile::trace {
 struct HemisphereParameters {
   int batches;  ///< of a point: independent of each other
   int rays;     ///< of a batch: spread evenly (random_stream.hpp)
-  /// Rays of the batch before these, which they go on to spread evenly.
+  /// Rays of the batch before these; together they are spread evenly.
   std::uint32_t first_ray = 0;
   std::uint64_t seed;
   int max_specular_depth;  ///< mirrors and glass that a ray follows
   const LightSampler* light_sampler;
   const std::vector<glm::vec3>* emitted_radiance;  ///< per light, at power 1
-  /// > 0: rays also see the lights that they meet at once or through panes, and light samples find
-  /// the same: by the power heuristic. 0 = they see none.
+  /// > 0: rays also see the lights that they hit directly or through panes, and light samples find
+  /// the same: weighted by the power heuristic. 0 = they see no lights.
   float rays_per_light_sample = 0;
   /// Surface nearer than this, metres, does not end a ray: one more light sample and one more ray
-  /// find what light falls there, a few times over. 0 = all opaque surface ends rays.
+  /// find the light that falls there, a few times in succession. 0 = all opaque surface ends rays.
   float near = 0;
-  /// Where `near` is not 0: 1 for each oriented face that ends no ray either, however far it is;
-  /// empty = none.
+  /// Where `near` is not 0: 1 for each oriented face that does not end rays either, however far it
+  /// is; empty = none.
   std::span<const std::uint8_t> slats = {};
-  /// That a part of the rays is aimed at, `defaults::rays_to_bright`; null or empty = none.
+  /// Targets of the fraction `defaults::rays_to_bright` of the rays; null or empty = none.
   const Targets* bright = nullptr;
 };
 
@@ -41,16 +40,16 @@ struct HemisphereRays {
   /// Where they end. `pixel` is the ray: (point of the run x batches + batch) x rays + ray.
   /// `throughput` is such that throughput x radiance, summed over a point's batch, is an unbiased
   /// estimate of the irradiance that other surfaces send there directly or over mirrors and glass.
-  /// `emission` is the same of lights, weighed.
-  /// `direct` is light that lights send to near surface, by layer.
+  /// `emission` is the same for lights, weighted. `direct` is the light that lights send to near
+  /// surface, by layer.
   EyeRecord ray_hits;
-  /// Point i of the run has [first[i], first[i + 1]): ray hits, lights that its rays met and light
+  /// Point i of the run has [first[i], first[i + 1]): ray hits, lights that its rays hit, and light
   /// that reached near surface.
   std::vector<std::size_t> first, first_emission, first_direct;
-  /// Where each ray left its point to, unit, by its number (`pixel`); empty unless the scene has
-  /// smooth shading.
+  /// The direction in which each ray left its point, unit, by its number (`pixel`); empty unless
+  /// the scene has smooth shading.
   std::vector<glm::vec3> direction;
-  /// Per point: sum of the inverse distances to the surfaces that rays met first, 1/m.
+  /// Per point: sum of the inverse distances to the surfaces that rays hit first, 1/m.
   std::vector<float> inverse_distances;
 
   /// The direction of a ray, or 0 where directions are not kept.
@@ -62,7 +61,7 @@ struct HemisphereRays {
 /// The reflection of a hit's surface towards its ray under light that is the same from everywhere.
 struct HitReflection {
   glm::vec3 reflectance;
-  bool strong_lobe;  ///< its lobe reflects so much that it asks where light comes from
+  bool strong_lobe;  ///< its lobe reflects so much that the direction of light matters
 };
 HitReflection reflection_of(const EyeRecord& ray_hits, std::size_t hit);
 

@@ -1,4 +1,4 @@
-// Primary hits in batches: pixel by pixel, those of one by photon map and along a Morton curve.
+// Primary hits in batches: pixel by pixel; those of a pixel by photon map and along a Morton curve.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace photile::trace {
 
-/// Which elements belong to each of a range of pixels, in their order.
+/// The elements that belong to each of a range of pixels, in order.
 template <class PixelOf>
 IndexRows by_pixel(std::size_t elements, std::size_t first_pixel, std::size_t pixels,
                    const PixelOf& pixel_of) {
@@ -26,12 +26,12 @@ IndexRows by_pixel(std::size_t elements, std::size_t first_pixel, std::size_t pi
 /// The cells of a box, equally many along each axis, by which hits on one map are sorted.
 class HitCells {
  public:
-  /// So that code and map together, which is below 2^30 (limits::max_triangles), fit 64 bits.
+  /// Code and map, which is below 2^30 (limits::max_triangles), then fit 64 bits together.
   static constexpr int bits_per_axis = 11;
 
   explicit HitCells(const geometry::Box& box);
 
-  /// Along the Morton curve. Positions outside count as on the border.
+  /// The position along the Morton curve. Positions outside count as on the border.
   std::uint64_t morton_code(const glm::vec3& position) const;
 
  private:
@@ -42,18 +42,18 @@ class HitCells {
 /// The hits of all records, one record after the other.
 PrimaryHits hits_of(std::span<const EyeRecord> records);
 
-/// The hits of all rows in the order that PrimaryHits asks for, and the emission by layer in place
-/// of light. Does not depend on how samples are split into rows.
-///   rows     each of its own pixels, one pixel after the other
+/// The hits of all rows in the order of PrimaryHits, and the emission by layer instead of by light.
+/// Does not depend on how samples are split into rows.
+///   rows     each with separate pixels, one pixel after the other
 ///   runs     of a pixel: see PrimaryHitParameters
 ///   map_of   as in trace_primary_hits
 PrimaryHitBatch batch_of(const RayScene& rays, std::vector<EyeRecord> rows, int runs,
                          std::span<const std::uint32_t> map_of);
 
 /// The part of trace_primary_hits, with the same samples, that comes by a mirror, by glass that
-/// bends or reflects it, or by a glossy lobe: hits behind those as they are, hits that are seen
-/// directly (or through panes of thin glass) with their lobe alone, and lights in neither case.
-/// Added to what is left out it is the whole.
+/// bends or reflects it, or by a glossy lobe: hits behind those unchanged, hits that are seen
+/// directly (or through panes of thin glass) with their lobe alone, and lights seen directly not at
+/// all. This part and the part left out add up to the whole.
 PrimaryHitBatch trace_reflected_hits(const RayScene& scene, const Camera& camera,
                                      const PrimaryHitParameters& parameters, int first_row,
                                      int last_row, std::span<const std::uint32_t> map_of = {});

@@ -14,18 +14,18 @@
 
 namespace photile::trace {
 
-/// The hot spots of a scene, one for each light that has one: the surface that its light comes to
-/// straight, or through panes and cutouts, within `reach` of it. What the light sends there is
-/// found by shadow rays wherever it is asked for, and neither photons nor nodes of light maps hold
-/// it; rays go there by the distribution of that light (HotSpotAim).
+/// The hot spots of a scene, one for each light that has one: the surface that its light reaches
+/// directly, or through panes and cutouts, within `reach` of it. This light is found by shadow rays
+/// wherever it is requested, and neither photons nor nodes of light maps contain it; rays go there
+/// by the distribution of that light (HotSpotAim).
 class HotSpots {
  public:
-  /// The reference is kept. Rays from each light without size tell how close surface is.
+  /// The reference is kept. Rays from each light without size measure how close surface is.
   explicit HotSpots(const RayScene::Impl& rays);
 
   bool empty() const { return spots_.empty(); }
 
-  /// Whether light that comes straight from this light to a position is that of a hot spot.
+  /// Whether light that comes directly from this light to a position is that of a hot spot.
   bool holds(std::uint32_t light, const glm::vec3& position) const {
     return !spots_.empty() && light != none &&
            glm::distance(scene_light(light).position, position) < reach_[light];
@@ -48,12 +48,13 @@ class HotSpots {
   /// Directions of a light, in cells of equal width in the polar angle and the azimuth.
   struct Spot {
     std::uint32_t light;
-    Frame axes;                 ///< about where the light shines to
-    double cell_angle;          ///< of the polar angle, radians
-    std::vector<double> up_to;  ///< what surface reflects in the cells up to and with this one
-    glm::dvec3 centre{0.0};     ///< of what it reflects
-    double radius = 0;          ///< root mean square distance from there
-    double share = 0;           ///< of what all lights together emit
+    Frame axes;         ///< about the direction in which the light shines
+    double cell_angle;  ///< of the polar angle, radians
+    std::vector<double>
+        up_to;  ///< light reflected by surface in the cells up to and including this one
+    glm::dvec3 centre{0.0};  ///< of the reflected light
+    double radius = 0;       ///< root mean square distance from there
+    double share = 0;        ///< of the emission of all lights together
 
     double weight(std::size_t cell) const {
       return up_to[cell] - (cell == 0 ? 0.0 : up_to[cell - 1]);
@@ -78,14 +79,14 @@ class HotSpots {
 const HotSpots& hot_spots_of(const RayScene::Impl& rays);
 const HotSpots& hot_spots_of(const RayScene& rays);
 
-/// Rays from a point to hot spots: a part of all rays, whose other rays have a density of their
-/// own. All rays count by the density of both together (the balance heuristic, Veach and Guibas
-/// 1995).
+/// Rays from a point to hot spots: a part of all rays; the others have another density. All rays
+/// count by the density of both together (the balance heuristic, Veach and Guibas 1995).
 class HotSpotAim {
  public:
-  /// Of no rays.
+  /// Aims no rays.
   HotSpotAim() = default;
-  ///   normal   unit, of a surface that receives light on this side alone; null: from all sides
+  ///   normal   unit, of a surface that receives light on this side only; null: light from
+  ///            all sides counts
   HotSpotAim(const HotSpots& spots, const glm::vec3& from, const glm::vec3* normal);
 
   /// The part of the rays; 0 where no hot spot can be seen.
@@ -96,15 +97,15 @@ class HotSpotAim {
     glm::vec3 direction;  ///< unit, to there
     double density;       ///< of this direction, per steradian, as long as nothing is in the way
   };
-  /// A point of a hot spot, on the side that faces. Nothing where the light meets something else.
-  ///   u   in [0, 1)^2: points that fill it evenly give points that do
+  /// A point of a hot spot, on the side that faces. Nothing where the light hits something else.
+  ///   u   in [0, 1)^2: points that fill it evenly give points that fill the spot evenly
   std::optional<Target> sample(glm::dvec2 u) const;
 
-  /// The weight of the light of a target, over its weight if all rays had the density `other`.
+  /// The weight of the light of a target, relative to that if all rays had the density `other`.
   double weight(double other, const Target& target) const {
     return other / ((1 - fraction()) * other + fraction() * target.density);
   }
-  /// The weight of rays that are not aimed for the light of surface that they meet directly or
+  /// The weight of rays that are not aimed for the light of surface that they hit directly or
   /// through panes; for all other light it is 1.
   ///   other   density of the direction
   double weight_beside(double other, const SurfacePoint& met) const {
@@ -119,7 +120,7 @@ class HotSpotAim {
 
   const HotSpots* spots_ = nullptr;
   glm::dvec3 from_{0.0};
-  std::vector<double> up_to_;  ///< weights of the spots up to and with this one
+  std::vector<double> up_to_;  ///< weights of the spots up to and including this one
   double all_ = 0;
 };
 

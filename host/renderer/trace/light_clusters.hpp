@@ -1,5 +1,5 @@
-// Selection of a light to sample from a point of a surface: what is near and faces it is chosen
-// more often.
+// Selection of the light to sample from a point of a surface: lights that are near and face it are
+// chosen more often.
 #pragma once
 
 #include <cstdint>
@@ -14,51 +14,52 @@
 
 namespace photile::trace {
 
-/// How likely light samples from a point choose each cluster of the lights, and each portal. Empty:
-/// as from everywhere, by the power of lights alone.
+/// The probabilities with which light samples from a point choose each cluster of lights and each
+/// portal. Empty: the same for all points, by the power of lights alone.
 struct SelectionProbabilities {
-  std::vector<double> up_to;  ///< of the clusters up to and with this one; the last is their sum
-  PortalSizes portals;        ///< empty where there are none, and where it is not known
-  bool but_apart = false;     ///< without LightSampler::sampled_apart
+  std::vector<double>
+      up_to;               ///< of the clusters up to and including this one; the last is their sum
+  PortalSizes portals;     ///< empty where there are none, or they are not known
+  bool but_apart = false;  ///< without LightSampler::sampled_apart
 
   double of(std::size_t cluster) const {
     return (up_to[cluster] - (cluster == 0 ? 0.0 : up_to[cluster - 1])) / up_to.back();
   }
 };
 
-/// The probabilities of light samples from everywhere.
+/// The probabilities that are the same for all points.
 inline const SelectionProbabilities by_power_alone;
 
-/// Lights cut into clusters: an area light may be many small lights of a room. A cluster's weight
-/// at a point is what it would send there if nothing stood between, at most, as in light trees
-/// (Conty Estevez and Kulla, "Importance sampling of many lights with adaptive tree splitting",
-/// 2018); half of the samples go by the power of lights all the same, since much may stand between.
-/// Clusters are few enough to weigh them all.
+/// Lights cut into clusters: an area light may consist of many small lights in a room. A cluster's
+/// weight at a point is an upper bound of what it would send there without occlusion, as in light
+/// trees (Conty Estevez and Kulla, "Importance sampling of many lights with adaptive tree
+/// splitting", 2018); half of the samples are still chosen by the power of lights, since occlusion
+/// is unknown. Clusters are few enough to compute all of their weights.
 class LightClusters {
  public:
   /// With more lights than this, weighing each would cost more than it saves.
   static constexpr std::size_t most_lights = 1024;
 
   /// Errors: none; there are no clusters where there are too many lights to weigh each.
-  ///   fractions   of the lights, summing to 1: how light samples are chosen wherever the point is
-  ///   left_out    lights of no cluster, ascending
+  ///   fractions   of the lights, summing to 1: by which light samples are chosen whatever the
+  ///   point left_out    lights of no cluster, ascending
   LightClusters(const Scene& scene, std::span<const double> fractions, const BoundingSphere& bounds,
                 std::span<const std::uint32_t> left_out = {});
 
   /// The selection probabilities of light samples from a point of a surface; empty where there are
   /// no clusters.
-  ///   normal   unit, to the side from which is looked
+  ///   normal   unit, towards the side of the samples
   void weigh(const glm::vec3& position, const glm::vec3& normal,
              SelectionProbabilities& probabilities) const;
 
-  /// What is chosen: a light, and one of its triangles by their area.
+  /// A choice: a light, and one of its triangles by their area.
   struct Choice {
     std::uint32_t light;
     std::uint32_t cluster;
     std::uint32_t triangle;  ///< into Light::triangles, where the light can be cut; else `none`
   };
   /// Chooses a cluster by probabilities that are not empty.
-  ///   choice, on_light   blocks as LightSampler::sample takes them
+  ///   choice, on_light   blocks as for LightSampler::sample
   Choice choose(const SelectionProbabilities& probabilities, const RandomBlock& choice,
                 const RandomBlock& on_light) const;
 
@@ -79,12 +80,12 @@ class LightClusters {
     float fraction;
     glm::vec3 center{0.0f};  ///< of a sphere that holds it, metres
     float radius = 0;
-    glm::vec3 axis{0.0f};  ///< of a cone that holds the normals of what shines
+    glm::vec3 axis{0.0f};  ///< of a cone that contains the normals of emitting surfaces
     float cone_cosine = -1, cone_sine = 0;
   };
   struct Triangle {
     std::uint32_t number;  ///< into Light::triangles
-    double area_up_to;     ///< of those of the light up to and with this one, square metres
+    double area_up_to;     ///< of the light's triangles up to and including this one, square metres
   };
 
   void add_area_light(const Scene& scene, Cluster cluster);

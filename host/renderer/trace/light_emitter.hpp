@@ -22,13 +22,13 @@ struct EmittedRay {
   glm::vec3 color;      ///< of the photon's flux, linear RGB; the mean of its luminance is 1
 };
 
-/// Draws photon paths of one light so that each carries the same flux: area lights over
-/// their area by what it emits and with the cosine law; points uniformly over the sphere, or by
-/// their intensities; spots by the falloff of KHR_lights_punctual; directional lights and
-/// environments by the luminance of each direction, and uniformly over a disc of the scene's
-/// bounding sphere that faces it. Where the scene has portals, most lines of the latter go through
-/// them, and each photon carries its flux over the density of its line among both (the balance
-/// heuristic, Veach and Guibas 1995): what is estimated stays the same, whatever portals there are.
+/// Draws photon paths of one light so that each carries the same flux: area lights over their area,
+/// by its emission and with the cosine law; points uniformly over the sphere, or by their
+/// intensities; spots by the falloff of KHR_lights_punctual; directional lights and environments by
+/// the luminance of each direction, and uniformly over a disc of the scene's bounding sphere that
+/// faces it. Where the scene has portals, most lines of the latter go through them, and each photon
+/// carries its flux divided by the combined density of its line (the balance heuristic, Veach and
+/// Guibas 1995): the expected result does not depend on the portals.
 class LightEmitter {
  public:
   /// `scene` must outlive this; `bounds` is its bounding sphere, which only light from beyond uses.
@@ -41,8 +41,8 @@ class LightEmitter {
 
   EmittedRay emit(const RandomStream& random) const;
 
-  /// Towards mirrors and glass alone, of which there are some: the same light arrives there as by
-  /// `emit`, on more photons, each with its flux over the density of its ray among those of `emit`.
+  /// Towards mirrors and glass only, which must exist: the same light arrives there as by `emit`,
+  /// on more photons, each with its flux divided by the density of its ray relative to `emit`.
   EmittedRay emit_towards(const Targets& targets, const RandomStream& random,
                           const glm::dvec2& u) const;
 

@@ -36,8 +36,7 @@ inline DiffusePart diffuse_part(const scene::Reflectance& surface, float n_dot_o
   return result;
 }
 
-/// The fraction of light that the parts reflect in all directions, or of light from all directions,
-/// per channel.
+/// The fraction of light that the parts reflect into, or from, all directions, per channel.
 inline glm::vec3 diffuse_reflectance(const DiffusePart& part, float alpha) {
   float f0_weight = 0, f90_weight = 0;
   photile_mean_lobe_albedo(alpha, &f0_weight, &f90_weight);
@@ -54,18 +53,18 @@ inline float most_bump(const glm::vec3& reflectance) {
 enum class PathStart : std::uint8_t { eye, light };
 
 /// Directions are unit and point away from the surface. Cosines are those to the geometric normal,
-/// as in the radiance estimate; the lobe turns with the shading normal, and a normal map weighs
+/// as in the radiance estimate; the lobe turns with the shading normal, and a normal map weights
 /// light by its cosine to the mapped one. The base of a surface without a normal map may be made to
-/// weigh light by its cosine to the interpolated normal.
+/// weight light by its cosine to the interpolated normal.
 class OpaqueBsdf {
  public:
   /// `direction`: of the ray that arrives at the point, unit.
   OpaqueBsdf(const Scene& scene, const SurfacePoint& point, const glm::vec3& direction,
              PathStart start = PathStart::eye);
 
-  /// Lets the base weigh light by its cosine to the shading normal, as an eye is to see it: light
-  /// between surfaces goes by the geometric one, so that none is lost or made. Light from below the
-  /// geometric surface is not seen in either case. Does nothing where there is a normal map.
+  /// Lets the base weight light by its cosine to the shading normal, for rays from the eye: light
+  /// between surfaces uses the geometric one, so that none is lost or created. Light from below the
+  /// geometric surface does not count in either case. Does nothing where there is a normal map.
   void shade_smoothly(const Scene& scene, const SurfacePoint& point);
 
   /// Leaves the reflection of the base out; directions are drawn as before.
@@ -81,13 +80,11 @@ class OpaqueBsdf {
   /// little.
   bool lobe_suits_rays() const;
 
-  /// Rays by which to follow the lobe of one sample, in the mean over samples: less than one where
-  /// it reflects little or hardly scatters, more where all light of the surface is its, and comes
-  /// from many directions.
+  /// The mean number of rays by which to follow the lobe of one sample: less than one where it
+  /// reflects little or hardly scatters, more where it reflects all light, from many directions.
   double lobe_rays() const;
 
-  /// Fraction of the directions drawn that are the lobe's, in [0, 1]: about its part of what the
-  /// surface reflects.
+  /// Fraction of the directions drawn from the lobe, in [0, 1]: about its part of reflected light.
   float lobe_fraction() const { return lobe_ ? lobe_->fraction : 0.0f; }
 
   /// Fraction of light from all sides that is reflected, without one facet's reflection.
@@ -96,8 +93,8 @@ class OpaqueBsdf {
   /// Fraction of light from all sides that one facet reflects towards the eye.
   glm::vec3 lobe_reflectance() const;
 
-  /// The reflection without one facet's in a direction, f x cosine per steradian, less its mean
-  /// over all directions: a coat lets less through at grazing angles.
+  /// The reflection, without that of one facet, in a direction, f x cosine per steradian, minus its
+  /// mean over all directions: a coat lets less through at grazing angles.
   glm::vec3 base_deviation(const glm::vec3& direction) const;
 
   /// Whether it is a Lambertian lobe about the geometric normal, and nothing else.
@@ -136,7 +133,7 @@ class OpaqueBsdf {
 
   scene::Reflectance surface_;
   glm::vec3 normal_;
-  glm::vec3 base_normal_;  ///< that the base weighs light by
+  glm::vec3 base_normal_;  ///< by which the base weights light
   PathStart start_;
   std::optional<Lobe> lobe_;  ///< none where the surface is Lambertian
 };

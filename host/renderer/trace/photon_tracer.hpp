@@ -28,7 +28,7 @@ struct PhotonRun {
 struct PathRecord {
   PhotonRun photons;
   double escaped = 0;   ///< luminance that left the scene
-  double absorbed = 0;  ///< luminance that surfaces, or the bound on path length, took
+  double absorbed = 0;  ///< luminance absorbed by surfaces, or ended by the bound on path length
 };
 
 /// What all paths of one light have in common.
@@ -39,19 +39,18 @@ struct PathSetup {
   std::uint32_t light;
   std::uint64_t paths;  ///< that share the light's flux 1
   bool keep_incoming;
-  /// Where paths of caustics alone are aimed; null: all light.
+  /// The targets of paths of caustics alone; null: all light.
   const Targets* caustics;
   RandomBlock scramble;  ///< of the points by which paths are aimed
   bool stores_hot_spots = true;
 };
 
-/// Traces path number `path` and appends what it leaves to `record`: photons of all light, or those
-/// that came by mirrors and glass alone. Emitted luminance equals
-/// absorbed plus escaped, path by path: what roulette adds to a survivor counts as negative
-/// absorption.
+/// Traces path number `path` and appends the photons that it stores to `record`: photons of all
+/// light, or those that came by mirrors and glass alone. Emitted luminance equals absorbed plus
+/// escaped, path by path: flux that roulette adds to a survivor counts as negative absorption.
 void trace_photon_path(const PathSetup& setup, std::uint64_t path, PathRecord& record);
 
-/// trace_photons, without photons that come straight from a light to its hot spot (hot_spots.hpp):
+/// trace_photons, without photons that come directly from a light to its hot spot (hot_spots.hpp):
 /// no density of photons can resolve that light, which shadow rays find.
 PhotonTracerResult trace_photons_beside_hot_spots(const RayScene& scene,
                                                   const PhotonTracerParameters& parameters,
@@ -64,7 +63,7 @@ struct LayerRun {
 };
 
 /// Photons in the order of their oriented faces, those of one triangle in the order of the runs.
-/// The runs are emptied on the way: beside them only the result exists, one array after the other.
+/// The runs are emptied on the way, one array after the other: besides them only the result exists.
 ///   tell_layers   fill Photons::light
 Photons sorted_photons(std::span<const LayerRun> runs, bool tell_layers,
                        std::size_t oriented_face_count);

@@ -1,4 +1,4 @@
-// Windows as seen by what comes from beyond the scene, or goes there.
+// Windows, for light from beyond the scene and rays that go there.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -10,13 +10,13 @@
 
 namespace photile::trace {
 
-/// Portals as they look from a point.
+/// The apparent sizes of portals from a point.
 struct PortalSizes {
   std::vector<double> solid_angle;  ///< of each, about; 0 of what is seen from behind
   double sum = 0;
 };
 
-/// The portals of a scene. Light "enters" by one along its inward normal alone.
+/// The portals of a scene. Light enters a portal only along its inward normal.
 class Portals {
  public:
   explicit Portals(const Scene& scene);
@@ -26,19 +26,20 @@ class Portals {
   /// The projected area of all portals for light that travels in a unit direction, square metres.
   double area_facing(const glm::dvec3& travel) const;
 
-  /// How many portals a line enters by.
+  /// The number of portals through which a line enters.
   int entered_by(const glm::dvec3& point, const glm::dvec3& travel) const;
 
-  /// A point on a portal that light enters by, evenly over what they show; none shows nothing.
+  /// A point on a portal through which the light enters, evenly over their projected area; nothing
+  /// where that is 0.
   ///   choice     in [0, 1): which portal
   ///   u, v       in [0, 1): where on it
   glm::dvec3 entrance(const glm::dvec3& travel, double choice, double u, double v) const;
 
-  /// About how large each portal looks from a point.
+  /// The approximate apparent size of each portal from a point.
   void measure(const glm::dvec3& from, PortalSizes& sizes) const;
 
-  /// A unit direction through one of them, chosen by its size, evenly over its area. One can be
-  /// seen.
+  /// A unit direction through one of them, chosen by its size, evenly over its area. At least one
+  /// must be visible.
   glm::dvec3 sample_direction(const glm::dvec3& from, const PortalSizes& sizes, double choice,
                               double u, double v) const;
 
@@ -50,8 +51,8 @@ class Portals {
   std::vector<Rectangle> portals_;  ///< their normals point inwards
 };
 
-/// What portals show to a sun's disc or a patch of the sky, on average over its solid angle, square
-/// metres.
+/// The projected area of the portals for a sun's disc or a patch of the sky, averaged over its
+/// solid angle, square metres.
 double area_facing(const Portals& portals, const DistantSampler& light);
 
 }  // namespace photile::trace

@@ -99,8 +99,8 @@ class RandomStream {
   std::uint32_t path_high_and_stream_;
 };
 
-/// The seed of a repeat of what would be done with `seed`. Repeats of neighbouring seeds have
-/// nothing in common, as seeds seed, seed + 1 ... of their repeats would.
+/// The seed of a repeat of what would be done with `seed`. Repeats of neighbouring seeds share
+/// nothing, which they would if repeats used seed, seed + 1 and so on.
 constexpr std::uint64_t seed_of_repeat(std::uint64_t seed, std::uint32_t repeat) {
   const PhiloxCounter words =
       philox4x32_10({repeat, 0, 0, static_cast<std::uint32_t>(Purpose::repeat)},
@@ -150,7 +150,7 @@ constexpr std::uint32_t second_sobol_digits(std::uint32_t index) {
 /// the square for random scrambles; of any 2^n points from a multiple of 2^n on there is one in
 /// each of the 2^n rectangles that halving the square's sides leaves. The order of points is
 /// scrambled in the same way, so that pairs of dimensions are independent of each other. Sequences
-/// of different scrambles are independent: their scatter is an honest error.
+/// of different scrambles are independent: their scatter is an unbiased measure of the error.
 inline glm::uvec2 sobol_words(std::uint32_t index, const RandomBlock& scramble) {
   const std::uint32_t position =
       reversed_bits(scrambled_digits(reversed_bits(index), scramble.word(0)));

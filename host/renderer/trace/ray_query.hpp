@@ -1,5 +1,5 @@
-// Queries of a RayScene, for folders that do not include Embree: what a ray meets, alpha cutouts
-// and visibility. Thread-safe; the calling thread must hold a FlushDenormals.
+// Queries of a RayScene, for folders that do not include Embree: ray hits, alpha cutouts and
+// visibility. Thread-safe; the calling thread must hold a FlushDenormals.
 #pragma once
 
 #if defined(__SSE__)
@@ -40,16 +40,16 @@ class FlushDenormals {
 std::optional<TriangleHit> intersect(const RayScene& rays, const RayOrigin& origin,
                                      const glm::vec3& direction);
 
-/// Whether a surface of any material cuts the straight line between two points.
+/// Whether a surface of any material intersects the straight line between two points.
 bool occluded(const RayScene& rays, const glm::vec3& from, const glm::vec3& to);
 
-/// A straight line from a surface to a light, say.
+/// A straight line, for example from a surface to a light.
 struct LineOfSight {
   glm::vec3 from, to;
 };
 
 /// Whether lines that begin close together are occluded: packets of sixteen, twice as fast. The
-/// answer for a line may depend, in its roundings, on those beside it.
+/// answer for a line may depend on the others within rounding.
 ///   hidden   of each line: set to 1, or 0
 void occluded(const RayScene& rays, std::span<const LineOfSight> lines,
               std::span<std::uint8_t> hidden);
@@ -64,13 +64,13 @@ glm::vec3 transmittance(const Scene& scene, const SurfacePoint& point, const glm
 glm::vec3 transmittance(const RayScene& rays, const RayOrigin& from, const glm::vec3& to);
 
 /// Whether a ray passes the surface here as if it were not there: always in a cutout, never where
-/// the surface is whole, by chance where it is partly there. Behind 4096 cutouts of a path all
-/// surfaces count as whole.
-///   cutouts   passed so far on the path; counts on
+/// the surface is fully present, at random where it is partly present. Behind 4096 cutouts of a
+/// path all surfaces count as whole.
+///   cutouts   passed so far on the path; is increased
 bool passes_cutout(const Scene& scene, const SurfacePoint& point, const RandomStream& random,
                    Purpose purpose, std::uint32_t& cutouts);
 
-/// Where a ray meets a surface that it does not pass, or nothing. `origin` moves behind the last
+/// The hit of a ray on a surface that it does not pass, or nothing. `origin` moves behind the last
 /// cutout.
 std::optional<SurfacePoint> next_surface(const RayScene::Impl& rays, RayOrigin& origin,
                                          const glm::vec3& direction, const RandomStream& random,
@@ -89,14 +89,14 @@ inline SurfaceLocation location_on(const Scene& scene, std::uint32_t oriented_fa
   return {position, glm::vec3(face_normal(scene, oriented_face))};
 }
 
-/// The difference of a shadow ray from the line between two points.
+/// The deviation of a shadow ray from the line between two points.
 struct ShadowRayInset {
   float offset;    ///< its distance above them, metres
-  float left_out;  ///< and ends short of the second by this part of its length
+  float left_out;  ///< it ends short of the second by this fraction of its length
 };
 
-/// Whether nothing is between two points of one surface, just above it. Where it is curved, a line
-/// of sight as deep in it as a circle's chord is lifted out by twice as much.
+/// Whether nothing is between two points of one surface, just above it. Where the surface is
+/// curved, a line that lies as deep in it as the chord of a circle is raised by twice that depth.
 bool see_each_other(const RayScene& rays, const SurfaceLocation& from, const SurfaceLocation& to,
                     const ShadowRayInset& line);
 

@@ -32,12 +32,12 @@ struct RayScene::Impl {
   /// Nearest hit of the ray, or nothing. Thread-safe. A ray with a NaN or infinity hits nothing.
   std::optional<trace::TriangleHit> intersect(const trace::RayOrigin& origin,
                                               const glm::vec3& direction) const;
-  /// Of the triangles in the place of a hit, the one that the ray meets.
+  /// Among coincident triangles at a hit, the one that the ray hits.
   trace::TriangleHit resolve_coincident(const trace::TriangleHit& hit,
                                         const glm::vec3& direction) const;
 
   /// Whether anything lies on the straight line between two points. Thread-safe. A line with a NaN
-  /// or infinity meets nothing.
+  /// or infinity hits nothing.
   bool occluded(const glm::vec3& from, const glm::vec3& to) const;
   /// Tests up to `packet` lines at once.
   void occluded(std::span<const trace::LineOfSight> lines, std::span<std::uint8_t> hidden) const;

@@ -1,4 +1,4 @@
-// Rectangles that directions are sampled towards.
+// Rectangles towards which directions are sampled.
 #pragma once
 
 #include <cmath>
@@ -6,9 +6,9 @@
 
 namespace photile::trace {
 
-/// A rectangle that is seen from the side of its normal alone.
+/// A rectangle that is visible only from the side of its normal.
 struct Rectangle {
-  /// Parallel sides of another angle than a right one have a normal and an area, too.
+  /// Sides that are not at a right angle give a parallelogram, which has a normal and an area, too.
   Rectangle(const glm::dvec3& corner_at, const glm::dvec3& side_u, const glm::dvec3& side_v)
       : corner(corner_at),
         u(side_u),
@@ -32,7 +32,7 @@ struct Rectangle {
     return along_u >= 0 && along_u <= uu && along_v >= 0 && along_v <= vv;
   }
 
-  /// About the solid angle that it fills; 0 only from behind.
+  /// The approximate solid angle of the rectangle; 0 only from behind.
   double solid_angle(const glm::dvec3& from) const {
     const double before = height(from);
     if (!(before > 0)) return 0;

@@ -34,13 +34,13 @@ class Room {
   /// most_height away, or where the room has no end. The rays are kept.
   static std::optional<Room> around(const RayScene& rays, const PlanAxes& axes,
                                     const glm::dvec3& point);
-  /// The room in which a camera stands, or the first that its middle ray comes to.
+  /// The room in which a camera stands, or the first that its middle ray reaches.
   static std::optional<Room> of_camera(const RayScene& rays, const PlanAxes& axes,
                                        const Camera& camera);
 
-  /// The one around `inside` (metres in the file's world), or where none is given of_camera of the
-  /// scene's first. None: the camera comes to no room. Errors: UsageError where the point is in
-  /// none.
+  /// The room around `inside` (metres in the file's world), or without it that of the scene's first
+  /// camera (of_camera). None: the camera reaches no room. Errors: UsageError for a point in no
+  /// room.
   static std::optional<Room> meant(const RayScene& rays, const PlanAxes& axes,
                                    const std::optional<glm::dvec3>& inside);
 

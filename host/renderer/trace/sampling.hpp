@@ -54,9 +54,9 @@ inline glm::vec2 sample_triangle(float u1, float u2) {
   return {root * (1.0f - u2), root * u2};
 }
 
-/// Weight of a sample that was found with `density` and that another technique finds with `other`,
-/// 0 where it cannot (Veach and Guibas, "Optimally combining sampling techniques for Monte Carlo
-/// rendering", 1995).
+/// Weight of a sample that was found with `density`, and that another technique finds with the
+/// density `other`, 0 where it cannot (Veach and Guibas, "Optimally combining sampling techniques
+/// for Monte Carlo rendering", 1995).
 inline float power_heuristic(float density, float other) {
   const float ratio = other / density;
   return 1.0f / (1.0f + ratio * ratio);

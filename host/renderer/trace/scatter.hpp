@@ -9,7 +9,7 @@
 
 namespace photile::trace {
 
-/// The ray that goes on.
+/// The continuing ray.
 struct Scattered {
   glm::vec3 direction;  ///< unit
   glm::vec3 weight;     ///< multiplies the photon's flux or the eye ray's throughput
@@ -35,8 +35,8 @@ struct SplitLight {
   Scattered reflected, transmitted;
 };
 
-/// Both ways that light takes at a surface. Nothing where there is one alone: at mirrors, where
-/// reflection is total, and where the shading normal would send one of the rays to the wrong side.
+/// Both ways that light takes at a surface. Nothing where there is only one: at mirrors, under
+/// total reflection, and where the shading normal would send one of the rays to the wrong side.
 std::optional<SplitLight> both_parts(const Scene& scene, const SurfacePoint& point,
                                      const glm::vec3& direction);
 

@@ -1,4 +1,4 @@
-// Sensors that measure light: how each weighs it, and their hits in the form of a camera's.
+// Sensors that measure light: their responses, and their hits in the form of a camera's.
 #pragma once
 
 #include <algorithm>
@@ -25,13 +25,13 @@ class Photometer {
         sees_lights_(sensor.sees_lights),
         frame_(normal_) {}
 
-  /// A plane on the side of a surface on which the point is.
+  /// A plane sensor on the side of a surface on which the point lies.
   explicit Photometer(const SurfacePoint& point)
       : origin_(point.origin_towards(point.normal)), normal_(point.normal), frame_(normal_) {}
 
   const glm::vec3& origin() const { return origin_; }
   bool sees_lights() const { return sees_lights_; }
-  /// The normal of the side from which alone light counts; null where light from all sides does.
+  /// The normal of the side whose light counts; null where light from all sides counts.
   const glm::vec3* one_side() const {
     return response_ == SensorResponse::planar ? &normal_ : nullptr;
   }
@@ -79,14 +79,14 @@ class Photometer {
   Frame frame_;
 };
 
-/// Hit i is sensor i, on the triangle found there; its pixel is i and the
-/// eye is straight above. Errors: InputError that names a sensor without an opaque surface.
+/// Hit i is sensor i, on the triangle found there; its pixel is i, and the eye is directly above.
+/// Errors: InputError that names a sensor without an opaque surface.
 PrimaryHits sensor_hits(const RayScene& rays, std::span<const Sensor> sensors);
 
 /// Rays from sensors [first_row, last_row), the samples of the film's pass of each; sensor i is
 /// pixel i of a film one pixel wide. Directions have the density response / pi, so that the mean
 /// radiance of a sensor's rays is its irradiance / pi. At each ray a light is sampled, too; lights
-/// that both find are weighed (Veach and Guibas 1995). Depends on the sensors, the film's seed and
+/// that both find are weighted (Veach and Guibas 1995). Depends on the sensors, the film's seed and
 /// samples only, not on how rows are split or on threads.
 ///   light_sampler    of the scene
 ///   adds_hot_spots   whether ray hits get the light of hot spots, which photons leave out

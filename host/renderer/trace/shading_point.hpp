@@ -1,4 +1,4 @@
-// A shading point: the surface at a hit, and how it weighs the light that arrives.
+// A shading point: the surface at a hit, and its weights for the arriving light.
 #pragma once
 
 #include <cstddef>
@@ -23,12 +23,12 @@ inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::s
 
 /// How the surface reflects light against the ray of an eye that arrived there, smoothly shaded. A
 /// Lambertian surface looks the same from everywhere: where nothing is glossy, hits do not store
-/// the direction, and any one may be used.
+/// the direction, and any direction may be used.
 inline OpaqueBsdf bsdf_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit,
                           const SurfacePoint& point) {
   OpaqueBsdf bsdf(scene, point, hits.outgoing.empty() ? -point.normal : -hits.outgoing[hit]);
   bsdf.shade_smoothly(scene, point);
-  // Hits that are seen directly, where reflections alone are looked at.
+  // Hits that are seen directly, where only reflections count.
   if (hits.diffuse_albedo[hit] == glm::vec3(0.0f)) bsdf.drop_diffuse();
   return bsdf;
 }
@@ -43,9 +43,9 @@ struct LightWeights {
   }
 };
 
-/// Weighs light by its cosine alone and as it is reflected, and draws directions for both:
-/// on a glossy surface half of them follow the cosine, for a narrow lobe would find next to nothing
-/// of the irradiance. References are kept.
+/// Weights light by its cosine and by its reflection, and draws directions for both: on a glossy
+/// surface half of them follow the cosine, because a narrow lobe would find almost none of the
+/// irradiance. References are kept.
 class ShadingPoint {
  public:
   ShadingPoint(const SurfacePoint& point, const OpaqueBsdf& bsdf) : point_(point), bsdf_(bsdf) {}

@@ -13,8 +13,8 @@ namespace photile::trace {
 struct TriangleHit {
   std::uint32_t triangle;
   float u, v;  ///< barycentric weights of the second and third corner
-  /// Where light passes a triangle that has another in its place, looking away from it: that one.
-  /// It lies behind the hit, or before it where the ray came from there.
+  /// Where light passes a triangle with a coincident one that faces the other way: that one. It
+  /// lies behind the hit, or before it if the ray came from there.
   std::uint32_t other = none;
   bool other_before = false;
 };
@@ -26,8 +26,8 @@ struct RayOrigin {
   operator const glm::vec3&() const { return position; }
 
   glm::vec3 position{0.0f};   ///< metres
-  std::uint32_t next = none;  ///< the triangle in the same place that the ray meets first
-  std::uint32_t from = none;  ///< the one that it left, where there is a next one
+  std::uint32_t next = none;  ///< the coincident triangle that the ray hits first
+  std::uint32_t from = none;  ///< the triangle that it left, where `next` is set
 };
 
 /// The offset of rays over the largest coordinate of the triangle's corners. The position is
@@ -44,7 +44,7 @@ struct SurfacePoint {
   std::uint32_t side = 0;
   glm::vec3 position{0.0f};  ///< metres
   glm::vec3 normal{0.0f};    ///< unit geometric normal on this side
-  /// How far from the position a ray has to start so that it cannot meet its own triangle, metres.
+  /// The offset at which a ray has to start so that it cannot hit its own triangle, metres.
   float ray_offset = 0;
 
   std::uint32_t oriented_face() const { return oriented(where.triangle, side); }
@@ -64,7 +64,7 @@ struct SurfacePoint {
 TriangleHit nearest_on_triangle(const Scene& scene, std::uint32_t triangle,
                                 const glm::dvec3& position);
 
-/// Where a triangle is hit, metres.
+/// The position at which a triangle is hit, metres.
 inline glm::dvec3 position_of(const Scene& scene, const TriangleHit& hit) {
   const auto corners = scene.corners(hit.triangle);
   const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
@@ -83,15 +83,15 @@ inline const Material& material_of(const Scene& scene, const SurfacePoint& point
   return scene.materials[scene.triangle_material[point.where.triangle]];
 }
 
-/// Whether the point lies behind a cutout of a surface in its place.
+/// Whether the point lies behind a cutout of a coincident surface.
 inline bool behind_cutout(const Scene& scene, const SurfacePoint& point) {
   return point.where.other_before &&
          scene.materials[scene.triangle_material[point.where.other]].interaction ==
              Interaction::opaque;
 }
 
-/// The oriented face on which the photons lie that arrive at the point: behind a cutout they have
-/// been stored where they passed it.
+/// The oriented face that stores the photons arriving at the point: behind a cutout, they were
+/// stored where they passed it.
 std::uint32_t face_of_photons(const Scene& scene, const SurfacePoint& point);
 
 /// Whether the point lies on the side that the file calls the front.
@@ -118,12 +118,11 @@ glm::vec3 emission_towards(const Scene& scene, const SurfacePoint& point,
 /// F90 are 0.
 scene::Reflectance reflectance(const Scene& scene, const SurfacePoint& point);
 
-/// Fraction of the surface that is there, in [0, 1]; 1 where its material has no cutouts.
+/// Fraction of the surface that is present, in [0, 1]; 1 where its material has no cutouts.
 float opacity(const Scene& scene, const SurfacePoint& point);
 
-/// The unit interpolated normal of a point's corners, on its side: the same from wherever it is
-/// seen. The geometric one where the file has none, or where the two are more than a right angle
-/// apart.
+/// The unit interpolated normal of a point's corners, on its side: the same from all directions.
+/// The geometric one where the file has none, or where the two are more than a right angle apart.
 glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point);
 /// The shading normal at a position, metres, on a side of a triangle.
 glm::vec3 shading_normal(const Scene& scene, std::uint32_t oriented_face,

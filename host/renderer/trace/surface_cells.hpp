@@ -1,4 +1,4 @@
-// Surface in cells of a grid, by which a pilot's photons tell how light is spread.
+// Surface in cells of a grid, in which the photons of a pilot measure how light is spread.
 #pragma once
 
 #include <tsl/robin_set.h>
@@ -19,9 +19,9 @@ class SurfaceCells {
   /// The surface in a cube that faces one way along an axis.
   using Facing = std::array<std::int32_t, 4>;
 
-  /// Cubes as wide as the scene's radius, halved until surfaces that hold some of `count` things
-  /// hold no more than `per_cell` on average.
-  ///   cell_of   (cells, i): the surface of thing i
+  /// Cubes as wide as the scene's radius, halved until those surfaces that hold any of `count`
+  /// elements hold at most `per_cell` on average.
+  ///   cell_of   (cells, i): the surface of element i
   template <class CellOf>
   SurfaceCells(const BoundingSphere& bounds, std::size_t count, double per_cell,
                const CellOf& cell_of)

@@ -1,4 +1,4 @@
-// Where photons and rays are aimed: mirrors and glass, and bright surface.
+// Targets of photons and rays: mirrors and glass, and bright surface.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace photile::trace {
 
-/// A few spheres that paths are aimed at. What is aimed carries its flux, or its light, over the
-/// density of its line: Jensen's projection maps ("Global illumination using photon maps", 1996)
-/// with spheres in place of cells.
+/// A few spheres at which paths are aimed. Aimed photons and rays carry their flux, or their light,
+/// divided by the density of the line: Jensen's projection maps ("Global illumination using photon
+/// maps", 1996) with spheres in place of cells.
 class Targets {
  public:
   struct Sphere {
     glm::dvec3 centre;
     double radius;
-    double brightness = 1;  ///< times its solid angle, how often it is aimed at
+    double brightness = 1;  ///< times its solid angle: how often it is chosen
   };
   static constexpr std::size_t most_spheres = 64;
 
@@ -31,8 +31,8 @@ class Targets {
     glm::dvec3 point;  ///< on the line, beside the middle of a sphere
     double density;    ///< per square metre across the lines
   };
-  /// A line along `travel`, unit, evenly over the disc that one of the spheres shows, each in
-  /// proportion to its disc.
+  /// A line along `travel`, unit, evenly over the disc of one of the spheres, chosen in proportion
+  /// to its disc.
   Line line_along(const glm::dvec3& travel, glm::dvec2 u) const;
 
  private:
@@ -47,11 +47,12 @@ Targets specular_targets(const Scene& scene);
 /// Directions from a point to targets.
 class Aim {
  public:
-  /// The normal is kept as a reference. Into the cones of the spheres, each in proportion to its
-  /// brightness, its solid angle and the largest cosine in it; evenly in a cone. From within a
-  /// sphere in all directions, by the cosine law where there is a normal.
+  /// The normal is kept as a reference. Directions lie in the cones of the spheres, chosen in
+  /// proportion to brightness, solid angle and the largest cosine in the cone, and evenly within a
+  /// cone. From within a sphere they go in all directions, by the cosine law where there is a
+  /// normal.
   ///   normal   unit, of a surface that sends or receives light by the cosine law; null: all
-  ///            cosines count 1
+  ///            cosines count as 1
   Aim(const Targets& targets, const glm::dvec3& from, const glm::vec3* normal);
 
   /// Whether some target rises above the horizon.
@@ -62,9 +63,9 @@ class Aim {
     double density;       ///< per steradian, of this direction among all that could be sampled
   };
   /// Only where `possible` holds.
-  ///   u   in [0, 1)^2: points that fill it evenly give directions that do
+  ///   u   in [0, 1)^2: points that fill it evenly give directions that fill the cones evenly
   Direction sample(glm::dvec2 u) const;
-  /// Per steradian, at which `sample` gives this direction.
+  /// The density, per steradian, with which `sample` gives this direction.
   double density(const glm::vec3& direction) const;
 
  private:
@@ -76,7 +77,7 @@ class Aim {
   double weight_around(const glm::vec3& direction) const;
 
   const glm::vec3* normal_;
-  std::size_t cones_ = 0;  ///< spheres that the point is not within
+  std::size_t cones_ = 0;  ///< spheres that do not contain the point
   std::array<Cone, Targets::most_spheres> cone_;
   double around_ = 0;  ///< weight of each direction, or over its cosine, from within spheres
   std::array<double, Targets::most_spheres + 1> share_;  ///< of the cones, and of all directions

@@ -1,5 +1,5 @@
 // The one definition of reflection at an opaque surface, compiled by C++ (photon scattering,
-// tests) and by OpenCL C (radiance estimate). Nothing but + - * / and sqrt, which round alike
+// tests) and by OpenCL C (radiance estimate). It uses only + - * / and sqrt, which round alike
 // everywhere. What differs between the photons of a hit is a PHOTILE_REAL: a float unless the
 // including file defines it as a vector of floats.
 //
@@ -125,7 +125,7 @@ static inline void photile_lobe_albedo(const PhotileAlbedoFit* fit, PHOTILE_REAL
 }
 
 /// The mean over a diffusely lit hemisphere in the same form: twice the integral over the cosine of
-/// the fit x cosine. The polynomials are right to 0.002.
+/// the fit x cosine. The polynomials are accurate to 0.002.
 static inline void photile_mean_lobe_albedo(float alpha, float* f0_weight, float* f90_weight) {
   const float a = alpha;
   *f0_weight = 0.9524f + a * (0.0150f + a * (-1.9283f + a * (2.0736f - a * 0.7034f)));
@@ -141,8 +141,8 @@ static inline void photile_set_diffuse(float albedo, float f0, float f90, const 
   const float e1_mean = mean[0] + mean[1] < 1.0f ? mean[0] + mean[1] : 1.0f;
   const float f_mean = f0 + (f90 - f0) / 21.0f;
   const float fm = f_mean * f_mean * e1_mean / (1.0f - f_mean * (1.0f - e1_mean));
-  // The fit is not good enough to divide by what hardly is: a smooth coat's losses, and the little
-  // that coats let through which are nearly white metals.
+  // The fit is not accurate enough to divide by values near 0: the losses of a smooth coat, and the
+  // little light that coats like nearly white metals let through.
   const float lost_mean = 1.0f - e1_mean > 0.01f ? 1.0f - e1_mean : 0.01f;
   const float several = fm * (1.0f - o[0] - o[1]) / (PHOTILE_PI * lost_mean);
   const float passed = 1.0f - fm - (f0 - fm) * o[0] - (f90 - fm) * o[1];
@@ -163,10 +163,10 @@ static inline PHOTILE_REAL photile_diffuse(float part0, float part1, float part2
 }
 
 /// The factor of a normal map on f: the cosine of i to the mapped normal over that to the smooth
-/// one, at most `most`; 1 where the normals are the same. So the eye sees light by its cosine to
-/// the mapped normal while photons count by area of the true surface, and nothing reflects more
-/// light than the unmapped material would. f is no longer reciprocal (Veach, "Robust Monte Carlo
-/// methods for light transport simulation", 1997, section 5.3): i is the light's side.
+/// one, at most `most`; 1 where the normals are the same. So light is weighted by its cosine to the
+/// mapped normal while photons count by area of the true surface, and nothing reflects more light
+/// than the unmapped material would. f is no longer reciprocal (Veach, "Robust Monte Carlo methods
+/// for light transport simulation", 1997, section 5.3): i is the light's side.
 static inline PHOTILE_REAL photile_bump_weight(PHOTILE_REAL mapped_dot_i, PHOTILE_REAL smooth_dot_i,
                                                float most) {
   const PHOTILE_REAL zero = 0.0f, limit = most;

@@ -1,8 +1,8 @@
-/* What the kernels of the build are given, as C++ and OpenCL C both see it. */
+/* The arguments of the build kernels, as C++ and OpenCL C both see them. */
 #ifndef PHOTILE_DEVICE_BUILD_H
 #define PHOTILE_DEVICE_BUILD_H
 
-/* A page of photons. Kernels take it by value, as the next. */
+/* A page of photons. Kernels take it by value, like the next structure. */
 typedef struct {
   unsigned int photon_count;
   unsigned int first_photon; /* index of the page's first photon among all photons */

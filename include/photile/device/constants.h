@@ -1,5 +1,5 @@
 /* The numbers that host and kernels must agree on, as C++ and OpenCL C both see them. What only one
-   side needs stands there. */
+   side needs is defined there. */
 #ifndef PHOTILE_DEVICE_CONSTANTS_H
 #define PHOTILE_DEVICE_CONSTANTS_H
 
@@ -16,8 +16,8 @@
    kernels/grid/sort_cells.cl). */
 #define PHOTILE_COOPERATIVE_GROUP 256
 
-/* Floats of the widest vector, of a group whose work-items are lanes, to which records of photons
-   are padded. */
+/* Floats of the widest vector, of a group whose work-items are lanes; records of photons are padded
+   to it. */
 #define PHOTILE_MOST_LANES 64
 
 /* Reductions combine lanes that lie so far apart, then these columns. */

@@ -9,8 +9,8 @@
 /* Grid over the plane of a triangle or patch. A point p projects to
      u = (p - origin) . u_axis,  v = (p - origin) . v_axis      (metres)
    and falls in column (u - minimum_u) / cell_width and row (v - minimum_v) / cell_height, clamped
-   to the grid. Cells are PHOTILE_CELL_ASPECT times as high as wide: whoever reads the cells of a
-   disc streams a few long ranges, which overhang the disc little at their ends.
+   to the grid. Cells are PHOTILE_CELL_ASPECT times as high as wide: a query that reads the cells of
+   a disc streams a few long ranges, which extend little beyond the disc at their ends.
 
        v ^   rows
          |  +--+--+--+--+
@@ -33,7 +33,7 @@ typedef struct {
   unsigned int columns, rows;
   unsigned int first_cell; /* into cell_start of the map's page */
   unsigned int
-      normal_filtered; /* 1 if some photon's normal may disagree with some triangle of the map */
+      normal_filtered; /* 1 if the normal of a photon may disagree with a triangle of the map */
 } PhotileGrid;
 
 #endif

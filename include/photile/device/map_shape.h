@@ -1,4 +1,4 @@
-/* The surface that a pair of photon maps serves, as C++ and OpenCL C both see it: one triangle or a
+/* The surface of a pair of photon maps, as C++ and OpenCL C both see it: one triangle or a
    patch of them, both sides. Scalar members only: a float3 is 16 bytes on the device. */
 #ifndef PHOTILE_DEVICE_MAP_SHAPE_H
 #define PHOTILE_DEVICE_MAP_SHAPE_H
@@ -17,13 +17,13 @@ typedef struct {
   float area;      /* of the triangles, one side, square metres */
   float perimeter; /* of the triangle, or of the box's rectangle, metres */
   /* A photon agrees with every member if the cosine of the angle between its normal and the axis of
-     its side is at least this; above 1 where none can be sure to. */
+     its side is at least this; above 1 where no photon is certain to. */
   float certain_cosine;
-  /* The box along the axes: who enters must be near both, so that lists of candidates, which are
-     made by this one, decide nothing. */
+  /* The axis-aligned box: photons that are entered must be near both boxes, so that the lists of
+     candidates, which this one makes, decide nothing. */
   float low_x, low_y, low_z, high_x, high_y, high_z;
-  unsigned int triangle; /* index of its corners where photons are compared with just one, else
-                            PHOTILE_NO_TRIANGLE */
+  unsigned int triangle; /* index of its corners where photons are compared with a single triangle,
+                            else PHOTILE_NO_TRIANGLE */
 } PhotileMapShape;
 
 #endif

@@ -1,9 +1,9 @@
-/* What the kernels of the estimate are given, as C++ and OpenCL C both see it. Scalar members and
+/* The arguments of the estimate kernels, as C++ and OpenCL C both see them. Scalar members and
    arrays of them only: a float3 is 16 bytes on the device. */
 #ifndef PHOTILE_DEVICE_QUERY_H
 #define PHOTILE_DEVICE_QUERY_H
 
-/* A launch over hits on the maps of one page; hits on others are passed over. Kernels take it by
+/* A launch over hits on the maps of one page; hits on other pages are skipped. Kernels take it by
    value. */
 typedef struct {
   unsigned int first_hit, hit_count; /* hits [first_hit, first_hit + hit_count) of the batch */
@@ -11,7 +11,7 @@ typedef struct {
   unsigned int record_stride;        /* from one plane of the page's photon records to the next */
   unsigned int k;                    /* at most this many neighbours, */
   float radius;                      /* none farther than this, metres */
-  float least_radius;                /* that a smaller disc is taken to have, metres */
+  float least_radius;                /* to which smaller discs are enlarged, metres */
   float least_cosine;                /* of the angle between normals that agree */
 } PhotileQuery;
 
@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
   float normal[3];     /* of the hit's oriented face */
   float inwards[3];    /* from the hit to the centroid of its triangle */
-  unsigned int region; /* as photile/device/surface.h has it, like those below */
+  unsigned int region; /* as in photile/device/surface.h, like those below */
   unsigned int triangle;
   unsigned int component;
 } PhotileHitSurface;

@@ -14,7 +14,7 @@ from . import compositor, options, scene_export
 
 @functools.cache
 def temporary_folder():
-    """Of this Blender alone: in a folder with a name that others know, they could lay links."""
+    """A folder of this Blender alone: in a folder whose name others know, they could place links."""
     return Path(tempfile.mkdtemp(prefix="photile-blender-"))
 
 
@@ -104,7 +104,7 @@ class PHOTILE_OT_render(bpy.types.Operator):
         return {"FINISHED"}
 
     def execute(self, context):
-        """Waits: of scripts, and of Blender without a window."""
+        """Waits for the rendering: for scripts, and for Blender without a window."""
         if not self._start(context):
             return {"CANCELLED"}
         self._process.wait()

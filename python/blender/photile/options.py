@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options of `photile render` that a .blend file may bring along, which may be anyone's."""
+"""Options of `photile render` that a .blend file, which may come from anyone, may contain."""
 
 import shlex
 

@@ -23,7 +23,7 @@ def size_of(light):
 
 
 def lamps(scene):
-    """Lamps that are rendered and have a power of their own; the sun's is an irradiance."""
+    """Lamps that are rendered and have a power; that of the sun is an irradiance."""
     return [
         one
         for one in scene.objects
@@ -32,13 +32,13 @@ def lamps(scene):
 
 
 def layer_name(name):
-    """An object's name as photile gives it to a layer: of ASCII, letters, digits and - are kept."""
+    """The name of an object's layer in photile: of ASCII, letters, digits and - are kept."""
     return re.sub(r"[\x00-\x2c.-/:-@\[-`{-\x7f]", "_", name)
 
 
 @contextmanager
 def custom_properties(scene, efficacy):
-    """Lamps bear photile's custom properties meanwhile; those that they have already stay."""
+    """Lamps have photile's custom properties meanwhile; those that they have already stay."""
     added = []
 
     def add(lamp, name, value):
@@ -79,7 +79,7 @@ def export(scene, file, efficacy):
 
 
 def tints(scene):
-    """Colours of area lights, which custom properties cannot say: pairs of a layer and #RRGGBB."""
+    """Colours of area lights, which custom properties cannot express: pairs of a layer and #RRGGBB."""
     result = []
     for lamp in lamps(scene):
         red, green, blue = lamp.data.color

@@ -6,5 +6,5 @@ They are drawn from the JSON that ``-o results.json`` writes, by the templates b
 
 Debian's packages python3-jinja2 and python3-contourpy draw pages and plans, weasyprint prints them as
 PDF. The compiled module of ``import photile`` is not needed: ``photile measure -o report.html`` starts
-this folder as it lies there.
+this folder directly.
 """

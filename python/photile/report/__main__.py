@@ -1,4 +1,5 @@
-"""``python3 -m photile.report``, or ``python3 FOLDER`` where photile's compiled module is not installed."""
+"""``python3 -m photile.report``, or ``python3 FOLDER`` where photile's compiled module is not
+installed."""
 
 import importlib
 import importlib.util
@@ -7,7 +8,7 @@ import sys
 
 
 def package() -> str:
-    """The name that this folder has as a package; one of its own where it was started as a folder."""
+    """The name of this folder as a package; a separate name where it was started as a folder."""
     if __package__:
         return __package__
     folder = pathlib.Path(__file__).resolve().parent

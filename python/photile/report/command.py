@@ -1,4 +1,4 @@
-"""The command line: reads a record, makes what the names of the outputs end in, writes files whole."""
+"""The command line: reads a record, makes the kinds of files that the names of the outputs ask for."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _not_in_xml = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 
 class Failure(Exception):
-    """A line for the user, and the exit code."""
+    """A message for the user, and the exit code."""
 
     def __init__(self, code: int, text: str) -> None:
         super().__init__(text)
@@ -41,7 +41,7 @@ def _require(what: str, remedy: str, *modules: str) -> None:
 
 
 def _clean(value: Any) -> Any:
-    """Without characters that XML cannot hold."""
+    """The value without characters that XML cannot hold."""
     if isinstance(value, str):
         return _not_in_xml.sub("?", value)
     if isinstance(value, list):
@@ -60,7 +60,7 @@ def _read(file: str) -> Any:
 
 
 def write(file: pathlib.Path, content: bytes, make_folder: bool = False) -> None:
-    """Under its name when it is complete."""
+    """Writes a file, which gets its name when it is complete."""
     try:
         if make_folder:
             file.parent.mkdir(parents=True, exist_ok=True)
@@ -115,7 +115,7 @@ def _make_ugr_table(options: argparse.Namespace) -> None:
     for output in options.output:
         file = pathlib.Path(output)
         if file.suffix.lower() not in texts:
-            raise Failure(USAGE, "-o names a .csv, a .json or a .txt")
+            raise Failure(USAGE, "-o: name a .csv, .json or .txt file")
         write(file, texts[file.suffix.lower()].encode())
 
 
@@ -138,7 +138,7 @@ def _run(arguments: Sequence[str] | None) -> None:
         return _make_ugr_table(options)
     endings = {pathlib.Path(output).suffix.lower() for output in options.output}
     if not endings or not endings <= {".html", ".pdf", ".svg"}:
-        raise Failure(USAGE, "-o names a .html, a .pdf or a .svg")
+        raise Failure(USAGE, "-o: name an .html, .pdf or .svg file")
     _require("reports need", "; or write .csv or .json", "jinja2", "numpy", "contourpy",
              *(["weasyprint"] if ".pdf" in endings else []))
     from . import pages
@@ -157,7 +157,7 @@ def _run(arguments: Sequence[str] | None) -> None:
     except pages.BadInput as error:
         raise Failure(INPUT, str(error)) from None
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-        raise Failure(INPUT, f"{options.record}: no results as photile measure writes them: "
+        raise Failure(INPUT, f"{options.record}: these are not results as photile measure writes them: "
                              f"{type(error).__name__} {error}") from error
 
 

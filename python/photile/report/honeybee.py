@@ -26,8 +26,8 @@ def _info(grid: dict[str, Any], count: int) -> dict[str, Any]:
 
 
 def measured(record: dict[str, Any]) -> Files:
-    """``<grid>.res`` with the lux of a point on each line, ``grids_info.json``, and ``grid_summary.csv`` as
-    honeybee-radiance-postprocess writes it (uniformity in per cent)."""
+    """``<grid>.res`` with the lux of a point on each line, ``grids_info.json``, and
+    ``grid_summary.csv`` in the form of honeybee-radiance-postprocess (uniformity in per cent)."""
     infos = []
     summary = ["Sensor Grid,Sensor Grid ID,Mean,Minimum,Maximum,Uniformity Ratio\n"]
     for grid in record["grids"]:
@@ -46,7 +46,7 @@ def measured(record: dict[str, Any]) -> Files:
 
 
 def _number(lux: float) -> str:
-    """Four digits, or all before the point."""
+    """A number with four digits, or all digits before the point."""
     decimals = 4 if lux < 1 else 3 if lux < 10 else 2 if lux < 100 else 1 if lux < 1000 else 0
     return "0" if lux < 5e-5 else f"{lux:.{decimals}f}"
 
@@ -62,11 +62,12 @@ def _array(lux: NDArray[np.float32]) -> bytes:
 
 
 def of_year(record: dict[str, Any], values: pathlib.Path) -> Files:
-    """Of hours with the sun up: ``<grid>.ill`` with a line for each point, ``<grid>_direct.ill`` of the sun
-    alone, and both as arrays. Blinds are an aperture group with a folder for each of their states.
+    """Results of the hours with the sun up: ``<grid>.ill`` with a line for each point,
+    ``<grid>_direct.ill`` of the sun alone, and both as arrays. Blinds are an aperture group with a
+    folder for each of their states.
 
-    values   lux by point and hour, as floats: of each grid by the schedule and in each state, where there are
-             some; the sun's follow each
+    values   lux by point and hour, as floats: of each grid by the schedule, and in each state where there are
+             states; the sun's follow each
     """
     hours, up, with_states = record["hours"], record["up"], record["states"] > 0
     infos, states = [], {}
@@ -98,7 +99,7 @@ def of_year(record: dict[str, Any], values: pathlib.Path) -> Files:
 
 
 def files(record: dict[str, Any], folder: pathlib.Path) -> Files:
-    """By path in Honeybee's folder.
+    """The content of each file, by its path in Honeybee's folder.
 
     folder   of the record
     """

@@ -22,7 +22,7 @@ def _measured(entry: dict[str, Any], key: str, digits: int) -> str:
 
 
 def _rating(observer: dict[str, Any]) -> float | None:
-    """None where no lamp is seen."""
+    """The rating; None where no lamp is visible."""
     return None if observer["ugr"] is None else float(observer["ugr"]["value"])
 
 
@@ -61,7 +61,8 @@ def _daylight_table(grids: list[dict[str, Any]]) -> Table:
 
 
 class Map:
-    """A figure of points on a plane, by the cells in which they lie; of several in one the highest."""
+    """A figure at points on a plane, by the cells in which they lie; the highest of several in one
+    cell."""
 
     def __init__(self, owner: dict[str, Any], grid: str, figure: str, label: str, scale: float,
                  steps: int, points: list[tuple[list[float], float | None]]) -> None:
@@ -71,7 +72,7 @@ class Map:
         area = np.linalg.norm(u) * np.linalg.norm(v)
         if not (0 < area < math.inf and min(counts) > 0 and counts[0] * counts[1] <= most_cells
                 and all(side.shape == (3,) for side in (origin, u, v))):
-            raise ValueError("no plane")
+            raise ValueError("the plane has no area or too many cells")
         cells: dict[int, float] = {}
         for position, value in points:
             column, row = (math.floor(np.dot(np.array(position, float) - origin, side)
@@ -110,10 +111,10 @@ class Included:
     def __init__(self) -> None:
         self.tables: list[Table] = []
         self.maps: list[Map] = []
-        self.kilowatt_hours = 0.0  # a year of the lamps over the first grid; 0 = not said
+        self.kilowatt_hours = 0.0  # a year of the lamps over the first grid; 0 = unknown
 
     def add(self, content: Any) -> None:
-        """Raises what indexing and arithmetic do where it is no result."""
+        """Raises the exceptions of indexing and arithmetic for what is not a result."""
         if isinstance(content, list):
             self.tables.append(_daylight_table(content))
             self.maps += [one for grid in content for one in _daylight_maps(grid)]

@@ -1,4 +1,4 @@
-"""What the templates are given: a record's figures as texts, tables and drawings."""
+"""The input of the templates: a record's figures as texts, tables and drawings."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ _own = pathlib.Path(__file__).resolve().parent / "templates"
 
 
 class BadInput(Exception):
-    """A line that names the file, what is wrong with it, and the remedy."""
+    """An error: one line that names the file, what is wrong with it, and the remedy."""
 
 
 class UnknownLanguage(Exception):
-    """A line that names those that there are."""
+    """An error: one line that names the available languages."""
 
 
 def _css(text: str) -> str:
-    """Within a string of a style sheet within a page."""
+    """Text escaped for a string in a style sheet in a page."""
     return "".join(c if c >= " " and c not in "\"\\<>&" else f"\\{ord(c):x} " for c in text)
 
 
 class Report:
     """A record of ``photile measure`` or ``photile daylight``, and the templates that draw it.
 
-    A folder's templates take the place of those of the same name, and extend them under the names
+    A folder's templates replace those of the same name, and extend them under the names
     ``photile/report.html`` and so on. They cannot do more than draw: they run in jinja2's sandbox.
     """
 
@@ -49,7 +49,7 @@ class Report:
         folders = [pathlib.Path(template)] if template else []
         for folder in folders:
             if not folder.is_dir():
-                raise BadInput(f"{folder}: no folder of templates; name one")
+                raise BadInput(f"{folder}: this is not a folder of templates; name one")
         self._folders = [*folders, _own]
         try:
             self._words = texts.Words(self._about["language"], folders)
@@ -69,11 +69,11 @@ class Report:
             try:
                 self._included.add(each["content"])
             except (KeyError, IndexError, TypeError, ValueError, AttributeError):
-                raise BadInput(f"{each['file']}: is no result of a year or of observers; give what "
+                raise BadInput(f"{each['file']}: this is not a result of a year or of observers; give what "
                                "photile glare or daylight has written by -o FILE.json") from None
 
     def check(self) -> None:
-        """Whether the templates can be read."""
+        """Reads the templates; raises BadInput where that fails."""
         for name in ("report.html", "style.css", "plan.svg", "curve.svg"):
             self._template(name)
 
@@ -91,13 +91,13 @@ class Report:
             raise BadInput(f"template {name}: {error}") from None
 
     def _embedded(self, name: str) -> str:
-        """A picture of the templates' folder as a page holds it."""
+        """A picture in the folder of templates, as a data URI for a page."""
         for folder in self._folders:
             file = (folder / name).resolve()
             if file.is_relative_to(folder.resolve()) and file.is_file():
                 kind = {".svg": "svg+xml", ".jpg": "jpeg"}.get(file.suffix.lower(), file.suffix[1:])
                 return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
-        raise BadInput(f"{name}: no file of the templates' folder")
+        raise BadInput(f"{name}: the folder of templates has no such file")
 
     def _plan(self, grid: dict[str, Any], values: list[float | None], title: str,
               colours: dict[str, Any], small: bool) -> Any:
@@ -109,7 +109,7 @@ class Report:
         if not light:
             return self._plan(grid, [sensor["lux"] for sensor in grid["sensors"]],
                               self._words(grid["name"]), colours, False)
-        # A scale of its own: a weak lamp would show nothing on the scale of all.
+        # A separate scale: a weak lamp would show nothing on the scale of all.
         return self._plan(grid, [sensor["lights"][light]["lux"] for sensor in grid["sensors"]], light,
                           {**colours, "scale": 0}, True)
 
@@ -120,7 +120,7 @@ class Report:
         return self._plan(one.values, one.numbers, title, {**one.colours, "palette": palette}, small)
 
     def plans(self) -> list[str]:
-        """SVG of each plane; of a year those of its figures."""
+        """SVG of each plane, or for a year of each figure on it."""
         grids = self._record.get("grids", [])
         if grids:
             return [str(self._plan_of_grid(grid)) for grid in grids if "plane" in grid]
@@ -168,7 +168,7 @@ class Report:
         return list(grids.items())
 
     def _judgements(self) -> list[dict[str, Any]]:
-        """What is required, and beside it what was found."""
+        """Required and measured values side by side."""
         target = self._record.get("target")
         if not target:
             return []
@@ -189,7 +189,7 @@ class Report:
         return rows
 
     def _energy(self) -> Pairs:
-        """Of luminaires whose files all state their power; LENI of a year that is included."""
+        """The power of luminaires if all of their files state it, and LENI of an included year."""
         record, rows = self._record, []
         watts = [part["watts"] for part in record.get("photometry", [])]
         area = (record.get("room") or {}).get("area", 0)
@@ -277,14 +277,14 @@ class Report:
 
 
 def printed(page: str) -> bytes:
-    """The page as PDF. What it shows it holds itself: nothing is fetched."""
+    """The page as PDF. It contains all that it shows: nothing is fetched."""
     # Letters that it packs bear a time otherwise, and the same page would be another file.
     os.environ.setdefault("SOURCE_DATE_EPOCH", "0")
     weasyprint: Any = importlib.import_module("weasyprint")
 
     def fetch(url: str, *arguments: Any, **options: Any) -> Any:
         if not url.startswith("data:"):
-            raise ValueError(f"{url[:80]}: pages hold their pictures; use embedded(NAME)")
+            raise ValueError(f"{url[:80]}: pages have to contain their pictures; use embedded(NAME)")
         return weasyprint.default_url_fetcher(url, *arguments, **options)
 
     document: bytes = weasyprint.HTML(string=page, url_fetcher=fetch).write_pdf()

@@ -1,6 +1,6 @@
 """Geometry of drawings: planes of values in false colour at a scale, and polar curves of luminaires.
 
-Templates draw it (``plan.svg``, ``curve.svg``): here are positions in pixels, from the top left corner.
+Templates draw them (``plan.svg``, ``curve.svg``); positions here are in pixels from the top left corner.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ band_begin, band_end = 0.4, 0.6
 
 
 def automatic_top(values: Floats) -> float:
-    """The largest of the values but the uppermost 2%; 0 where none is positive."""
+    """The largest of the values without the uppermost 2%; 0 where none is positive."""
     known = np.sort(values[np.isfinite(values) & (values > 0)])
     return float(known[len(known) - 1 - int(0.02 * len(known))]) if len(known) else 0.0
 
@@ -45,7 +45,7 @@ def rounded_top(top: float, steps: int) -> float:
 
 
 def illuminance_steps(low: float, high: float) -> list[float]:
-    """Between two illuminances those of the scale of EN 12464-1: 5, 7.5, 10, 15, 20, 30, 50 ..."""
+    """The steps of the scale of EN 12464-1 between two illuminances: 5, 7.5, 10, 15, 20, 30, 50 ..."""
     if not (high > 0 and math.isfinite(high)):
         return []
     least = max(low, high / 1000)
@@ -57,7 +57,7 @@ def illuminance_steps(low: float, high: float) -> list[float]:
 
 
 class Scale:
-    """Colours of values, as the options of false colour have them. `scale` 0: up to `automatic`."""
+    """Colours of values, by the options of false colour. `scale` 0: up to `automatic`."""
 
     def __init__(self, colours: dict[str, Any], automatic: float) -> None:
         self.top = colours["scale"] or automatic or 1.0
@@ -70,7 +70,7 @@ class Scale:
         return float(self.top * (10 ** ((share - 1) * self.decades) if self.decades else share))
 
     def levels(self) -> list[float]:
-        """Isolines: the middles of the legend's steps, as falsecolor has them."""
+        """The levels of isolines: the middles of the legend's steps, as in falsecolor."""
         return [self.value_at((step + 0.5) / self.steps) for step in range(self.steps)]
 
     def bands(self) -> list[tuple[float, float]]:
@@ -91,8 +91,8 @@ def refined(values: Floats) -> tuple[Floats, int]:
     """Values between the middles of cells by bicubic interpolation (Catmull and Rom, 1974), so that
     isolines are smooth; NaN beside a cell without a value. Also the steps from one middle to the next.
 
-    It keeps given values and follows slopes exactly: beyond the border and beside cells without a
-    value they go on linearly.
+    It keeps given values and follows slopes exactly: beyond the border and beside cells without a value
+    they continue linearly.
     """
     per_cell = min(max(2000 // max(values.shape), 1), 8)
     for _ in range(2):  # along the rows, then along the columns
@@ -136,7 +136,7 @@ def _path(points: Floats, close: bool = False) -> str:
 class Plan:
     """A plane seen against the direction that it faces, `u` to the right.
 
-    A small one is one of several: without the values of isolines and cells, and at no scale.
+    A small plan is one of several: without the values of isolines and cells, and not to scale.
     """
 
     def __init__(self, grid: dict[str, Any], values: list[float | None], title: str,
@@ -190,7 +190,7 @@ class Plan:
         self.legend = self._legend()
 
     def _at(self, metres: Any) -> Floats:
-        """Pixels of places, metres along u and v from the plane's corner."""
+        """Pixels of positions in metres along u and v from the plane's corner."""
         places = (np.reshape(np.asarray(metres, float), (-1, 2)) + self._reach) * self._per_metre
         return np.column_stack([self._left + places[:, 0],
                                 title_height + self._inner[1] - places[:, 1]])
@@ -212,7 +212,7 @@ class Plan:
             line_type=contourpy.LineType.Separate, fill_type=contourpy.FillType.OuterOffset)
 
     def _bands(self) -> list[tuple[str, str]]:
-        """Colours and paths; their levels are numbered as isolines are."""
+        """Colours and paths, with the levels numbered like isolines."""
         if min(self._columns, self._rows) < 2:
             return []
         found = []
@@ -228,7 +228,7 @@ class Plan:
         return found
 
     def _isolines(self) -> list[tuple[str, str]]:
-        """Colours and paths: at the steps of the standard, or as falsecolor has them."""
+        """Colours and paths, at the steps of the standard or as in falsecolor."""
         known = self._values[~np.isnan(self._values)]
         if min(self._columns, self._rows) < 2 or not len(known):
             return []
@@ -244,8 +244,8 @@ class Plan:
         return found
 
     def _number(self, places: Floats, level: float) -> None:
-        """Writes a level at that of the places which is farthest from other numbers, or far enough
-        and nearest to the middle one; nowhere where there is no room: the legend has it."""
+        """Writes a level at the position that is farthest from other numbers, or far enough and nearest
+        to the middle one; not at all where there is no room, since the legend has it."""
         if self.small:
             return
         far_enough, too_near = 30.0, 12.0
@@ -270,7 +270,7 @@ class Plan:
             (*self._at(lamp["position"])[0], int(lamp["number"])) for lamp in plan.get("lamps", [])]
 
     def _cross(self, grid: dict[str, Any], plane: dict[str, Any]) -> None:
-        """Points that are not measured, or doubtful."""
+        """Crosses at points that are not measured, or doubtful."""
         origin, u, v = (np.array(plane[key], float) for key in ("origin", "u", "v"))
         blank = [[np.dot(np.subtract(point["position"], origin), side) / np.linalg.norm(side)
                   for side in (u, v)] for point in grid.get("blank", [])]
@@ -283,7 +283,7 @@ class Plan:
                                for x, y in places)
 
     def _coordinates(self, plane: dict[str, Any]) -> list[tuple[float, float, str, str]]:
-        """Of two corners, in the scene's world."""
+        """The coordinates of two corners, in the scene's world."""
         low, high = self._at([[0, 0], self._size])
         origin = np.array(plane["origin"], float)
         return [(x, y, anchor, "({:.2f}, {:.2f}, {:.2f}) m".format(*world)) for x, y, anchor, world in (
@@ -309,7 +309,7 @@ class Plan:
         return found
 
     def _ruler(self) -> tuple[float, float, float, str]:
-        """1, 2 or 5 times a power of ten metres, a quarter of the plan's width at most."""
+        """A ruler of 1, 2 or 5 times a power of ten metres, at most a quarter of the plan's width."""
         most = self._inner[0] / self._per_metre / 4
         power = 10.0 ** math.floor(math.log10(most))
         metres = next(step * power for step in (5, 2, 1) if step * power <= most or step == 1)

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from typing import Any
 
 _words = pathlib.Path(__file__).resolve().parent / "words"
-least_glare = 10.0  # below it a rating means nothing any more (CIE 117)
+least_glare = 10.0  # ratings below it have no meaning (CIE 117)
 
 
 def number(value: float | None, digits: int) -> str:
-    """With so many digits that count; large ones are whole: "12500", not "1.25e+04"."""
+    """A number with this many significant digits; large ones are whole: "12500", not "1.25e+04"."""
     if value is None:
         return "nan"
     if 10**digits - 0.5 <= abs(value) < 1e9:
@@ -47,15 +47,15 @@ def glare(rating: float) -> str:
 
 
 def rounded_up(value: float, steps: Sequence[float]) -> float:
-    """The least of the steps, ascending from 1, times a power of ten that is not below the value."""
+    """The least product, not below the value, of a step (ascending from 1) and a power of ten."""
     decade = 10.0 ** math.floor(math.log10(value))
     return next((step * decade for step in steps if step * decade >= value), 10 * decade)
 
 
 class Words:
-    """English texts in a language; one that its file does not have stays English.
+    """English texts in another language; a text that its file lacks stays English.
 
-    Raises KeyError with the languages that there are.
+    Raises KeyError with the available languages.
     """
 
     def __init__(self, language: str, folders: Sequence[pathlib.Path]) -> None:

@@ -1,10 +1,11 @@
 """UGR tables of CIE 117:1995 and CIE 190:2010: a luminaire in standard rooms, by the tabular method.
 
-Luminaires hang 2 m above the eyes in a regular array, the first half a spacing from the walls; the observer
-is at the middle of a wall and looks straight on. Luminances are intensity over projected opening; those
-farther aside than T/R = 3, or lower than 85 degrees from straight down, are left out. The background is the
-mean indirect illuminance of the walls between the two planes over pi. What falls directly on the floor is
-counted luminaire by luminaire, where the report has zonal multipliers for a spacing of 1 H.
+Luminaires hang 2 m above the eyes in a regular array, the first half a spacing from the walls; the
+observer is at the middle of a wall and looks straight on. Luminances are intensity over projected
+opening; those farther aside than T/R = 3, or lower than 85 degrees from straight down, are left out.
+The background is the mean indirect illuminance of the walls between the two planes over pi. What falls
+directly on the floor is counted luminaire by luminaire, where the report has zonal multipliers for a
+spacing of 1 H.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ rooms = [(across, along) for across, all_along in
          ((2, (2, 3, 4, 6, 8, 12)), (4, (2, 3, 4, 6, 8, 12)), (8, (4, 6, 8, 12)), (12, (4, 6, 8)))
          for along in all_along]
 reflectances = [(0.7, 0.5, 0.2), (0.7, 0.3, 0.2), (0.5, 0.5, 0.2), (0.5, 0.3, 0.2), (0.3, 0.3, 0.2)]
-views = ("crosswise", "endwise")  # the luminaires' length at a right angle to the line of sight, or along it
+views = ("crosswise", "endwise")  # the luminaires' length is at a right angle to the line of sight, or along it
 height = 2.0  # metres
 farthest_aside = 3.0
 lowest_cosine = math.cos(math.radians(85))
@@ -47,7 +48,7 @@ class Luminaire:
         azimuth = np.arctan2(quarter, zero)
         first, last = self._azimuth[0], self._azimuth[-1]
         azimuth -= 2 * math.pi * np.floor((azimuth - first) / (2 * math.pi))
-        if first + 2 * math.pi - last < 1e-9:  # a full circle, but for rounding
+        if first + 2 * math.pi - last < 1e-9:  # a full circle, up to rounding
             azimuth = np.minimum(azimuth, last)
         beyond = (azimuth > last) | (polar < self._polar[0]) | (polar > self._polar[-1])
 
@@ -57,11 +58,12 @@ class Luminaire:
 
         (i, u), (j, v) = place(self._azimuth, azimuth), place(self._polar, polar)
         candela = sum(weight * self._candela[i + a, j + b] for a, b, weight in
-                      ((0, 0, (1 - u) * (1 - v)), (0, 1, (1 - u) * v), (1, 0, u * (1 - v)), (1, 1, u * v)))
+                      ((0, 0, (1 - u) * (1 - v)), (0, 1, (1 - u) * v), (1, 0, u * (1 - v)), (1, 1, u *
+                      v)))
         return np.where(beyond, 0.0, candela)
 
     def projected_area(self, directions: Floats) -> Floats:
-        """m2 of the opening, as seen from there."""
+        """The projected area of the opening from there, m2."""
         wide, deep, heights = self.opening["x"], self.opening["y"], np.array(self.opening["heights"])
         x, y, z = np.abs(directions.T)
         across_x = deep * heights[np.where(directions[:, 0] < 0, 2, 0)] * x
@@ -80,22 +82,23 @@ class Luminaire:
 
 
 def _in_lamp(luminaire: Luminaire, endwise: bool, directions: Floats) -> Floats:
-    """Of directions to the right, ahead and up. The length is the longer side of the opening; of a square one
-    it lies along y, as EULUMDAT has it."""
+    """Directions to the right, ahead and up, in the axes of the lamp. The length is the longer side of
+    the opening; of
+        a square one it lies along y, as in EULUMDAT."""
     x_is_ahead = endwise == (luminaire.opening["x"] > luminaire.opening["y"])
     return directions[:, [1, 0, 2]] if x_is_ahead else directions
 
 
 def _places(first: float, last: float, spacing: float) -> Floats:
-    """Middles of equal parts of about a spacing."""
+    """The middles of equal parts of about one spacing."""
     count = max(1, math.floor((last - first) / spacing + 0.5))
     return first + (last - first) * (np.arange(count) + 0.5) / count
 
 
 def transfer_factors(room: tuple[float, float], of: tuple[float, float, float]) -> tuple[float, ...]:
-    """Indirect flux that reaches the walls for each lumen that falls directly on the floor (the plane of the
-    eyes), the walls and the ceiling (the plane of the luminaires): F_T,FW, F_T,WW-1 and F_T,CW of CIE 190, by
-    radiosity of three surfaces."""
+    """Indirect flux that reaches the walls for each lumen that falls directly on the floor (the plane
+    of the eyes), the walls and the ceiling (the plane of the luminaires): F_T,FW, F_T,WW-1 and F_T,CW
+    of CIE 190, by radiosity of three surfaces."""
     a, b = room
     x, y = 1 + a * a, 1 + b * b
     # The form factor between two squares of a box of height 1 (Hottel; Howell C-11).
@@ -110,7 +113,7 @@ def transfer_factors(room: tuple[float, float], of: tuple[float, float, float]) 
 
 
 class _DownwardLight:
-    """Where the light below a luminaire goes."""
+    """The distribution of the light below a luminaire."""
 
     def __init__(self, luminaire: Luminaire, endwise: bool) -> None:
         polar, around = 90, 72
@@ -124,8 +127,8 @@ class _DownwardLight:
         self.whole = min(1.0, float(self._share.sum()))
 
     def on_floor(self, half_width: float, depth: float) -> float:
-        """The share that falls straight on the plane of the eyes, of a room full of luminaires: the mean of a
-        few places, for it is smooth."""
+        """The fraction that falls directly on the plane of the eyes, in a room full of luminaires: the
+        mean of a few positions, because it is smooth."""
         sums = []
         for x in _places(0, half_width, height / 2):
             aside = np.abs(x + self._aside) <= half_width
@@ -155,7 +158,7 @@ def _contrast(luminaire: Luminaire, endwise: bool, xs: Floats, ys: Floats) -> fl
 
 
 def table(luminaire: Luminaire, spacing: float) -> dict[str, list[list[float | None]]]:
-    """For each view and room the ratings of all reflectances; None where nothing is seen.
+    """For each view and room the ratings of all reflectances; None where nothing is visible.
 
     spacing   of the luminaires, over their height above the eyes
     """
@@ -212,7 +215,7 @@ def _json(rated: dict[str, list[list[float | None]]]) -> str:
 
 
 def written(record: dict[str, Any]) -> dict[str, str]:
-    """The table by the ending of a file's name; ``.txt`` is for people."""
+    """The table in the format of a file's ending; ``.txt`` is for reading."""
     luminaire = Luminaire(record)
     rated = table(luminaire, record["spacing"])
     uncorrected = record["per_thousand_lumens"]
