@@ -29,7 +29,7 @@ class Glare {
                                    id: 'glare-limit'});
     this.limit.addEventListener('change', () => this.find());
     this.legend = element('ul', {className: 'legend'});
-    this.section = element('div', {hidden: true}, element('div', {className: 'field'},
+    this.section = element('div', {className: 'form', hidden: true}, element('div', {className: 'entry'},
         element('label', {textContent: 'Limit', htmlFor: this.limit.id,
                           title: 'up to 100: times the mean luminance of the picture; above: cd/m²'}), this.limit),
         this.legend);

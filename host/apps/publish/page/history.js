@@ -10,6 +10,7 @@ class LightHistory {
     this.before = [];  // {what, state}, the newest last
     this.after = [];
     this.holds = false;
+    this.beyond = null;  // is asked to undo or redo where there is no step of lights
     this.settle();
     window.addEventListener('keydown', (event) => this.press(event));
     for (const type of ['pointerup', 'pointercancel', 'keyup']) {
@@ -54,7 +55,10 @@ class LightHistory {
   redo() { this.go(this.after, this.before); }
 
   go(from, to) {
-    if (from.length === 0) return;
+    if (from.length === 0) {
+      this.beyond?.(from === this.before ? 'undo' : 'redo');
+      return;
+    }
     const {what, state} = from.pop();
     to.push({what, state: this.state});
     Object.assign(this.lights.sky, state.sky);

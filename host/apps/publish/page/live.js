@@ -274,6 +274,7 @@ class Live {
                                       title: 'Save the exact picture with a layer for each light (Ctrl+S)'});
     button.addEventListener('click', save);
     find('#picture').after(button);
+    find('#about dl').insertAdjacentHTML('beforeend', '<dt><kbd>Ctrl+S</kbd></dt><dd>save the exact picture</dd>');
     window.addEventListener('keydown', (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.key.toUpperCase() !== 'S') return;
       event.preventDefault();

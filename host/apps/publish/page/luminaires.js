@@ -16,6 +16,9 @@ class Luminaires {
     this.page.canvas.after(this.outlines);
     this.makeSection();
     this.listen();
+    this.page.history.beyond = (what) => this.edit({[what]: true});
+    find('#about dl').insertAdjacentHTML('beforeend', `<dt><kbd>B</kbd> <kbd>R</kbd> <kbd>Ctrl+D</kbd> <kbd>Delete</kbd></dt>
+        <dd>place, turn, duplicate, remove luminaires</dd>`);
   }
 
   makeSection() {
@@ -35,7 +38,7 @@ class Luminaires {
         return input;
       });
       this.fields[name] = inputs;
-      return element('div', {className: 'field'}, element('span', {textContent: label}), ...inputs);
+      return element('div', {className: 'entry'}, element('span', {textContent: label}), ...inputs);
     };
     this.fields = {};
     this.status = element('output');
@@ -50,13 +53,13 @@ class Luminaires {
       return {array: {count, spacing}};
     };
     const turn = (degrees) => this.edit({rotate: degrees});
-    this.selected = element('div', {className: 'fields'},
-        field('position', 'Position, m', 3, {step: 0.05}, (position) => ({position})),
-        field('rotation', 'Rotation, °', 1, {step: 5, min: -180, max: 180},
+    this.selected = element('div', {className: 'form'},
+        field('position', 'Position, m', 3, {}, (position) => ({position})),
+        field('rotation', 'Rotation, °', 1, {min: -180, max: 180},
               ([degrees]) => ({rotate: degrees - this.entry.rotation})),
-        field('lumens', 'Lumens', 1, {min: 0, step: 10}, ([lumens]) => ({lumens})),
+        field('lumens', 'Lumens', 1, {min: 0}, ([lumens]) => ({lumens})),
         field('count', 'Count', 2, {min: 1, max: 100, step: 1}, array),
-        field('spacing', 'Spacing, m', 2, {min: 0, max: 100, step: 0.05}, array),
+        field('spacing', 'Spacing, m', 2, {min: 0, max: 100}, array),
         element('div', {className: 'buttons'},
                 button('Turn', 'Turn by 15 degrees; with Shift back (R)', (event) => turn(event.shiftKey ? -15 : 15)),
                 button('Duplicate', 'Another one beside it (Ctrl+D)', () => this.edit({duplicate: true})),

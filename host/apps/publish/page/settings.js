@@ -3,7 +3,7 @@
 class Settings {
   constructor(live) {
     this.live = live;
-    this.fields = element('div', {className: 'fields'});
+    this.fields = element('div', {className: 'form'});
     const section = element('section', {id: 'settings'},
         element('details', {}, element('summary', {textContent: 'Photon maps'}), this.fields));
     section.setAttribute('aria-label', 'Photon maps');
@@ -20,7 +20,7 @@ class Settings {
       input.addEventListener('change', () => {
         if (input.value !== '') this.live.post('settings', {[name]: words ? input.value : input.valueAsNumber});
       });
-      return element('div', {className: 'field'}, element('label', {textContent: name.replaceAll('_', ' '),
+      return element('div', {className: 'entry'}, element('label', {textContent: name.replaceAll('_', ' '),
                                                                     title: help, htmlFor: input.id}), input);
     }));
   }
