@@ -1,12 +1,12 @@
 // The radiance estimate (Jensen 2001, equation 7.6; Graglia et al. 2012): per hit and light, the
-// flux of the nearest photons over the area they fell on. shared/symbols.clh has what it is
-// specialised by.
+// flux of the nearest photons over the area they fell on. shared/symbols.clh has the symbols that
+// specialise it.
 
 #include "estimate/estimate_hit.clh"
 
-// One worker per HITS_PER_ITEM hits, each of which expects the radius of the one
-// before. Photon records lie in planes of query.record_stride; what no surface of the scene needs
-// is empty.
+// One worker per HITS_PER_ITEM hits, each of which expects the radius of the one before. Photon
+// records lie in planes of query.record_stride; arrays that no surface of the scene needs are
+// empty.
 //   hit_surfaces                   with CLIPPED or NORMALS
 //   hit_lobes, record_incoming      with GLOSSY
 //   grids                          per map of the page
@@ -17,8 +17,8 @@
 //   slot_light, slots_taken        with many lights
 // Before: the estimates are zero.
 // After: those of hits on maps with photons are written. irradiance[(hit * LIGHT_COUNT + light) * 3
-// ...] in flux per square metre; radiance likewise. With many lights the first slots_taken[hit] of
-// LIGHT_SLOTS slots in place of lights.
+// ...] in flux per square metre; radiance likewise. With many lights, the first slots_taken[hit] of
+// LIGHT_SLOTS slots take the place of lights.
 __kernel WORKER_GROUP void estimate_by_selection(
     const PhotileQuery query, __global const PhotileHit* restrict hits,
     __global const uint* restrict order,

@@ -1,5 +1,5 @@
-// The kernels of the build as one program: what a runtime needs to find a compiled program in its
-// cache, or to begin to compile it, is paid per program (PoCL reads all of OpenCL's built-in
+// The kernels of the build as one program: the time that a runtime needs to find a compiled program
+// in its cache, or to begin to compile it, is paid per program (PoCL reads all of OpenCL's built-in
 // functions).
 
 #include "grid/copy_records.cl"

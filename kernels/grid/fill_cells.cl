@@ -1,8 +1,8 @@
 // Build, steps 3 and 5: count the photons of each cell, then scatter references to them.
 //
-// One array, cell_start, is at first the photons of each cell and in the end the starts of the
-// cells: what belongs to cell c is kept at c + 1. Scanned, that is where c starts; scattering moves
-// it to where c ends, which is where the next cell starts.
+// One array, cell_start, first holds the number of photons of each cell, and in the end the starts
+// of the cells: what belongs to cell c is kept at c + 1. Scanned, that is where c starts;
+// scattering moves it to where c ends, which is where the next cell starts.
 
 #include "grid/cell.clh"
 #include "grid/insertion.clh"

@@ -40,8 +40,8 @@ __kernel void size_grids(uint map_total, uint first_map,
     const float width_u = shape->width_u + 2.0f * radius;
     const float width_v = shape->width_v + 2.0f * radius;
     const float area = shape->area + shape->perimeter * radius + 3.14159265f * radius * radius;
-    // Infinite where the radius is near the root of what a float holds; a map of photons must not
-    // be without cells.
+    // Infinite where the radius is near the root of the largest float; a map with photons must have
+    // cells.
     const float cell_area =
         fmin(area * photons_per_cell / ((float)count * map_density_ratio[map]), FLT_MAX);
     const float cell_width = fmax(sqrt(cell_area / (float)PHOTILE_CELL_ASPECT),

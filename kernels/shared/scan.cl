@@ -1,7 +1,7 @@
 // Exclusive prefix sum of unsigned integers, in blocks: sum each block, scan the sums (by these
 // same kernels), scan each block from its sum. On CPUs a work-item does a block, without barriers
-// and local memory: barriers inside loops crawl there, and a scan is a hundredth of the build.
-// Elsewhere (IN_GROUPS) a group does, in local memory.
+// and local memory: barriers inside loops are very slow there, and a scan is a hundredth of the
+// build. Elsewhere (IN_GROUPS) a group does, in local memory.
 
 #include "photile/device/constants.h"
 #include "shared/symbols.clh"
@@ -21,7 +21,7 @@ static uint sum_of_part(__global const uint* values, uint begin, uint end) {
 }
 
 // Hillis and Steele, "Data parallel algorithms" (1986). After: sums[SCAN_GROUP - 1] is the sum of
-// all values; returned is that of the work-items before this one.
+// all values; the result is the sum of the work-items before this one.
 static uint scan_group(uint value, __local uint* sums) {
   const uint item = (uint)get_local_id(0);
   sums[item] = value;

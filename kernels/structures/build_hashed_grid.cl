@@ -1,7 +1,7 @@
 // The build of a hashed grid: photons are counted in buckets, the counts scanned, references
-// scattered to their buckets and brought into ascending order there (sort_cells), so that they do
-// not lie in the order in which work-items came. As in grid/fill_cells.cl, what belongs to bucket b
-// is kept at b + 1: scanned, that is where b starts, and scattering moves it to where b ends.
+// scattered to their buckets and brought into ascending order there (sort_cells), so that their
+// order does not depend on that of the work-items. As in grid/fill_cells.cl, what belongs to bucket
+// b is kept at b + 1: scanned, that is where b starts, and scattering moves it to where b ends.
 
 #include "grid/sort_cells.cl"
 #include "shared/scan.cl"

@@ -8,7 +8,7 @@ typedef struct {
   float low_x, low_y, low_z; /* of the photons' box */
   float high_x, high_y, high_z;
   float cell_side, inverse_cell_side; /* metres, and its inverse */
-  unsigned int mask;                  /* buckets are a power of two, this one more */
+  unsigned int mask;                  /* the number of buckets, a power of two, less one */
 } PhotileHashedGrid;
 
 #endif

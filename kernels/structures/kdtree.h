@@ -7,7 +7,7 @@
 /* No path from a root is longer: the traversal stack is this deep. */
 #define PHOTILE_TREE_DEPTH 48
 
-/* Nodes stand in depth-first order: the lower child of an inner node follows it. */
+/* Nodes are in depth-first order: the lower child of an inner node follows it. */
 typedef struct {
   float split;        /* inner node: coordinate of the plane */
   unsigned int axis;  /* 0, 1, 2, or PHOTILE_TREE_LEAF */

@@ -1,11 +1,11 @@
 // Nearest photons in a left-balanced kd-tree without pointers and without a stack: Wald, "A
 // Stack-Free Traversal Algorithm for Left-Balanced k-d Trees" (2022). Node i is record i, its
-// children are 2 i + 1 and 2 i + 2. Where a search came from says what it does next: from the
-// parent, it takes the node's photon and goes to the side of the hit; from that child to the other,
-// if that may hold a photon within the cut; from there back.
+// children are 2 i + 1 and 2 i + 2. The node that a search came from decides what it does next:
+// from the parent, it takes the node's photon and goes to the side of the hit; from that child to
+// the other, if that may hold a photon within the cut; from there back.
 //
-// Axes are those of the widest extent, as of all kd-trees here, and not in turn: photons lie on
-// surfaces, where an axis in three separates none.
+// Axes are those of the widest extent, as in all kd-trees here, and not cyclic: photons lie on
+// surfaces, where one axis of three separates none.
 
 #include "structures/search.clh"
 

@@ -1,6 +1,6 @@
 // A kd-tree in the plane of each map, with the selection of the grid: the leaves within reach are
-// the rows of a block (estimate/block.clh), and all else is the grid's. What it takes beside
-// kdtree.cl is due to the selection, and beside the grid to the structure.
+// the rows of a block (estimate/block.clh), and all else is the grid's. The difference of its time
+// from kdtree.cl is due to the selection, and that from the grid to the structure.
 #define BLOCKS_OF_LEAVES 1
 #define TREE_2D 1
 
@@ -34,7 +34,7 @@ static void begin_block(Block* block, __global const uint* nodes, uint root,
   block->ranges = ranges;
 }
 
-// Leaves that follow one another are a row; the last row takes what would be too many.
+// Consecutive leaves form a row; the last row takes those for which there is no other.
 static void add_row(Block* block, PhotileTreeNode leaf) {
   if (leaf.first == leaf.last) return;
   __global uint* const end = block->ranges + 2 * block->height;
@@ -92,7 +92,7 @@ static void block_within(float reach, float2 hit, __global const PhotileGrid* gr
   }
 }
 
-// Leaves stand out of the disc by half a side, of some 0.7 LEAF_SIZE photons each.
+// Leaves extend beyond the disc by half a side; they have some 0.7 LEAF_SIZE photons each.
 static float predicted_within(float reach, uint records, const Block* block,
                               __global const PhotileGrid* grid) {
   const float half_width =

@@ -1,5 +1,5 @@
-// The cells of the grid, with a list of the nearest in place of its selection: what it takes beside
-// the grid is due to the list, and beside a kd-tree to the structure.
+// The cells of the grid, with a list of the nearest in place of its selection: the difference of
+// its time from the grid is due to the list, and that from a kd-tree to the structure.
 #include "estimate/block.clh"
 #include "structures/search.clh"
 

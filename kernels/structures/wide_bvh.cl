@@ -1,6 +1,6 @@
 // Nearest photons in a bounding volume hierarchy of nodes with eight children and leaves of eight
-// photons, both looked at as one vector; the idea is that of Wald, Benthin and Boulos, "Getting rid
-// of packets" (2008). Nearest children first, with a stack.
+// photons, both tested as one vector; the idea is that of Wald, Benthin and Boulos, "Getting rid of
+// packets" (2008). Nearest children first, with a stack.
 
 #include "structures/search.clh"
 #include "structures/wide_bvh.h"
@@ -37,7 +37,7 @@ static void find_nearest(Search* search, const Structure* in, uint photons, Near
         const int bottom = depth;
         for (int i = 0; i < 8; ++i) {
           const Pending child = {node[48 + i], distances[i]};
-          // Boxes that are not there are infinitely far.
+          // Missing boxes are infinitely far.
           if (child.squared_distance > cut_of(list)) continue;
           int slot = depth++;  // the nearest on top
           for (; slot > bottom && stack[slot - 1].squared_distance < child.squared_distance;
