@@ -72,7 +72,7 @@ TEST_CASE("JSON that is nested a million deep is refused in a line") {
   const FileFolder folder;
   const std::string file =
       folder.write("deep.json", std::string(levels, '[') + "0" + std::string(levels, ']'));
-  CHECK_THROWS_WITH(view::Moods(file), Catch::Contains("deep.json: is nested more than"));
+  CHECK_THROWS_WITH(view::Moods(file), Catch::Contains("deep.json: the JSON is nested more than"));
   // Brackets in texts are none.
   const std::string text = "[{\"name\": \"\\\"" + std::string(levels, '[') + "\"}]";
   CHECK(loading::LuminaireList::parse(text, "texts").entries.size() == 1);
