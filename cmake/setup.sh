@@ -45,10 +45,7 @@ libmeshoptimizer-dev   | the same
 nlohmann-json3-dev     | JSON
 libfmt-dev             | text output
 libcli11-dev           | command line
-libglfw3-dev           | the window of photile view
-libimgui-dev           | its panels
-libgl-dev              | what draws them
-libcpp-httplib-dev     | the web server of photile serve
+libcpp-httplib-dev     | the web server of photile view
 robin-map-dev          | hash tables, for meshes of millions of triangles
 libxxhash-dev          | checksums of the program cache
 libopenmpi-dev         | several processes: any MPI-3 library
@@ -72,10 +69,6 @@ END
 )
 if ((tests)); then
   packages+=$'\n'$(cat <<'END'
-xvfb                   | tests: a screen without a screen
-xauth                  | the same
-xdotool                | tests: keys and mouse for the window
-libgl1-mesa-dri        | tests: OpenGL in software
 oclgrind               | tests: checks every memory access of the kernels
 python3-pil            | tests: another reader and writer of pictures
 openimageio-tools      | tests: reads the pictures as other tools do

@@ -90,7 +90,7 @@ STEPS = (
     Step("`photile relight day.exr --light sun=off --light sky=off --light ground=off` shows the room after "
          "dark. A picture of its own has less noise, for all its rays look for lamps. It has a layer for each row of them.",
          f"photile render office.gltf {LAMPS} --size 960x640 -o office.exr"),
-    Step("Moods are kept in the window, or written by hand beside the scene; a power of 0 is off:",
+    Step("Moods are kept on the live page, or written by hand beside the scene; a power of 0 is off:",
          files={"office.moods.json": MOODS}),
     Step("", "photile relight office.exr --sheet moods.png",
          {"moods.png": "Both moods with one exposure and one white"}),

@@ -4,15 +4,14 @@
 Usage: page_film.py PAGE.html FILM.webp [STILL.png]
 """
 
-import io
 import pathlib
 import sys
 import time
 
 from PIL import Image
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tools import live_page
 
 FILM = (640, 400)
 SHOWN = (1280, 800)  # CSS pixels: the film is half as large
@@ -29,17 +28,12 @@ page.frame(performance.now());
 
 
 def main():
-    options = Options()
-    for argument in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"):
-        options.add_argument(argument)
-    driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-        "width": SHOWN[0], "height": SHOWN[1], "deviceScaleFactor": 1, "mobile": False})
+    driver = live_page.open_browser(*SHOWN)
     frames = []
 
     def shoot():
         time.sleep(0.1)
-        return Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("RGB")
+        return Image.fromarray(live_page.screenshot(driver))
 
     try:
         driver.get(pathlib.Path(sys.argv[1]).resolve().as_uri())

@@ -209,8 +209,6 @@ inline constexpr double view_first_spacing = 0.5;
 inline constexpr int clicked_rays = 1'024;  ///< of each repeat at a clicked point
 inline constexpr std::size_t clicked_repeats = 64;
 inline constexpr int view_sky_patches = 145;   ///< Tregenza's, of a sky that hours move
-inline constexpr int view_day = 80;            ///< of the year: the 21st of March
-inline constexpr double view_hour = 12;        ///< of that day, standard time
 inline constexpr double work_light = 1'000;    ///< lm at the eye, of a room without any light yet
 inline constexpr double luminaire_side = 0.6;  ///< metres, of an opening that no file states
 

@@ -469,6 +469,26 @@ def check_orbit(browser):
     assert browser.viewer()["angle"] == 1  # that is the browser's zoom
 
 
+def check_slow_frames(browser):
+    """Frames that take long while something moves are followed by ones of fewer pixels; at rest all are drawn."""
+    widths = browser.run("""
+const widths = [];
+for (let i = 0; i < 3; ++i) {
+  page.fitFrames(true, 200);
+  page.renderer.draw(page.walker);
+  widths.push(page.canvas.width);
+}
+page.wake();
+return widths;""")
+    assert widths == [224, 157, 110], widths
+    for _ in range(100):
+        if browser.run("return page.canvas.width") == SIZE[0]:
+            break
+        time.sleep(0.1)
+    assert browser.run("return page.canvas.width") == SIZE[0]
+    browser.rest()
+
+
 def check_mouse(browser):
     browser.run(STAND, MIDDLE, NORTH)
     browser.mouse("Pressed", 150, 100)
@@ -788,7 +808,8 @@ def test_controls(browser, folder):
     scene, made = obj_room(folder), ["--quality", "draft", "--photons", "50k", "--texel", "0.2", "-q"]
     photile("publish", scene, "-o", page, *made)
     browser.open(page)
-    for check in (check_keyboard, check_mouse, check_touch, check_gamepad, check_presets, check_lamps, check_undo):
+    for check in (check_keyboard, check_slow_frames, check_mouse, check_touch, check_gamepad, check_presets, check_lamps,
+                  check_undo):
         check(browser)
     check_pictures(browser, folder)
     check_link(browser, page)

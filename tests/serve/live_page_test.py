@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The page of `photile serve` in Chromium, beside `photile render` and `photile measure`.
+"""The page of `photile view` in Chromium, beside `photile render` and `photile measure`.
 
 Usage: live_page_test.py page PHOTILE SOURCE_FOLDER
 """

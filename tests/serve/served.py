@@ -1,4 +1,4 @@
-"""A running `photile serve` for tests: its address, requests as nobody's browser would send them, and its end."""
+"""A running `photile view` for tests: its address, requests as nobody's browser would send them, and its end."""
 
 import json
 import re
@@ -23,7 +23,7 @@ class Served:
     """Ends with the block that it is opened for."""
 
     def __init__(self, photile, scene, *options):
-        self.process = subprocess.Popen([photile, "serve", str(scene), "--no-browser", *map(str, options)],
+        self.process = subprocess.Popen([photile, "view", str(scene), "--no-browser", *map(str, options)],
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.said = []
         self.url = None

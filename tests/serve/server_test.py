@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `photile serve` lets in, and when it ends.
+"""What `photile view` lets in, and when it ends.
 
 Usage: server_test.py attacks|ends|luminaires|maps|year PHOTILE SOURCE_FOLDER
 """

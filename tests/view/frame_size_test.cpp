@@ -17,7 +17,7 @@ TEST_CASE("frames shrink in both directions to what their time allows") {
   CHECK(size.fit(640, 480) == std::pair(320, 240));
 }
 
-TEST_CASE("frames are never larger than the window, nor smaller than an eighth of it") {
+TEST_CASE("frames are never larger than the page, nor smaller than an eighth of it") {
   FrameSize fast(30), slow(30);
   fast.record(640 * 480, 1e-4);
   slow.record(640 * 480, 1e4);

@@ -1,4 +1,4 @@
-// Edits of luminaires without a window: what they do to the file, and what they leave alone.
+// Edits of luminaires: what they do to the file, and what they leave alone.
 #include "view/luminaire_editor.hpp"
 
 #include <catch2/catch.hpp>
@@ -11,8 +11,7 @@
 #include "photile/errors.hpp"
 #include "source_folder.hpp"
 #include "temporary_folder.hpp"
-#include "view/luminaire_session.hpp"
-#include "view/settings_history.hpp"
+#include "view/scene_loader.hpp"
 
 namespace photile::test {
 namespace {
@@ -190,54 +189,6 @@ TEST_CASE("copies stand beside the first under names of their own, and are remov
   REQUIRE(editor.list().entries.size() == 3);
   CHECK(editor.placed().size() == 3);
   CHECK(editor.placed()[2].name == "panels_3");
-}
-
-TEST_CASE("lamps and luminaires have one history") {
-  const Room room;
-  const auto sourced = room.load(loading::read_own_luminaires(room.list).text());
-  LightBoard lights(LightMix::of(sourced.scene, 683));
-  LuminaireSession session(room.list, sourced.luminaires, sourced.scene,
-                           room.options(loading::read_own_luminaires(room.list).text()));
-  SettingsHistory history(lights, &session);
-  const auto frame = [&](const std::function<void()>& change, bool of_lights) {
-    history.begin_frame();
-    change();
-    history.end_frame(of_lights, false);
-  };
-  frame([&] { lights.controls()[0].power = 7; }, true);
-  frame(
-      [&] {
-        session.editor().select(1);
-        session.editor().remove();
-      },
-      false);
-  frame([&] { lights.controls()[0].on = false; }, true);
-  CHECK(history.undo());
-  CHECK(lights.controls()[0].on);
-  CHECK(session.editor().list().entries.size() == 1);
-  CHECK(history.undo());
-  CHECK(session.editor().list().entries.size() == 2);
-  CHECK_FALSE(session.editor().unsaved());
-  CHECK(lights.controls()[0].power == 7);
-  CHECK(history.undo());
-  CHECK(lights.controls()[0].power != 7);
-  CHECK_FALSE(history.undo());
-  CHECK(history.redo());
-  CHECK(history.redo());
-  CHECK(session.editor().list().entries.size() == 1);
-
-  // Whatever was asked for before, the scene of the newest list comes.
-  std::string message;
-  std::shared_ptr<const Scene> newest;
-  history.end_frame(false, false);
-  for (int i = 0; i < 6000 && !newest; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    newest = session.take_scene(message);
-  }
-  REQUIRE(newest);
-  CHECK(newest->lights.size() == 6);
-  CHECK(session.editor().placed().size() == 1);
-  CHECK(message.empty());
 }
 
 TEST_CASE("a list that cannot be loaded is told, and the next one is loaded all the same") {

@@ -93,7 +93,7 @@ TEST_CASE("a light that is not there is told with those there are, the likest fi
   CHECK(moods.changes("y", lamps()).size() == 1);  // the other mood is none of its business
   LightBoard board(lamps());
   CHECK_THROWS_WITH(moods.apply("x", board), Contains("'floor_lamps'"));
-  CHECK(board.controls()[0].power == 5);  // the window has set what it could
+  CHECK(board.controls()[0].power == 5);  // the board has what could be set
 }
 
 TEST_CASE("a mood in watts sets lamps in lumens") {

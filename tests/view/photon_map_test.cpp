@@ -1,4 +1,4 @@
-// The photon map of a picked triangle, and how it is drawn.
+// The photon map of a picked triangle.
 #include "view/photon_map.hpp"
 
 #include <catch2/catch.hpp>
@@ -40,8 +40,6 @@ std::uint32_t some_triangle(const Scene& scene, std::uint32_t triangle) {
   const bool up = face_normal(scene, oriented(triangle, 0)).y > 0.5;
   return oriented(triangle, up ? 0 : 1);
 }
-
-Camera above() { return Camera::look_at({2, 3, 7}, {2, 0.5, 1}, {0, 1, 0}, glm::radians(45.0)); }
 
 }  // namespace
 
@@ -106,71 +104,6 @@ TEST_CASE("a naive map has its own photons alone") {
   CHECK(view.group.empty());
   CHECK(view.group_photons.empty());
   CHECK_FALSE(view.own_photons.empty());
-}
-
-TEST_CASE("projecting is the inverse of looking through a pixel") {
-  const Camera camera = above();
-  for (const glm::dvec2 place : {glm::dvec2(0, 0), glm::dvec2(17.25, 30.5), glm::dvec2(63, 47)}) {
-    const glm::dvec3 point = camera.position + 3.7 * camera.direction(place.x, place.y, 64, 48);
-    const auto seen = project(camera, point, 64, 48);
-    REQUIRE(seen);
-    CHECK(glm::distance(*seen, place) < 1e-9);
-  }
-  CHECK_FALSE(project(camera, camera.position - camera.forward, 64, 48));
-}
-
-TEST_CASE("a picked triangle is tinted where it is seen, and its photons are dots on it") {
-  const Scene scene = corner();
-  Frame frame;
-  frame.layers = LightLayers(320, 240, std::vector<std::string>{"lamp"});
-  frame.camera = above();
-  frame.photons = std::make_shared<InspectablePhotons>(
-      InspectablePhotons::of(prepared(scene, MapMode::triangle)));
-  PhotonInspector inspector(scene);
-  DisplayedFrame shown{320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)};
-  inspector.draw(frame, shown);
-  CHECK(shown.rgb == std::vector<std::uint8_t>(3 * 320 * 240, 100));  // nothing is picked
-  inspector.pick(frame, 0.5, 0.6);
-  inspector.draw(frame, shown);
-  REQUIRE(inspector.map());
-
-  const VisibleSurfaces seen = visible_surfaces(RayScene(scene), frame.camera, 320, 240);
-  std::size_t yellow = 0, tinted = 0;
-  for (std::size_t pixel = 0; pixel < seen.oriented_face.size(); ++pixel) {
-    const bool picked = seen.oriented_face[pixel] == inspector.map()->oriented_face;
-    const std::uint8_t* rgb = &shown.rgb[3 * pixel];
-    const bool red = rgb[0] > rgb[2] && rgb[1] < 100;
-    tinted += red ? 1 : 0;
-    yellow += rgb[0] == 255 && rgb[2] == 0 ? 1 : 0;
-    if (red) CHECK(picked);
-  }
-  CHECK(seen.oriented_face[144 * 320 + 160] == inspector.map()->oriented_face);
-  CHECK(tinted > 100);
-  CHECK(yellow > 10);
-  CHECK(yellow <= inspector.map()->own_photons.size());
-}
-
-TEST_CASE("photons beside the picture are not drawn into its next row") {
-  const Scene scene = corner();
-  Frame frame;
-  frame.layers = LightLayers(320, 240, std::vector<std::string>{"lamp"});
-  frame.camera = Camera::look_at({2, 1.5, 4}, {2, 0.2, 1.5}, {0, 1, 0}, glm::radians(45.0));
-  frame.photons = std::make_shared<InspectablePhotons>(
-      InspectablePhotons::of(prepared(scene, MapMode::triangle)));
-  PhotonInspector inspector(scene);
-  DisplayedFrame shown{320, 240, std::vector<std::uint8_t>(3 * 320 * 240, 100)};
-  for (const double down : {0.55, 0.65, 0.75, 0.85, 0.95}) {  // triangles that the border cuts
-    inspector.pick(frame, 0.99, down);
-    inspector.draw(frame, shown);
-    REQUIRE(inspector.map());
-  }
-  std::array<int, 2> yellow{};  // in the left half, and in the right one
-  for (std::size_t pixel = 0; pixel < 320 * 240; ++pixel) {
-    const std::uint8_t* rgb = &shown.rgb[3 * pixel];
-    if (rgb[0] == 255 && rgb[2] == 0) ++yellow[pixel % 320 / 160];
-  }
-  CHECK(yellow[0] == 0);
-  CHECK(yellow[1] > 10);
 }
 
 }  // namespace photile::test

@@ -1,4 +1,4 @@
-// Clicked points against closed forms, and what is kept of them.
+// Clicked points against closed forms.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <glm/gtc/constants.hpp>
@@ -6,7 +6,6 @@
 
 #include "photile/defaults.hpp"
 #include "test_scenes.hpp"
-#include "view/light_board.hpp"
 #include "view/point_worker.hpp"
 
 namespace photile::test {
@@ -36,35 +35,28 @@ std::vector<ClickedPoint> wait_for(const PointWorker& worker, std::size_t repeat
   throw std::runtime_error("the points are not read");
 }
 
+/// The mean of the repeats of a light at a power.
+double lux(const ClickedPoint& point, std::size_t light, double lumens) {
+  double sum = 0;
+  for (const auto& repeat : point.repeats) sum += luminance(glm::dvec3(repeat[light]));
+  return lumens * sum / static_cast<double>(point.repeats.size());
+}
+
 }  // namespace
 
 TEST_CASE("a clicked point reads I cos / d^2 of each lamp at its power") {
-  const auto held = std::make_shared<const Scene>(floor());
-  const Scene& scene = *held;
-  PointWorker worker(held);
+  PointWorker worker(std::make_shared<const Scene>(floor()));
   CHECK(worker.add({0, 0, 0}, {0, 0, 1}) == 1);
   CHECK(worker.add({3, 0, 0}, {0, 0, 1}) == 2);
   // All of them: after a few, chance decides by how much they differ.
   const auto points = wait_for(worker, defaults::clicked_repeats);
-  LightMix mix = LightMix::of(scene, 683);
   const auto truth = [](double lumens, double height, double aside) {
     const double d2 = height * height + aside * aside;
     return lumens / (4 * glm::pi<double>()) * height / (d2 * std::sqrt(d2));
   };
-  const auto first = points[0].lux(mix, 1);
-  REQUIRE(first.size() == 3);
-  CHECK(first[0].value == Approx(truth(100, 2, 0)).epsilon(1e-3));
-  CHECK(first[1].value == Approx(truth(400, 4, 3)).epsilon(1e-3));
-  CHECK(first[2].value == Approx(first[0].value + first[1].value));
-  // Layers that are pooled are read together.
-  const LayerMixdown one{{"both"}, {0, 0}, {1, 1}};
-  const auto pooled = points[0].lux(mix, 1, &one);
-  REQUIRE(pooled.size() == 2);
-  CHECK(pooled[0].value == Approx(truth(100, 2, 0) + truth(400, 4, 3)).epsilon(1e-3));
-  // A slider needs no new rays, and a maintenance factor is one.
-  mix.lights[0].power = 50;
-  mix.lights[1].power = 0;
-  CHECK(points[1].lux(mix, 0.8).back().value == Approx(0.8 * truth(50, 2, 3)).epsilon(1e-3));
+  CHECK(lux(points[0], 0, 100) == Approx(truth(100, 2, 0)).epsilon(1e-3));
+  CHECK(lux(points[0], 1, 400) == Approx(truth(400, 4, 3)).epsilon(1e-3));
+  CHECK(lux(points[1], 0, 50) == Approx(truth(50, 2, 3)).epsilon(1e-3));
 }
 
 TEST_CASE("points are measured anew when the scene is another") {
@@ -73,13 +65,11 @@ TEST_CASE("points are measured anew when the scene is another") {
   worker.add({0, 0, 0}, {0, 0, 1});
   wait_for(worker, 2);
   scene.lights.resize(1);
-  const auto edited = std::make_shared<const Scene>(scene);
-  worker.use(edited);
+  worker.use(std::make_shared<const Scene>(scene));
   const auto points = wait_for(worker, 2);
   CHECK(points[0].number == 1);
-  const auto lux = points[0].lux(LightMix::of(*edited, 683), 1);
-  REQUIRE(lux.size() == 2);
-  CHECK(lux[0].value == Approx(100 / (4 * glm::pi<double>()) / 4).epsilon(1e-3));
+  REQUIRE(points[0].repeats[0].size() == 1);
+  CHECK(lux(points[0], 0, 100) == Approx(100 / (4 * glm::pi<double>()) / 4).epsilon(1e-3));
 }
 
 TEST_CASE("points are removed by their numbers, which stay") {
@@ -92,22 +82,6 @@ TEST_CASE("points are removed by their numbers, which stay") {
   REQUIRE(points.size() == 2);
   CHECK(points[0].number == 2);
   CHECK(points[1].number == 3);
-}
-
-TEST_CASE("points are kept as lines for measure, and as a table") {
-  const auto held = std::make_shared<const Scene>(floor());
-  const Scene& scene = *held;
-  PointWorker worker(held);
-  worker.add({0, 0, 0}, {0, 0, 1});
-  const auto points = wait_for(worker, 2);
-  CHECK(points_text(points) == "0 0 0 0 0 1\n");
-  const LayerMixdown as_they_are = LightBoard(LightMix::of(scene, 683)).mixdown();
-  const std::string csv = points_csv(points, LightMix::of(scene, 683), as_they_are, 1);
-  CHECK_THAT(csv, Catch::Contains("point,x,y,z,dx,dy,dz,lux,standard_error,lux near") &&
-                      Catch::Contains("\n1,0,0,0,0,0,1,"));
-  const ClickedPoint unread{7, {1, 2, 3}, {0, 0, 1}};
-  CHECK_THAT(points_csv({unread}, LightMix::of(scene, 683), as_they_are, 1),
-             Catch::Contains("7,1,2,3,0,0,1,,,,,,\n"));
 }
 
 }  // namespace photile::test

@@ -1,4 +1,4 @@
-// Figures that a thread of the window refines: told as they come, stopped, begun anew.
+// Figures that a thread of the live page refines: told as they come, stopped, begun anew.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -51,10 +51,10 @@ TEST_CASE("a year is measured when it is asked for, and its newest lines are sho
     year.start();
     CHECK(waits_for([&] { return begun == 3; }));
   }
-  CHECK(stopped == 2);  // a window that is closed waits for nothing
+  CHECK(stopped == 2);  // a page that is closed waits for nothing
 }
 
-TEST_CASE("a year that cannot be measured says why in the window") {
+TEST_CASE("a year that cannot be measured says why") {
   YearWorker year([](const auto&, Progress&) { throw std::runtime_error("no floor found"); });
   year.start();
   CHECK(waits_for([&] { return !year.running(); }));

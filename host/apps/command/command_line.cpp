@@ -50,7 +50,6 @@ void define(CLI::App& photile) {
   add_view_command(photile);
   add_bake_command(photile);
   add_publish_command(photile);
-  add_serve_command(photile);
   add_help_command(photile);
   for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
     const std::string name = command->get_name();

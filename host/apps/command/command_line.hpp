@@ -50,7 +50,6 @@ void add_walk_command(CLI::App& photile);
 void add_view_command(CLI::App& photile);
 void add_bake_command(CLI::App& photile);
 void add_publish_command(CLI::App& photile);
-void add_serve_command(CLI::App& photile);
 void add_help_command(CLI::App& photile);
 
 /// "0.1.0"

@@ -268,7 +268,7 @@ void add_compare_command(CLI::App& photile) {
       ->type_name("");
   const OptionGroup group(*command);
   group.repeat("--mood", options->moods, "NAME",
-               "mood saved in the window; give two to compare the first picture in both");
+               "mood saved on the live page; give two to compare the first picture in both");
   add_moods_file_option(group, options->moods_file);
   group.add("-o,--output", options->picture, "FILE.png",
             "both pictures and their difference in false colour", file_ending_in({".png"}));

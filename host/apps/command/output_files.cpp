@@ -66,7 +66,7 @@ void add_white_option(const OptionGroup& group, WhiteOption& white) {
 
 void add_exposure_option(const OptionGroup& group, double& exposure) {
   group
-      .add("--exposure", exposure, "STOPS", "exposure in stops, for PNGs and the window only",
+      .add("--exposure", exposure, "STOPS", "exposure in stops, for PNGs only",
            number_between(-limits::max_exposure_stops, limits::max_exposure_stops))
       ->capture_default_str();
 }

@@ -128,7 +128,7 @@ void add_relight_command(CLI::App& photile) {
   const OptionGroup lamps(*command), sky(*command, "Sky of patches");
   add_light_change_option(lamps, options->lights);
   lamps.repeat("--mood", options->moods, "NAME",
-               "mood saved in the window under this name; --light changes it further; repeatable "
+               "mood saved on the live page under this name; --light changes it further; repeatable "
                "with --sheet");
   add_moods_file_option(lamps, options->moods_file);
   lamps.add("--sheet", options->sheet, "FILE.png",

@@ -38,7 +38,6 @@
 #include "render/render_costs.hpp"
 #include "render/render_plan.hpp"
 #include "render/render_session.hpp"
-#include "view/snapshots.hpp"
 
 namespace photile::app {
 namespace {
@@ -209,7 +208,9 @@ void write_glare(const RenderOptions& options, const LayeredPicture& picture,
   const Image displayed = tone_map(picture.root(), shown_as(options.pictures, picture));
   std::vector<std::uint8_t> rgb = image::srgb8_texels(displayed);
   image::draw_marks(glare.marks, rgb);
-  view::write_screenshot(options.glare, layers.width, layers.height, rgb);
+  OutputFile output(options.glare);
+  image::encode_png(output, layers.width, layers.height, rgb);
+  output.commit();
   for (const std::string& line : image::glare_lines(glare, mix.unit())) progress.note(line);
 }
 

@@ -65,7 +65,7 @@ void add_light_change_option(const OptionGroup& group, std::vector<LightChange>&
 
 void add_mood_options(const OptionGroup& group, MoodOptions& options) {
   group.add("--mood", options.mood, "NAME",
-            "mood saved in the window under this name; --light changes it further");
+            "mood saved on the live page under this name; --light changes it further");
   add_moods_file_option(group, options.file);
 }
 
@@ -83,7 +83,7 @@ std::filesystem::path moods_file(const std::string& given, const std::filesystem
     if (std::filesystem::exists(file)) return file;
   }
   throw UsageError(
-      fmt::format("{}: there is no such file of moods; keep moods in the window, or "
+      fmt::format("{}: there is no such file of moods; keep moods on the live page, or "
                   "give --moods FILE",
                   files.front().string()));
 }

@@ -1,9 +1,16 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <filesystem>
+#include <iostream>
 #include <memory>
+#include <span>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "command/command_line.hpp"
@@ -18,17 +25,43 @@
 #include "command/terminal_progress.hpp"
 #include "loading/load_scene.hpp"
 #include "photile/errors.hpp"
+#include "publish/published_room.hpp"
+#include "serve/live_luminaires.hpp"
+#include "serve/live_room.hpp"
+#include "serve/web_server.hpp"
+#include "view/moods.hpp"
 #include "view/moving_sky.hpp"
-#include "view/viewer.hpp"
+#include "view/year_worker.hpp"
 
 namespace photile::app {
 namespace {
 
+constexpr auto step_time = std::chrono::milliseconds(4);
+
+constexpr const char* year_plane = "floor+0.85";  // EN 17037
+constexpr double year_seconds = 30;               // for which figures of the year are refined
+
 struct ViewOptions {
   RenderOptions render;
-  double frames_per_second = defaults::view_frames_per_second;
-  std::string outputs = ".";
+  serve::WebAddress address;
+  std::string title;  ///< "" = by the scene's file
+  bool no_browser = false;
+  double keep = 60;  ///< seconds
 };
+
+/// Has the desktop show an address. Nothing tells whether it does.
+void open_browser(const std::string& url) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
+  }
+  std::string name = "xdg-open", address = url;
+  char* const arguments[] = {name.data(), address.data(), nullptr};
+  pid_t process = 0;
+  posix_spawnp(&process, name.c_str(), &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+}
 
 /// Lights that options name may not exist any longer by then.
 LightMix mix_again(const Scene& scene, const RenderOptions& options) {
@@ -39,22 +72,31 @@ LightMix mix_again(const Scene& scene, const RenderOptions& options) {
   }
 }
 
-constexpr const char* year_plane = "floor+0.85";  // EN 17037
-constexpr double year_seconds = 30;               // for which figures of the year are refined
+/// The camera that options name, where it has a perspective.
+Camera opening_camera(const Scene& scene, const RenderOptions& options) {
+  const Camera camera = camera_of(scene, options);
+  return camera.projection == Projection::perspective ? camera : publish::opening_camera(scene);
+}
 
 /// Whether the sky is that of a weather file, so that a year of it can be measured.
 bool has_year(const SceneLoadOptions& load) {
   return !load.situation.weather.empty() && !load.sky && !load.sun && load.environment.file.empty();
 }
 
+view::YearWorker::Measure year_of(const RenderOptions& render) {
+  if (!has_year(render.load)) return {};
+  DaylightOptions year;
+  year.render = render;
+  year.render.load.situation.time.reset();
+  year.places.plane.height = year_plane;
+  year.seconds = year_seconds;
+  return [year](const auto& tell, Progress& stop) { refine_year(year, tell, stop); };
+}
+
 void run_view(ViewOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
   check(render.parameters);
-  if (!std::filesystem::is_directory(options.outputs)) {
-    throw UsageError(fmt::format("{}: is not a folder; create it, or give another with --outputs",
-                                 options.outputs));
-  }
   // The file may be written, and a new one does not exist yet.
   const std::filesystem::path luminaires = std::exchange(render.load.luminaires, {});
   note_inputs_of(render);
@@ -66,54 +108,53 @@ void run_view(ViewOptions& options) {
     const std::filesystem::path file = render.save_maps;
     check_outputs(std::span(&file, 1));
   }
-
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet);
-  view::YearWorker::Measure measure_year;
-  if (has_year(render.load)) {
-    DaylightOptions year;
-    year.render = render;
-    year.render.load.situation.time.reset();
-    year.places.plane.height = year_plane;
-    year.seconds = year_seconds;
-    measure_year = [year](const auto& tell, Progress& stop) { refine_year(year, tell, stop); };
-  }
+  const view::YearWorker::Measure measure_year = year_of(render);
   const SkySituation situation = view::take_moving_sky(render.load);
   const loading::SourcedScene sourced =
       loading::load_sourced_scene(render.scene, render.load, progress);
   const Scene& scene = sourced.scene;
   render.mood.edited = true;
-  const LightMix mix = mix_of(scene, render);
-  const Camera camera = camera_of(scene, render);
-  set_film_size(render.parameters.film, render.size, camera);
-  tell_scene(scene, mix, render.load, progress);
-
-  view::ViewerParameters parameters;
-  parameters.render = render.parameters;
-  parameters.frames_per_second = options.frames_per_second;
-  parameters.outputs = options.outputs;
-  parameters.view = render.pictures.tone_mapping.view;
-  parameters.fills_screen = render.size.empty();
-  parameters.white = render.pictures.white.white;
-  parameters.white_balance = render.pictures.white_balance;
-  parameters.moods = render.mood.file;
-  parameters.prepared = load_maps(scene, render, progress);
-  // Progress is shown in the window from here on.
-  parameters.keep = keep_maps(scene, render, Progress::none());
-  parameters.keep_light_maps = [&](const LightMapContents& light_maps) {
-    keep_light_maps(light_maps, render, progress);
-  };
-  parameters.light_map_bytes = render.device.memory_bytes;
-  parameters.load = render.load;
-  parameters.situation = situation;
-  parameters.mix_of = [&](const Scene& edited) { return mix_again(edited, render); };
-  parameters.luminaire_file = luminaires;
-  parameters.luminaires = sourced.luminaires;
-  parameters.measure_year = std::move(measure_year);
-  parameters.notes = &progress;
-  parameters.interrupted = [&progress] { return progress.cancelled(); };
-  view::run_viewer(
-      scene, camera, mix, [&render] { return open_devices(render.device); }, std::move(parameters));
+  tell_scene(scene, mix_of(scene, render), render.load, progress);
+  std::shared_ptr<serve::LiveLuminaires> edited;
+  if (!luminaires.empty()) {
+    edited =
+        std::make_shared<serve::LiveLuminaires>(luminaires, sourced.luminaires, scene, render.load);
+  }
+  const std::filesystem::path file = render.scene, moods = render.mood.file;
+  serve::LiveRoom room(
+      scene, [&render] { return open_devices(render.device); },
+      {.render = render.parameters,
+       .mix_of = [&render](const Scene& loaded) { return mix_again(loaded, render); },
+       .camera_of = [&render](const Scene& loaded) { return opening_camera(loaded, render); },
+       .load = render.load,
+       .situation = situation,
+       .prepared = load_maps(scene, render, progress),
+       .keep = keep_maps(scene, render, Progress::none()),
+       .luminaires = edited,
+       .measure_year = measure_year,
+       .moods = moods.empty() ? view::Moods::file_of(file) : moods,
+       .light_map_bytes = render.device.memory_bytes,
+       .white = render.pictures.white.white,
+       .white_balance = render.pictures.white_balance,
+       .view = render.pictures.tone_mapping.view,
+       .title = options.title.empty() ? file.stem().string() : options.title,
+       .version = version_number()});
+  const serve::WebServer server(
+      options.address, [&room](const serve::WebRequest& request) { return room.answer(request); },
+      [&room](const serve::WebRequest& request) { return room.listen(request); });
+  std::cout << server.url() << std::endl;  // at once, also where it is read by a program
+  if (!options.no_browser) open_browser(server.url());
+  room.make_page();
+  while (!stop_requested() && room.left_alone() < options.keep) {
+    room.step();
+    std::this_thread::sleep_for(step_time);
+  }
+  if (edited) edited->tell_unsaved(progress);
+  room.finish([&](const LightMapContents& light_maps) {
+    if (!render.save_maps.empty()) keep_light_maps(light_maps, render, progress);
+  });
   throw_if_stop_requested();
 }
 
@@ -121,23 +162,28 @@ void run_view(ViewOptions& options) {
 
 void add_view_command(CLI::App& photile) {
   auto options = std::make_shared<ViewOptions>();
+  CLI::App* command = photile.add_subcommand(
+      "view", "Walk through a scene in a browser while its light is computed, and set its lamps");
+  const OptionGroup page(*command, "Page");
+  page.call(
+          "--listen",
+          [options](const std::string& text) { options->address = serve::WebAddress::parse(text); },
+          "ADDRESS[:PORT]",
+          "numbers that the page is served at; others than 127.0.0.1 let in "
+          "whoever has the address of the page")
+      ->default_str("127.0.0.1, any port");
+  page.flag("--no-browser", options->no_browser, "print the address alone");
+  page.add("--keep", options->keep, "TIME", "end so long after the last page was closed",
+           duration())
+      ->default_str("1min");
+  page.add("--title", options->title, "TEXT", "of the page; default: the name of the scene's file");
+  add_white_option(page, options->render.pictures.white);
   set_quality(options->render.quality_options(), Quality::good);
-  CLI::App* command =
-      photile.add_subcommand("view", "Walk through a scene in a window, and set its lamps");
-  const OptionGroup window(*command, "Window");
-  window
-      .add("--frame-rate", options->frames_per_second, "X",
-           "frames per second to reach while moving; pictures become smaller where needed",
-           positive_number())
-      ->capture_default_str();
-  window.add("--outputs", options->outputs, "FOLDER", "folder for what F12 and Ctrl+S save")
-      ->capture_default_str();
-  add_white_option(window, options->render.pictures.white);
-  add_picture_settings(*command, options->render,
-                       {display_view_setting(options->render.pictures.tone_mapping),
-                        white_balance_setting(options->render.pictures)});
-  command->get_option("--size")->description(
-      "pixels of the picture; default: the window takes most of the screen");
+  add_quality_preset(*command, options->render.quality_options());
+  add_setting_options(*command, options->render, {"light_maps"},
+                      {display_view_setting(options->render.pictures.tone_mapping),
+                       white_balance_setting(options->render.pictures)});
+  add_view_options(OptionGroup(*command, "Picture"), options->render);
   add_saved_maps_options(*command, options->render);
   command->callback([options] { run_view(*options); });
 }

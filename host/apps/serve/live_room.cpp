@@ -183,8 +183,6 @@ LiveRoom::LiveRoom(const Scene& scene, view::PhotonWorker::OpenDevices open_devi
   if (parameters_.white_balance) {
     white_ = parameters_.white ? *parameters_.white : image::white_of_light(powers, edition_.mix);
   }
-  photons_.trace(first_scene_, parameters_.render,
-                 std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
 }
 
 LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene) {
@@ -217,6 +215,9 @@ LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene)
 
 void LiveRoom::make_page() {
   Edition edition = made(1, first_scene_);
+  // The room is seen before its light is computed, which takes all cores.
+  photons_.trace(first_scene_, parameters_.render,
+                 std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
   const std::lock_guard lock(mutex_);
   edition_ = std::move(edition);
   moods_number_ = 1;
@@ -455,8 +456,7 @@ std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
     if (parameters_.luminaires) load.luminaires_text = parameters_.luminaires->text();
     const view::Moods moods = moods_;
     const std::shared_ptr<const Scene> scene = edition_.scene;
-    const view::LightBoard board(edition_.mix,
-                                 view::MovingSky::of(edition_.mix, parameters_.situation));
+    const view::LightBoard board(edition_.mix);
     lock.unlock();
     answer["message"] = view::write_mood(*scene, load, board, moods, name);
     return WebReply{"application/json", json_text(answer, -1)};
@@ -576,7 +576,7 @@ void LiveRoom::change_moods(const json& body) {
   if (!keeps) {
     moods_.remove(name);
   } else {
-    view::LightBoard board(edition_.mix, view::MovingSky::of(edition_.mix, parameters_.situation));
+    view::LightBoard board(edition_.mix);
     for (view::LightControl& control : board.controls()) {
       const json lights = body.value("lights", json::object());
       if (!lights.is_object() || !lights.contains(control.name)) continue;

@@ -57,12 +57,12 @@ struct LiveRoomParameters {
 
 class LiveRoom {
  public:
-  /// Starts to trace photons. The reference is kept. Errors: InputError for a damaged file of
-  /// moods; those of publish::check_materials.
+  /// The reference is kept. Errors: InputError for a damaged file of moods; those of
+  /// publish::check_materials.
   LiveRoom(const Scene& scene, view::PhotonWorker::OpenDevices open_devices,
            LiveRoomParameters parameters);
 
-  /// Makes the page: those who ask for it wait until then.
+  /// Makes the page, for which those who ask for it wait, and starts to trace photons.
   void make_page();
   /// Takes what threads have found since, and gives them work. To be called some hundred times a
   /// second, by one thread. Errors: those of PhotonWorker and FrameWorker before there is light;

@@ -126,7 +126,7 @@ double FrameWorker::time_to_fill(const Task& task, double draw_seconds) const {
   return filled_over_drawn * draw_seconds + frame_seconds_;
 }
 
-/// Draws the whole window, however many nodes are missing: new surface is seen coarsely at once,
+/// Draws the whole picture, however many nodes are missing: new surface is seen coarsely at once,
 /// and finer from frame to frame, by what there is time for. Frames are handed over as they get
 /// better, until no node is missing or something else is requested. The first picture of a scene
 /// waits for the nodes of what takes most of it; at rest others wait for none.
@@ -137,7 +137,6 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   // A dragged slider requests frames all the time: a frame that is shown at once is finished in any
   // case.
   bool at_once = is_first || requested.moving || requested.relit;
-  Stopwatch stopwatch;
   Film film{requested.width, requested.height, 1};
   std::vector<glm::vec3> picture;
   const auto hand_over = [&](const DrawnFrame& drawn) {
@@ -150,9 +149,6 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     frame.scene = maps.scene;
     frame.camera = requested.camera;
     frame.emitted_photons = maps.emitted_photons;
-    frame.noise = maps.noise;
-    frame.seconds = stopwatch.seconds();
-    stopwatch = Stopwatch();
     if (drawn.empty == 0) maps.lit = true;
     keep(task, std::make_shared<Frame>(std::move(frame)), 0);
     if (drawn_) drawn_(requested.camera, maps, drawn);
@@ -203,24 +199,19 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
         task.maps->renderer->render(reflected_hits(task.request.camera), film, progress, mixdown)
             .layers);
   }
-  const double seconds = stopwatch.seconds();
   // The first frame of maps waits for kernels to be compiled.
   if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
-    size_.record(static_cast<double>(film.width) * film.height * task.samples, seconds);
+    size_.record(static_cast<double>(film.width) * film.height * task.samples, stopwatch.seconds());
   }
-  return std::make_shared<Frame>(
-      Frame{std::move(result.layers),
-            {},
-            std::move(reflections),
-            task.maps->photons,
-            task.maps->scene,
-            task.request.camera,
-            result.used.film.samples_per_pixel,
-            0.0,
-            task.maps->emitted_photons,
-            mixdown ? task.maps->noise.pooled(*mixdown) : task.maps->noise,
-            seconds,
-            std::move(result.statistics)});
+  return std::make_shared<Frame>(Frame{std::move(result.layers),
+                                       {},
+                                       std::move(reflections),
+                                       task.maps->photons,
+                                       task.maps->scene,
+                                       task.request.camera,
+                                       result.used.film.samples_per_pixel,
+                                       0.0,
+                                       task.maps->emitted_photons});
 }
 
 /// The result for callers of latest().

@@ -25,7 +25,7 @@ class FrameSize {
   /// A frame of this many pixels took this many seconds.
   void record(double pixels, double seconds);
 
-  /// Width and height in the window's proportions, at most the window and at least an eighth of it;
+  /// Width and height in the page's proportions, at most the page and at least an eighth of it;
   /// the whole before anything was recorded.
   std::pair<int, int> fit(int width, int height) const;
 

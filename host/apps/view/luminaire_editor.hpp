@@ -14,7 +14,7 @@
 namespace photile::view {
 
 /// Entries of the file, and where their lamps are: an edit moves these at once, the scene follows
-/// when it is loaded again (luminaire_session.hpp). Without a display, so that tests can edit.
+/// when it is loaded again (scene_loader.hpp).
 class LuminaireEditor {
  public:
   ///   file     that `save` writes; it may not exist yet

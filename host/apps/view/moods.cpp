@@ -162,7 +162,6 @@ void Moods::apply(const std::string& name, LightBoard& board) const {
     control.on = setting->second.on;
     control.color = setting->second.color;
     control.kelvin = setting->second.kelvin;
-    control.solo = false;
   }
   refuse_unknown_lights(name, there);
 }

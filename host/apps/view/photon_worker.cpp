@@ -83,7 +83,7 @@ void PhotonWorker::work(std::optional<TracedPhotons> prepared) {
     if (whole->renderer->reads_light_maps()) whole->coarser = std::move(first);
     deliver_(whole);
   } catch (const Interrupted&) {
-    // The window was closed, or other parameters were asked for.
+    // The room was closed, or other parameters were asked for.
   } catch (...) {
     const std::lock_guard lock(mutex_);
     error_ = std::current_exception();
@@ -105,7 +105,6 @@ std::shared_ptr<MapGeneration> PhotonWorker::build(const RenderParameters& param
   generation->renderer->keep_passes(prepared, keep, *listener_);
   generation->emitted_photons = parameters.photons.emitted_photons;
   generation->whole = whole;
-  generation->noise = EstimateNoise::of(scene_, parameters);
   return generation;
 }
 

@@ -1,4 +1,4 @@
-// Photon maps that get better in the background, for the window's thread to take.
+// Photon maps that get better in the background, for the room's thread to take.
 #pragma once
 
 #include <atomic>
@@ -35,7 +35,6 @@ struct MapGeneration {
   std::uint64_t emitted_photons = 0;
   bool whole = false;            ///< of all photons that were asked for
   std::atomic<bool> lit{false};  ///< set once a frame had its own light on all surface
-  EstimateNoise noise;
   std::shared_ptr<const InspectablePhotons> photons;
 };
 

@@ -1,39 +1,15 @@
 #include "view/point_worker.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 #include <span>
 #include <utility>
 
-#include "common/foreign_text.hpp"
 #include "photile/defaults.hpp"
-#include "photile/errors.hpp"
 #include "photile/sensors.hpp"
-#include "report/tables.hpp"
 #include "trace/random_stream.hpp"
 
 namespace photile::view {
-
-std::vector<Measured> ClickedPoint::lux(const LightMix& mix, double factor,
-                                        const LayerMixdown* layers) const {
-  const std::size_t count = layers ? layers->layers.size() : mix.lights.size();
-  std::vector<std::vector<float>> values;  // per repeat: each layer, then the sum
-  for (const auto& repeat : repeats) {
-    auto& row = values.emplace_back(count + 1);
-    for (std::size_t light = 0; light < repeat.size(); ++light) {
-      const MixedLight& mixed = mix.lights[light];
-      const auto lux =
-          static_cast<float>(factor * mix.lumens_of(mixed) *
-                             luminance(glm::dvec3(mixed.tint) * glm::dvec3(repeat[light])));
-      row[layers ? layers->layer_of[light] : light] += lux;
-      row.back() += lux;
-    }
-  }
-  if (values.size() < 2) return std::vector<Measured>(count + 1);
-  return measuring::means_of(values);
-}
 
 PointWorker::PointWorker(std::shared_ptr<const Scene> scene)
     : scene_(std::move(scene)), thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -103,37 +79,6 @@ void PointWorker::work(const std::stop_token& stop) {
       if (point.number == next.number) point.repeats.push_back(std::move(irradiance));
     }
   }
-}
-
-std::string points_text(const std::vector<ClickedPoint>& points) {
-  std::string text;
-  for (const ClickedPoint& point : points) {
-    const glm::dvec3 &p = point.position, &n = point.normal;
-    text +=
-        fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z, n.x, n.y, n.z);
-  }
-  return text;
-}
-
-std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
-                       const LayerMixdown& layers, double factor) {
-  std::string text = "point,x,y,z,dx,dy,dz,lux,standard_error";
-  for (const std::string& layer : layers.layers) {
-    text += fmt::format(",{},{}", csv_field("lux " + layer), csv_field("standard_error " + layer));
-  }
-  text += "\n";
-  for (const ClickedPoint& point : points) {
-    const glm::dvec3 &p = point.position, &n = point.normal;
-    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{:.6g}", point.number, p.x, p.y, p.z,
-                        n.x, n.y, n.z);
-    std::vector<Measured> lux = point.lux(mix, factor, &layers);
-    std::rotate(lux.begin(), lux.end() - 1, lux.end());  // all together first
-    for (const Measured& each : lux) {
-      text += point.read() ? fmt::format(",{:.6g},{:.3g}", each.value, each.standard_error) : ",,";
-    }
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace photile::view

@@ -6,13 +6,9 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "measuring/measurement.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::view {
@@ -24,13 +20,6 @@ struct ClickedPoint {
   glm::dvec3 normal{0.0};    ///< unit, on the side that was seen
   /// Per repeat and layer the irradiance at power 1: linear RGB, lm/m2 or W/m2.
   std::vector<std::vector<glm::vec3>> repeats = {};
-
-  /// Lux of each light of a mix, and of all together last, times a factor. Standard errors are from
-  /// the scatter of repeats; there are none before the second.
-  ///   layers   into which the lights' lux are summed; null = each light's own
-  std::vector<Measured> lux(const LightMix& mix, double factor,
-                            const LayerMixdown* layers = nullptr) const;
-  bool read() const { return repeats.size() >= 2; }
 };
 
 /// Measures points by unbiased paths from a sensor on the surface (gather_by_paths), the one with
@@ -58,13 +47,5 @@ class PointWorker {
   int clicked_ = 0;
   std::jthread thread_;  // last: it uses all of the above
 };
-
-/// Lines x y z dx dy dz, as `photile measure --points` reads them.
-std::string points_text(const std::vector<ClickedPoint>& points);
-
-/// A line for each point: number, place, normal, lux and standard error of all lights and of each
-/// layer.
-std::string points_csv(const std::vector<ClickedPoint>& points, const LightMix& mix,
-                       const LayerMixdown& layers, double factor);
 
 }  // namespace photile::view

@@ -1,12 +1,8 @@
 // Pictures that are kept from the walkthrough.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "image/white.hpp"
 #include "photile/layered_picture.hpp"
@@ -14,27 +10,8 @@
 #include "photile/scene.hpp"
 #include "view/frame.hpp"
 #include "view/moods.hpp"
-#include "view/point_worker.hpp"
 
 namespace photile::view {
-
-/// The first of STEM-0001EXTENSION, STEM-0002EXTENSION ... that is not there yet.
-std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
-                                const std::string& extension);
-
-/// Has `write` write a file of a free name. Returns a message: the name, or what failed.
-std::string keep_as(const std::filesystem::path& folder, const std::string& stem,
-                    const std::string& extension,
-                    const std::function<void(const std::filesystem::path&)>& write);
-
-/// The list of points as points-0001.pts and .csv. Returns a message.
-std::string keep_points(const std::filesystem::path& folder,
-                        const std::vector<ClickedPoint>& points, const LightBoard& lights,
-                        double maintenance);
-
-/// sRGB texels, row 0 at the top, to PNG. Errors: OutputError.
-void write_screenshot(const std::filesystem::path& file, int width, int height,
-                      std::span<const std::uint8_t> rgb);
 
 /// The frame with its layers, its camera and its white, as `render` writes EXR. Errors:
 /// OutputError.

@@ -51,16 +51,6 @@ inline double rounded_up(double value, std::initializer_list<double> steps) {
   return 10 * decade;
 }
 
-/// A value with so many digits as its standard error leaves meaning, which is given with one:
-/// "230 +-30". Without an error, four digits.
-inline std::string text_with_error(double value, double error) {
-  if (!(error > 0) || !std::isfinite(error)) return number_text(value, 4);
-  const double unit = std::pow(10.0, std::floor(std::log10(error)));
-  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(error))));
-  return fmt::format("{:.{}f} +-{:.{}f}", unit * std::round(value / unit), decimals,
-                     unit * std::round(error / unit), decimals);
-}
-
 /// A vector, and a value with its standard error, as JSON has them.
 inline nlohmann::ordered_json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 inline nlohmann::ordered_json measured_json(const Measured& measured) {

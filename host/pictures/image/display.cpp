@@ -174,28 +174,6 @@ glm::dvec3 scaled_to_white(double scale, const ToneMapping& parameters) {
 
 }  // namespace
 
-std::vector<std::uint8_t> image::tone_mapped_texels(std::span<const glm::vec3> rgb, int width,
-                                                    const ToneMapping& parameters) {
-  check_exposure(parameters.exposure);
-  const glm::dvec3 to_white = scaled_to_white(std::exp2(parameters.exposure), parameters);
-  std::vector<std::uint8_t> texels(3 * rgb.size());
-  const auto row = static_cast<std::size_t>(width);
-  const auto light = [&](int x, int y) {
-    return to_white *
-           glm::dvec3(rgb[static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x)]);
-  };
-  for_each_pixel(rgb.size(), [&](std::size_t pixel) {
-    const glm::dvec3 display =
-        shown(light, width, static_cast<int>(rgb.size() / row), static_cast<int>(pixel % row),
-              static_cast<int>(pixel / row), parameters.view);
-    for (int channel = 0; channel < 3; ++channel) {
-      texels[3 * pixel + static_cast<std::size_t>(channel)] =
-          srgb8_from_linear(static_cast<float>(display[channel]));
-    }
-  });
-  return texels;
-}
-
 std::string_view name_of(DisplayView view) { return name_in({"neutral", "standard"}, view); }
 
 double automatic_exposure(const Image& scene_referred) {

@@ -37,12 +37,6 @@ double linear_from_srgb(double encoded);  ///< [0,1] to [0,1]
 /// 255.
 std::uint8_t srgb8_from_linear(float linear);
 
-/// The texels of `tone_map`, without automatic exposure: in one go, for windows that show many
-/// pictures. Errors: as there.
-///   rgb   scene-referred, whole rows, row 0 at the top
-std::vector<std::uint8_t> tone_mapped_texels(std::span<const glm::vec3> rgb, int width,
-                                             const ToneMapping& parameters);
-
 /// 8-bit texels of display-referred R, G, B, which the picture must have: 3 bytes a pixel, row 0 at
 /// the top. Shared among all cores.
 std::vector<std::uint8_t> srgb8_texels(const Image& display_referred);

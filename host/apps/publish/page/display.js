@@ -133,13 +133,13 @@ class Screen {
     this.count = Math.max(0, ...[...counts].filter((count) => count <= 4));
   }
 
-  fit(width, height) {
-    if (this.width === width && this.height === height) return;
+  fit(width, height, smooth) {
+    if (this.width === width && this.height === height && this.smooth === smooth) return;
     const gl = this.gl;
-    Object.assign(this, {width, height});
+    Object.assign(this, {width, height, smooth});
     [gl.RGBA16F, gl.DEPTH_COMPONENT24].forEach((format, i) => {
       gl.bindRenderbuffer(gl.RENDERBUFFER, this.buffers[i]);
-      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, this.count, format, width, height);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, smooth ? this.count : 0, format, width, height);
     });
     for (const texture of this.textures) {
       gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -148,9 +148,10 @@ class Screen {
   }
 
   /// What is drawn from here on is a frame of this size, until `keep`.
-  begin(width, height) {
+  ///   smooth   whether its edges are
+  begin(width, height, smooth) {
     const gl = this.gl;
-    this.fit(width, height);
+    this.fit(width, height, smooth);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.samples);
     gl.viewport(0, 0, width, height);
   }

@@ -187,8 +187,8 @@ class Live {
     this.picture = number;  // the newest
     const loaded = await this.load(`picture?viewer=${this.name}`).catch(() => null);
     if (!loaded || view !== this.view) return;
-    const {header, bytes} = loaded, {lights} = this.page, {canvas} = this.renderer;
-    if (header.width !== canvas.width || header.height !== canvas.height) return;
+    const {header, bytes} = loaded, {lights} = this.page, {size} = this.renderer;
+    if (header.width !== size[0] || header.height !== size[1]) return;
     this.exposes = false;
     const numbers = header.layers.map((name) => room.lights.findIndex((light) => light.name === name));
     // The sky's layer has the powers of the hour.
@@ -219,9 +219,8 @@ class Live {
   /// Tells where the viewer looks, if that has changed.
   look() {
     this.luminaires?.outline();
-    const {walker, lights} = this.page, {canvas} = this.renderer;
-    const view = {eye: walker.eye, forward: walker.forward, angle: walker.angle, width: canvas.width,
-                  height: canvas.height};
+    const {walker, lights} = this.page, [width, height] = this.renderer.size;
+    const view = {eye: walker.eye, forward: walker.forward, angle: walker.angle, width, height};
     if (this.glare.on) view.glare = true;
     if (lights.hour) {
       view.sky = room.lights.map((light, i) => (light.patch === undefined ? 0 : lights.skyPower(i)));

@@ -19,7 +19,13 @@ function automaticExposure(radiance) {
 const areNumbers = (list, count) => list.length === count &&
     list.every((value) => Number.isFinite(value) && Math.abs(value) <= 1e30);
 
+/// Milliseconds of frames while something moves: slower ones are followed by ones of fewer pixels (without a graphics
+/// chip), quicker ones by more; after `rest` nothing moves any more. `least` of the pixels, across and down.
+const motion = {slow: 60, quick: 25, rest: 200, least: 0.25};
+
 class Page {
+  movingShare = 1;  // of the pixels that are drawn while something moves
+
   async open() {
     this.canvas = find('#view');
     this.renderer = new Renderer(this.canvas);
@@ -92,7 +98,6 @@ class Page {
       this.renderer.mix(this.lights.weights());
     }
     this.setExposure(0);
-    this.setScale();
   }
 
   /// The exposure of what is in view.
@@ -173,8 +178,8 @@ class Page {
   frame(time) {
     const began = performance.now();
     this.scheduled = false;
-    const passed = clamp((time - this.lastTime) / 1000, 0, 0.1);
-    const moved = this.walker.advance(passed);
+    const since = time - this.lastTime, passed = clamp(since / 1000, 0, 0.1);
+    const moved = this.walker.advance(passed), mixed = this.lightIsOld;
     this.lastTime = time;
     this.mixLight();
     const fades = this.live?.advance(passed);
@@ -184,12 +189,26 @@ class Page {
       this.live?.look();
     }
     this.dirty = fades;
+    this.fitFrames(moved || mixed, since);
     const pads = [...(navigator.getGamepads?.() ?? [])].some((pad) => pad?.connected);
-    if (moved || fades || pads || this.walker.keys.size > 0 || this.walker.stick.some((part) => part !== 0)) {
+    if (moved || fades || pads || this.renderer.share < 1 || this.dirty || this.walker.keys.size > 0 || this.walker.stick.some((part) => part !== 0)) {
       this.scheduled = true;
       requestAnimationFrame((next) => this.frame(next));
     }
     this.frameTime = performance.now() - began;
+  }
+
+  fitFrames(moved, milliseconds) {
+    const {renderer} = this;
+    if (moved) {
+      this.lastMotion = this.lastTime;
+      if (milliseconds > motion.slow) this.movingShare = Math.max(motion.least, 0.7 * this.movingShare);
+      else if (milliseconds < motion.quick) this.movingShare = Math.min(1, this.movingShare / 0.9);
+      renderer.share = this.movingShare;
+    } else if (renderer.share < 1 && this.lastTime - this.lastMotion > motion.rest) {
+      renderer.share = 1;
+      this.dirty = true;
+    }
   }
 
   makeViews() {
@@ -349,6 +368,7 @@ class Page {
   }
 
   save() {
+    this.renderer.share = 1;
     this.renderer.draw(this.walker);
     this.canvas.toBlob((blob) => {
       saveFile(`${room.title}.png`, blob);

@@ -22,6 +22,7 @@ class Renderer {
     this.falseColours = {contours: 0, top: 1000};  // filled, in steps, isolines, bands; lux
     this.unit = 1 / room.display.exposure;  // luminance of white when the page was opened
     this.drawCalls = 0;
+    this.share = 1;           // of the pixels that are drawn, across and down
     this.isLit = !room.live;  // else an even light stands for that which is to come
     this.rest = null;         // an exact picture of where the viewer rests
     this.overlays = new Set();  // that draw over each frame, given its camera
@@ -544,11 +545,17 @@ class Renderer {
             projection: perspective(walker.angle, aspect, 0.03, this.far)};
   }
 
+  /// Pixels of the page that the canvas takes, across and down.
+  get size() {
+    const dense = Math.min(window.devicePixelRatio || 1, 2);
+    return [this.canvas.clientWidth, this.canvas.clientHeight].map(
+        (pixels) => Math.max(1, Math.round(pixels * dense)));
+  }
+
   /// Fits the canvas to its place on the page.
   fit() {
-    const dense = Math.min(window.devicePixelRatio || 1, 2);
-    const width = Math.max(1, Math.round(this.canvas.clientWidth * dense));
-    const height = Math.max(1, Math.round(this.canvas.clientHeight * dense));
+    const share = this.rest ? 1 : this.share;
+    const [width, height] = this.size.map((pixels) => Math.max(1, Math.round(share * pixels)));
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
@@ -562,14 +569,14 @@ class Renderer {
     const {width, height} = this.canvas, {screen, falseColours: {contours, top}, rest} = this;
     const camera = this.cameraOf(walker, width / height), showsLux = this.mode === 2;
     const drawInto = (target, mode) => {
-      screen.begin(width, height);
+      screen.begin(width, height, this.share === 1);
       this.drawView(camera, mode);
       screen.keep(target);
     };
     const isSeen = !showsLux || contours >= 2;  // between lines and bands
     if (isSeen && (!rest || (rest.shown < 1 && !rest.before))) drawInto(screen.pixels, 0);
     if (showsLux) drawInto(screen.luminance, 2);
-    screen.fit(width, height);
+    screen.fit(width, height, this.share === 1);
     screen.show(this.exposure, rest,
                 showsLux ? {contours, lux: room.lux * this.unit / top, palette: this.palette} : null);
     for (const draw of this.overlays) draw(camera);
