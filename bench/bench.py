@@ -78,6 +78,7 @@ def program_of(name, folder):
     target = f"photile_bench_{name}"
     program = folder / target
     if folder == BUILD / "bench":
+        print(f"building {target}", file=sys.stderr)
         built = subprocess.run(["cmake", "--build", BUILD, "--target", target],
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if built.returncode != 0:
@@ -135,7 +136,7 @@ def pairs(arguments):
     files = [RESULTS / f"{arguments.name}-{which}.json" for which in ("before", "after")]
     for file, results in zip(files, turns):
         file.write_text(json.dumps(joined(results), indent=1) + "\n")
-    compare.compare_files(*files)
+    compare.compare_files(*files, tells_all=True)
 
 
 def main():

@@ -42,8 +42,11 @@ def words_of(key):
                      for name, value in key)
 
 
-def with_range(time):
-    return f"{time['median']:.4g} [{time['min']:.4g}, {time['max']:.4g}]"
+def with_range(row, name):
+    """A time, of one query where there are some: rows that are alike may have answered other numbers of them."""
+    scale, unit = (1e6 / row["queries"], "us a query") if row.get("queries") else (1, "s")
+    median, least, most = (scale * row[name][part] for part in ("median", "min", "max"))
+    return f"{median:.4g} [{least:.4g}, {most:.4g}] {unit}"
 
 
 def samples_a_query(row, name):
@@ -77,8 +80,9 @@ def times_of(row, one_processor):
     return [name for name in names if name not in ("processor seconds", "system seconds")]
 
 
-def compare(before, after):
-    """Lines that say what changed, the number of times compared, and of those with too few pairs."""
+def compare(before, after, tells_all=False):
+    """Lines that say what changed (`tells_all`: and what did not), the number of times compared, and of those with too
+    few pairs."""
     lines, compared, few = [], 0, 0
     rows = {key_of(row): row for row in before["results"]}
     one_processor = (after.get("device") or {}).get("type") == "cpu"
@@ -95,11 +99,12 @@ def compare(before, after):
             pairs = list(zip(samples_a_query(old, name), samples_a_query(row, name)))
             few += len(pairs) < LEAST_PAIRS
             direction = change(pairs)
+            ratio = statistics.median([second / first for first, second in pairs if first > 0] or [1])
+            told = (f"{words_of(key)}, {name} {with_range(old, name)} -> {with_range(row, name)}, {len(pairs)} pairs")
             if direction != 0:
-                ratio = statistics.median(second / first for first, second in pairs if first > 0)
-                lines.append(f"{max(ratio, 1 / ratio):.2f} x {'slower' if direction > 0 else 'faster'}: "
-                             f"{words_of(key)}, {name} {with_range(old[name])} -> "
-                             f"{with_range(row[name])} s, {len(pairs)} pairs")
+                lines.append(f"{max(ratio, 1 / ratio):.2f} x {'slower' if direction > 0 else 'faster'}: {told}")
+            elif tells_all:
+                lines.append(f"within the noise, {ratio:.2f} times: {told}")
     lines += [f"only before: {words_of(key)}" for key in rows]
     return lines, compared, few
 
@@ -128,7 +133,7 @@ def read(path):
     return content
 
 
-def compare_files(before_file, after_file):
+def compare_files(before_file, after_file, tells_all=False):
     """Prints what `compare` and `differences` found."""
     before, after = read(before_file), read(after_file)
     if before.get("bench") != after.get("bench"):
@@ -136,7 +141,7 @@ def compare_files(before_file, after_file):
                  f"{after_file} of {after.get('bench')}; compare files of one bench")
     for line in differences(before, after):
         print(f"not the same: {line}")
-    lines, compared, few = compare(before, after)
+    lines, compared, few = compare(before, after, tells_all)
     for line in lines:
         print(line)
     changed = sum(" x " in line for line in lines)

@@ -15,7 +15,7 @@ from .scenes import Scene, floats, vector
 __all__ = ["Illuminance", "grid", "measure"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Illuminance:
     """Lux at points, with standard errors.
 
@@ -38,6 +38,10 @@ class Illuminance:
 
     def __len__(self) -> int:
         return len(self.lux)
+
+    def __repr__(self) -> str:
+        span = f", {self.lux.min():.4g} to {self.lux.max():.4g} lx" if len(self) else ""
+        return f"<photile.Illuminance: {len(self)} points{span}>"
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
         """Columns of a table: ``pandas.DataFrame(measured.columns())``."""

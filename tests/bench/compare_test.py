@@ -37,7 +37,7 @@ class CompareTest(unittest.TestCase):
     def test_a_change_shows_below_a_load_that_differs_more_from_turn_to_turn(self):
         result = self.run_on(record([row("grid", [1.0, 4.0, 2.0, 8.0, 1.0])]),
                              record([row("grid", [1.1, 4.4, 2.2, 8.8, 1.1])]))
-        self.assertIn("1.10 x slower: k 50, grid, plane, seconds 2 [1, 8] -> 2.2 [1.1, 8.8] s, 5 pairs", result.stdout)
+        self.assertIn("1.10 x slower: k 50, grid, plane, seconds 2 [1, 8] s -> 2.2 [1.1, 8.8] s, 5 pairs", result.stdout)
 
     def test_one_of_eight_pairs_may_disagree_and_one_of_seven_not(self):
         for count, changed in ((8, 0), (9, 1)):

@@ -206,7 +206,7 @@ def run(words, folder):
     ended = ["timeout", "--preserve-status", "-s", "INT", "5"] if words[1] == "view" else []
     done = subprocess.run([*ended, PHOTILE, *words[1:]], cwd=folder, env=environment, timeout=PATIENCE, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    return (0 if done.returncode == (130 if ended else 0) else done.returncode), done.stdout
+    return done.returncode, done.stdout
 
 
 def main():

@@ -178,7 +178,7 @@ void run_validate(ValidateOptions& options) {
   if (failed > 0) {
     throw Error(
         fmt::format("{} of {} readings are not within {}%; those that are only too noisy "
-                    "need more --photons or --paths",
+                    "need more --photons or --paths, and fewer photons need a lower -k",
                     failed, rows.size(), 100 * validation::tolerance));
   }
 }

@@ -155,7 +155,6 @@ void run_view(ViewOptions& options) {
   room.finish([&](const LightMapContents& light_maps) {
     if (!render.save_maps.empty()) keep_light_maps(light_maps, render, progress);
   });
-  throw_if_stop_requested();
 }
 
 }  // namespace
