@@ -473,6 +473,7 @@ def check_slow_frames(browser):
     """Frames that take long while something moves are followed by ones of fewer pixels; at rest all are drawn."""
     widths = browser.run("""
 const widths = [];
+page.movingShare = 1;
 for (let i = 0; i < 3; ++i) {
   page.fitFrames(true, 200);
   page.renderer.draw(page.walker);
