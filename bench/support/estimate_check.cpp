@@ -129,7 +129,8 @@ std::uint64_t EstimateCheck::radii_that_differ(std::span<const float> squared_ra
 }
 
 void print_fault(const std::string& timed, std::uint64_t differences) {
-  std::cerr << fmt::format("{}: {} values differ from the search in double precision\n", timed, differences);
+  std::cerr << fmt::format("{}: {} values differ from the search in double precision\n", timed,
+                           differences);
 }
 
 }  // namespace photile::bench

@@ -127,9 +127,10 @@ void add_relight_command(CLI::App& photile) {
       ->type_name("");
   const OptionGroup lamps(*command), sky(*command, "Sky of patches");
   add_light_change_option(lamps, options->lights);
-  lamps.repeat("--mood", options->moods, "NAME",
-               "mood saved on the live page under this name; --light changes it further; repeatable "
-               "with --sheet");
+  lamps.repeat(
+      "--mood", options->moods, "NAME",
+      "mood saved on the live page under this name; --light changes it further; repeatable "
+      "with --sheet");
   add_moods_file_option(lamps, options->moods_file);
   lamps.add("--sheet", options->sheet, "FILE.png",
             "contact sheet of the given moods, or of all in the file, with one exposure",

@@ -393,7 +393,8 @@ void add_walk_command(CLI::App& photile) {
            file_ending_in({".exr", ".png"}))
       ->required();
   output.flag("--quick", options->quick,
-              "draw only light maps, as the live page does while its viewer moves: matt surfaces, no layers");
+              "draw only light maps, as the live page does while its viewer moves: matt surfaces, "
+              "no layers");
   output.add("--png", options->png, "PATTERN.png", "frames as PNG, with the exposure of the first",
              file_ending_in({".png"}));
   add_exposure_option(output, options->render.pictures.tone_mapping.exposure);
