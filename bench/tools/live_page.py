@@ -1,6 +1,7 @@
 """`photile view` and its page in Chromium, which draws by its own rasteriser (SwiftShader) on the processor. Needs Debian's
 chromium, chromium-driver and python3-selenium, and PIL."""
 
+import base64
 import io
 import os
 import pathlib
@@ -32,6 +33,12 @@ def open_browser(width, height):
 def screenshot(driver):
     """RGB bytes."""
     return np.asarray(Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("RGB"))
+
+
+def canvas(driver):
+    """RGB bytes of the room alone, drawn anew."""
+    url = driver.execute_script("page.renderer.draw(page.walker); return page.canvas.toDataURL('image/png')")
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(url.split(",")[1]))).convert("RGB"))
 
 
 class Served:

@@ -26,7 +26,7 @@ MEASURES = {
     "pictures/compare_areas.py": ["host/renderer", "kernels"],
     "pictures/gallery.py": ["host/renderer", "kernels"],
     "pictures/gloss_filter.py": ["host/renderer/render", "host/renderer/trace"],
-    "pictures/live_film.py": ["host/apps/publish", "host/apps/serve", "host/apps/view"],
+    "pictures/live_times.py": ["host/apps/publish", "host/apps/serve", "host/apps/view"],
     "pictures/quality.py": ["host/renderer", "kernels"],
     "rivals/radiance.py": ["host/lighting/measuring", "host/renderer"],
 }

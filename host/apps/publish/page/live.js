@@ -152,8 +152,22 @@ class Live {
       }
       this.known = header.version;
       this.showLight(header.mean);
+      await this.pause();
     }
     this.takes = false;
+  }
+
+  /// Waits for the next frame and four times as long as it takes: without a graphics chip it is drawn on the processor
+  /// that computes the light.
+  async pause() {
+    const later = (milliseconds) => new Promise((done) => { setTimeout(done, milliseconds); });
+    const {gl} = this.renderer;
+    await new Promise(requestAnimationFrame);
+    const began = performance.now(), fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    while (gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) await later(10);
+    gl.deleteSync(fence);
+    await later(4 * (performance.now() - began));
   }
 
   showLight(mean) {

@@ -182,7 +182,7 @@ class Page {
     const moved = this.walker.advance(passed), mixed = this.lightIsOld;
     this.lastTime = time;
     this.mixLight();
-    const fades = this.live?.advance(passed);
+    const fades = this.live?.advance(since / 1000);
     if (moved || fades || this.dirty) {
       this.renderer.draw(this.walker);
       this.points.place();
