@@ -58,7 +58,7 @@ def sent(photile, scene, options):
         text = page.getresponse().read().decode()
         of_page = time.monotonic() - begin
         edition = json.loads(text.split('id="room">')[1].split("</script>")[0])["live"]
-        news.request("GET", f"{address.path}events?viewer=bench&edition={edition}")
+        news.request("GET", f"{address.path}events?viewer=bench&since={edition}")
         for line in news.getresponse():
             if line.startswith(b"data: ") and json.loads(line[6:]).get("light", 0) > 0:
                 return of_page, time.monotonic() - begin

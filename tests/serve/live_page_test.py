@@ -113,14 +113,16 @@ def check_picture(browser, folder, scene):
 def check_lux(browser, folder, scene):
     browser.stand([3, 1.6, 3.5], [0, -0.6, -0.8])
     hit = browser.run(page_test.CLICK, 160, 100)
-    read = ("const [first] = page.points.all; if (!(first.repeats.length >= {})) return null;"
-            "const {{lux, error}} = page.points.read(first); return {{lux: lux[0], error: error[0]}};")
+    # Of the first repeats alone: a quick machine has more of them at once.
+    read = ("const [first] = page.points.all, {repeats} = first; if (!(repeats.length >= 60)) return null;"
+            "first.repeats = repeats.slice(0, arguments[0]); const {lux, error} = page.points.read(first);"
+            "first.repeats = repeats; return {lux: lux[0], error: error[0]};")
     for x in (160, 60):
         browser.mouse("Pressed", x, 100)
         browser.mouse("Released", x, 100)
-    early = browser.until(read.format(2))
-    late = browser.until(read.format(60))
-    assert late["error"] < early["error"] or early["error"] == 0, (early, late)
+    browser.until("return page.points.all[0].repeats.length >= 60")
+    early, late = browser.run(read, 8), browser.run(read, 60)
+    assert late["error"] < early["error"], (early, late)
     browser.until("return page.points.all[1].repeats.length >= 60")
     points = folder / "click.pts"
     points.write_text(" ".join(f"{number:.7g}" for number in hit["place"] + hit["normal"]) + "\n")
@@ -255,7 +257,9 @@ return [...texel];"""
     assert tinted.mean() > 0.1 and yellow.mean() > 0.1 and tinted.mean() + yellow.mean() > 0.9
     assert "photons on it" in browser.run("return document.querySelector('#display .legend').textContent")
     browser.run(f"{toggle}.click()")
-    assert np.array_equal(np.array(browser.run(pixel)).reshape(-1, 4)[:, :3], plain)
+    browser.exact()
+    again = np.array(browser.run(pixel)).reshape(-1, 4)[:, :3]
+    assert np.array_equal(again, plain), np.abs(again - plain).max()
 
 
 def check_settings(browser):

@@ -100,6 +100,7 @@ class LiveRoom::News : public NewsSource {
     };
     const std::shared_ptr<LiveLight>& light = room_.edition_.light;
     if (viewer.edition != room_.edition_.number) {  // the page shows what it has until then
+      tell("stale", true);
       if (light->version() > 0) tell("reload", true);
       return news.empty() ? "" : news.dump();
     }

@@ -24,8 +24,8 @@ const float brightest = 1e9;
 float largest(vec3 c) { return max(c.r, max(c.g, c.b)); }
 
 vec3 lightAt(ivec2 place) {
-  vec3 light = texelFetch(uPicture, place, 0).rgb;
-  if (uShown > 0.0) light = mix(light, texelFetch(uRest, place, 0).rgb, uShown);
+  vec3 light = texelFetch(uPicture, place, 0).rgb, rest = texelFetch(uRest, place, 0).rgb;
+  if (uShown > 0.0) light = uShown < 1.0 ? mix(light, rest, uShown) : rest;
   return min(max(light, 0.0) * uToWhite, brightest);
 }
 

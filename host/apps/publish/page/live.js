@@ -77,6 +77,7 @@ class Live {
   }
 
   hear(news) {
+    if (news.stale) this.wanted = 0;  // the server has the light of another room by now
     if (news.reload) {
       this.reload();
       return;
