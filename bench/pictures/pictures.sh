@@ -18,7 +18,7 @@ for maps in naive triangle; do
 done
 
 # A click reads the light on the table.
-bench/pictures/page_shot.py "$pictures/view.png" --then "page.point(760, 560)" -- \
+bench/pictures/page_shot.py "$pictures/view.png" --size 1120x700 --then "page.point(660, 480)" -- \
   scenes/living-room/living-room.gltf
 
 # The photon map of a triangle of the right wall: few photons, so that they can be told apart.
