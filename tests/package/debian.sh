@@ -47,7 +47,7 @@ rm -rf "$root"
 mkdir -p "$root"
 tar -C "$root" -xf "$scratch/bare.tar"
 cp "$scratch"/packages/*.deb "$root/root"
-cp -r "$source/scenes/cornell-box" "$source/docs/examples" "$root/root"
+cp -r "$source/scenes/cornell-box" "$source/scenes/gallery" "$source/docs/examples" "$root/root"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 trap 'umount "$root/proc" "$root/sys" 2> /dev/null || true' EXIT
 mount -t proc proc "$root/proc" || skip "nothing can be mounted here"
@@ -66,7 +66,7 @@ inside "printf 'P6 1 1 255\\n\\377\\377\\377' > white.ppm
   ! photile compare white.ppm white.ppm 2> error
   grep -q 'install the package photile-openimageio' error && [ \$(wc -l < error) = 1 ]" ||
   fail "a PPM without photile-openimageio is no error of a line that names it"
-report="photile measure cornell-box/cornell-box.obj --plane floor+0.2 --photons 5000 --rays 16 -q -o box.html"
+report="photile measure gallery/downlights.gltf --plane floor+0.8 --photons 5000 --rays 16 -q -o box.html"
 inside "! $report > /dev/null 2> error
   grep -q 'apt-get install python3-jinja2' error && [ \$(wc -l < error) = 1 ]" ||
   fail "a report without Debian's packages is no error of a line that names them"

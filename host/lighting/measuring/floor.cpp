@@ -19,7 +19,6 @@ namespace {
 
 const double steepest_cosine = std::cos(glm::radians(5.0));
 constexpr double level_thickness = 0.02;  // metres
-constexpr double least_room = 1.2;        // metres above a floor
 constexpr int most_surfaces_below = 1000;
 constexpr double least_share = 0.5;      // of the widest level
 constexpr std::uint32_t samples = 8192;  // points whose headroom is looked at

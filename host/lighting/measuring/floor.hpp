@@ -11,6 +11,9 @@
 
 namespace photile::measuring {
 
+/// Metres that are free above a floor.
+inline constexpr double least_room = 1.2;
+
 /// Triangles of the floor: see working_plane_grid for which they are. Empty where there is none.
 struct Floor {
   double height = 0;  ///< along `up`, metres: half of its area is not higher

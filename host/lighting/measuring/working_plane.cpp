@@ -59,8 +59,9 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
   if (floor.triangles.empty()) {
     throw InputError(
-        fmt::format("{}: no floor found; give points of measurement with --points or --grid",
-                    scene.source.string()));
+        fmt::format("{}: no floor found with {} m free above it; give points of measurement with "
+                    "--points or --grid",
+                    scene.source.string(), least_room));
   }
   const FloorPlan plan(scene, floor, axes, room ? &*room : nullptr);
   const glm::dvec2 low = plan.low() + plane.wall_band, high = plan.high() - plane.wall_band;
