@@ -1,7 +1,6 @@
 #include "serve/live_pictures.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -15,7 +14,7 @@
 
 #include "common/foreign_text.hpp"
 #include "image/glare.hpp"
-#include "photile/errors.hpp"
+#include "report/printing.hpp"
 #include "view/snapshots.hpp"
 
 namespace photile::serve {
@@ -35,25 +34,6 @@ std::string start_of(const json& header) {
   if (text.size() % 2 != 0) text += ' ';
   return fmt::format("{:08x}", text.size()) + text;
 }
-
-/// A folder of its own, with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((std::filesystem::temp_directory_path() / "photile-XXXXXX").string()) {
-    if (!mkdtemp(path_.data())) throw OutputError(fmt::format("{}: cannot be made", path_));
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::filesystem::path path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace
 
@@ -193,7 +173,7 @@ image::White white_of_scene(const LightLayers& layers, const Scene& scene, doubl
 }
 
 std::string exr_of(const view::Frame& frame, const LightMix& mix, const image::White& white) {
-  const TemporaryFolder folder;
+  const report::ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "view.exr";
   view::write_frame(file, *frame.scene, frame, mix, white);
   std::ifstream stream(file, std::ios::binary);

@@ -217,9 +217,9 @@ LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene)
 void LiveRoom::make_page() {
   Edition edition = made(1, first_scene_);
   // The room is seen before its light is computed, which takes all cores.
+  const std::lock_guard lock(mutex_);
   photons_.trace(first_scene_, parameters_.render,
                  std::exchange(parameters_.prepared, std::nullopt), parameters_.keep);
-  const std::lock_guard lock(mutex_);
   edition_ = std::move(edition);
   moods_number_ = 1;
   if (shown_.empty()) {  // light for the first page, before it tells where it looks
@@ -423,6 +423,7 @@ std::unique_ptr<NewsSource> LiveRoom::listen(const WebRequest& request) {
 
 std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
   constexpr const char* bytes = "application/octet-stream";
+  const json body = request.posts ? parsed(request.body) : json();
   std::unique_lock lock(mutex_);
   if (!request.posts && request.what.empty()) {
     news_.wait_for(lock, std::chrono::seconds(30), [&] { return !edition_.page.empty(); });
@@ -441,7 +442,6 @@ std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
     lock.unlock();
     return WebReply{bytes, picture_bytes(*picture)};
   }
-  const json body = parsed(request.body);
   json answer = json::object();
   if (request.what == "view") {
     look(viewer->second, viewer->first, body);
