@@ -222,7 +222,8 @@ def test_luminaires(folder):
         check("numbers", post(lumens=500, array={"count": [2, 1], "spacing": [0.8, 0]}, rotate=30), 200)
         check("no file yet", lamps.exists(), False)
         check("the room with it", page.hear("reload"), True)
-        check("what the old page asks for", served.request("light?viewer=a&since=0")[0], 404)
+        status, _, content = served.request("light?viewer=a&since=0")
+        check("what the old page asks for", (status, content), (204, b""))
         text = served.request()[2].decode()
         names = [light["name"] for light in json.loads(re.search('id="room">(.*?)</script>', text).group(1))["lights"]]
         check("its lights", names, ["downlight"])
@@ -291,6 +292,8 @@ def test_year(folder):
         print(second)
         room = json.loads(re.search('id="room">(.*?)</script>', served.request()[2].decode()).group(1))
         check("days", len(room["hours"]["dates"]), 12)
+        for what, power, status in (("a sky", 1, 200), ("a negative one", -1, 400), ("one beyond numbers", 1e39, 400)):
+            check(what, served.post("view", "a", {**VIEW, "sky": [power] * len(room["lights"])}), status)
 
 
 if __name__ == "__main__":

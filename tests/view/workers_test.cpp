@@ -97,7 +97,7 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
   const std::vector<glm::vec3> powers{glm::vec3(100.0f)};
   Camera camera = from_above();
   camera.position.x += 0.1;
-  Viewer viewer({camera, 40, 30, true, false, false, powers}, parameters);
+  Viewer viewer({camera, 40, 30, true, false, powers}, parameters);
   FrameWorker& frames = viewer.frames;
   wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   const auto quick = frames.latest();
@@ -105,7 +105,7 @@ TEST_CASE("with light maps a viewer moves in quick frames, and at rest sees what
   CHECK(quick->mixed[15 * 40 + 20].x > 0);
   CHECK_FALSE(frames.finished());
 
-  frames.show({from_above(), 40, 30, false, false, false, powers});
+  frames.show({from_above(), 40, 30, false, false, powers});
   const auto frame = viewer.finished();
   CHECK(frame->mixed.empty());
   parameters.film = {40, 30, 4};
@@ -119,7 +119,7 @@ TEST_CASE("of several passes a viewer at rest sees what render gives of all") {
   parameters.passes = 3;
   parameters.film = {40, 30, 4};
   parameters.light_maps = LightMapMode::off;
-  Viewer viewer({from_above(), 40, 30, false, false, false, {glm::vec3(100.0f)}}, parameters);
+  Viewer viewer({from_above(), 40, 30, false, false, {glm::vec3(100.0f)}}, parameters);
   const auto frame = viewer.finished(45'000);
   const RenderResult expected = render(viewer.scene, from_above(), test::device(), parameters);
   CHECK(frame->layers.layers[0].radiance == expected.layers.layers[0].radiance);
@@ -131,7 +131,7 @@ TEST_CASE(
   RenderParameters parameters = few_photons();
   parameters.light_map_rays = 16;
   FrameWorker frames(4, 30);
-  frames.show({from_above(), 40, 30, false, false, false, {glm::vec3(100.0f)}});
+  frames.show({from_above(), 40, 30, false, false, {glm::vec3(100.0f)}});
   std::vector<std::shared_ptr<MapGeneration>> delivered;
   std::atomic<int> count{0};
   PhotonWorker photons(scene, one_device, parameters, std::nullopt, {},
@@ -163,17 +163,17 @@ TEST_CASE(
 TEST_CASE("a lamp that is turned down is seen in the next quick frame") {
   RenderParameters parameters = few_photons();
   parameters.light_maps = LightMapMode::on;
-  Viewer viewer({from_above(), 40, 30, true, false, false, {glm::vec3(100.0f)}}, parameters);
+  Viewer viewer({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}}, parameters);
   FrameWorker& frames = viewer.frames;
   wait_for([&] { return frames.latest() && frames.latest()->emitted_photons == 40'000; });
   std::shared_ptr<const Frame> bright, dark;
   for (int i = 0; i < 20; ++i) {  // until all nodes are there
     bright = frames.latest();
-    frames.show({from_above(), 40, 30, true, false, false, {glm::vec3(100.0f)}});
+    frames.show({from_above(), 40, 30, true, false, {glm::vec3(100.0f)}});
     wait_for([&] { return frames.latest() != bright; });
   }
   bright = frames.latest();
-  frames.show({from_above(), 40, 30, true, false, false, {glm::vec3(50.0f)}});
+  frames.show({from_above(), 40, 30, true, false, {glm::vec3(50.0f)}});
   wait_for([&] { return frames.latest() != bright; });
   dark = frames.latest();
   for (std::size_t i = 0; i < bright->mixed.size(); ++i) {
@@ -192,9 +192,8 @@ TEST_CASE("pooled layers of a frame are the sums of its lights at their powers")
     mixdown.layer_of.push_back(i % 2);
     mixdown.scale.push_back(static_cast<float>(i));
   }
-  Viewer viewer(
-      {from_above(), 40, 30, false, false, false, {}, std::make_shared<LayerMixdown>(mixdown)},
-      few_photons(), 4, builder.build());
+  Viewer viewer({from_above(), 40, 30, false, false, {}, std::make_shared<LayerMixdown>(mixdown)},
+                few_photons(), 4, builder.build());
   const auto frame = viewer.finished();
   REQUIRE(frame->layers.layers.size() == 2);
   RenderParameters parameters = few_photons();

@@ -14,12 +14,10 @@
 #include "common/foreign_text.hpp"
 #include "common/json_object.hpp"
 #include "image/white.hpp"
-#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "render/setting.hpp"
+#include "serve/page_requests.hpp"
 #include "view/light_board.hpp"
-#include "view/moving_sky.hpp"
 #include "view/snapshots.hpp"
 
 namespace photile::serve {
@@ -29,36 +27,11 @@ using nlohmann::json;
 
 /// Seconds that a page waits for news before it is told that there are none.
 constexpr auto news_wait = std::chrono::milliseconds(500);
-/// Pixels on a side of a picture, and bytes of all of its layers.
-constexpr int most_side = 8192;
-constexpr double most_picture_bytes = 1e9;
 constexpr std::size_t longest_name = 100;
 /// Points of one viewer that are measured.
 constexpr std::size_t most_points = 99;
 /// Pixels of the view that light is computed for before a page tells its own.
 constexpr int opening_width = 1280, opening_height = 800;
-
-json parsed(const std::string& body) {
-  check_json_depth(body, "request");
-  json document = json::parse(body, nullptr, /*allow_exceptions=*/false);
-  if (!document.is_object()) throw InputError("request: is no JSON object");
-  return document;
-}
-
-/// An sRGB colour that tints a light so.
-glm::vec3 srgb_of(const glm::dvec3& linear) {
-  const double most = std::max({linear.x, linear.y, linear.z, 1e-9});
-  glm::vec3 colour;
-  for (int c = 0; c < 3; ++c) {
-    const double part = std::max(0.0, linear[c] / most);
-    colour[c] = static_cast<float>(part <= 0.0031308 ? 12.92 * part
-                                                     : 1.055 * std::pow(part, 1 / 2.4) - 0.055);
-  }
-  return colour;
-}
-
-/// Settings that pages change.
-constexpr std::array page_settings{"photons_emitted", "neighbours", "radius", "maps", "area"};
 
 bool is_same(const Camera& a, const Camera& b) {
   return a.position == b.position && a.forward == b.forward &&
@@ -105,7 +78,7 @@ class LiveRoom::News : public NewsSource {
       return news.empty() ? "" : news.dump();
     }
     if (light) tell("light", light->version());
-    tell("settings", room_.settings());
+    tell("settings", settings_of(room_.parameters_.render));
     if (room_.parameters_.luminaires) tell("luminaires", room_.parameters_.luminaires->state());
     if (room_.year_.possible()) {
       tell("year", {{"running", room_.year_.running()}, {"lines", room_.year_.lines()}});
@@ -430,7 +403,8 @@ std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
     return WebReply{"text/html; charset=utf-8", edition_.page};
   }
   const auto viewer = viewers_.find(request.viewer);
-  if (viewer == viewers_.end() || viewer->second.edition != edition_.number) return std::nullopt;
+  if (viewer == viewers_.end()) return std::nullopt;
+  if (viewer->second.edition != edition_.number) return WebReply{};  // it is told to load again
   if (!request.posts) {
     if (request.what == "light" && edition_.light) {
       const std::shared_ptr<const LiveLight> light = edition_.light;
@@ -474,7 +448,8 @@ std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
     const std::shared_ptr<const view::Frame> picture = viewer->second.picture;
     const bool marks = request.what == "glare";
     if (!picture || (marks && !picture->reflections)) return std::nullopt;
-    const LightMix mix = mix_of_layers(picture->layers, edition_.mix, lights_in(body));
+    const LightMix mix =
+        mix_of_layers(picture->layers, edition_.mix, lights_in(body, edition_.mix.lights.size()));
     const double limit = marks ? asked.number("limit", 0, limits::max_light_power) : 0;
     if (marks && !(limit > 0)) asked.refuse("'limit' is not above 0");
     lock.unlock();
@@ -504,47 +479,8 @@ std::optional<WebReply> LiveRoom::answer(const WebRequest& request) {
 
 /// Where a viewer looks from now on.
 void LiveRoom::look(Viewer& viewer, const std::string& name, const json& body) {
-  const JsonObject view(body, "view",
-                        {"eye", "forward", "angle", "width", "height", "moving", "sky", "glare"});
-  const glm::dvec3 eye = view.vector("eye"), forward = view.vector("forward");
-  if (!(glm::length(forward) > 0.5)) view.refuse("looks nowhere");
-  view::FrameRequest& request = viewer.request;
-  request.camera = Camera::look_at(eye, eye + forward, {0, 1, 0}, view.number("angle", 0.01, 3.0));
-  request.width = view.count("width", 1, most_side);
-  request.height = view.count("height", 1, most_side);
-  request.moving = body.value("moving", json()) == true;
-  request.reflections = body.value("glare", json()) == true;
-  request.powers = view::scales_of(edition_.mix);
-  request.mixdown = nullptr;
-  std::size_t layers = edition_.mix.lights.size();
-  if (view.has("sky")) {
-    const std::vector<std::uint32_t> patches = loading::patch_of_layers(edition_.mix);
-    const json& sky = body["sky"];
-    if (!sky.is_array() || sky.size() != patches.size()) view.refuse("has another sky");
-    auto mixdown = std::make_shared<LayerMixdown>();
-    mixdown->layer_of.assign(patches.size(), 0);
-    mixdown->scale.assign(patches.size(), 1.0f);
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      if (patches[i] != none) {
-        if (!sky[i].is_number()) view.refuse("has another sky");
-        mixdown->scale[i] = sky[i].get<float>();
-        continue;
-      }
-      mixdown->layer_of[i] = static_cast<std::uint32_t>(mixdown->layers.size());
-      mixdown->layers.push_back(edition_.mix.lights[i].name);
-    }
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      if (patches[i] != none) {
-        mixdown->layer_of[i] = static_cast<std::uint32_t>(mixdown->layers.size());
-      }
-    }
-    mixdown->layers.emplace_back("sky");
-    layers = mixdown->layers.size();
-    request.mixdown = std::move(mixdown);
-  }
-  const double bytes = 16.0 * request.width * request.height * static_cast<double>(layers);
-  if (bytes > most_picture_bytes) request.moving = true;  // no exact picture
-  viewer.done = request.moving;
+  viewer.request = view_in(body, edition_.mix);
+  viewer.done = viewer.request.moving;
   viewer.picture = nullptr;
   show(name);
 }
@@ -577,21 +513,7 @@ void LiveRoom::change_moods(const json& body) {
   if (!keeps) {
     moods_.remove(name);
   } else {
-    view::LightBoard board(edition_.mix);
-    for (view::LightControl& control : board.controls()) {
-      const json lights = body.value("lights", json::object());
-      if (!lights.is_object() || !lights.contains(control.name)) continue;
-      const JsonObject light(lights[control.name], "mood", {"power", "on", "kelvin", "colour"});
-      control.power = light.number("power", 0, limits::max_light_power);
-      control.on = lights[control.name].value("on", json()) == true;
-      if (light.has("kelvin")) {
-        control.kelvin =
-            light.number("kelvin", limits::min_color_temperature, limits::max_color_temperature);
-      } else if (light.has("colour")) {
-        control.color = srgb_of(light.vector("colour"));
-      }
-    }
-    moods_.keep(name, board);
+    moods_.keep(name, board_in(body.value("lights", json::object()), edition_.mix));
   }
   find_presets();
   ++moods_number_;
@@ -599,62 +521,10 @@ void LiveRoom::change_moods(const json& body) {
 
 /// What a page sets of the settings; photons are traced again.
 void LiveRoom::change_settings(const json& body) {
-  RenderParameters changed = parameters_.render;
-  for (const auto& [name, value] : body.items()) {
-    if (std::find(page_settings.begin(), page_settings.end(), name) == page_settings.end()) {
-      throw InputError(fmt::format("settings: '{}' is none that pages change", one_line(name)));
-    }
-    const Setting& setting = setting_named(name);
-    SettingValue asked = std::string_view();
-    const std::string word = value.is_string() ? value.get<std::string>() : "";
-    if (value.is_number_unsigned() && std::holds_alternative<WholeNumbers>(setting.range)) {
-      asked = value.get<std::uint64_t>();
-    } else if (value.is_number()) {
-      asked = value.get<double>();
-    } else {
-      asked = word;
-    }
-    check_value(name, asked, setting.range);
-    setting.set(changed, asked);
-  }
-  check(changed);
-  if (changed.maps == MapMode::naive) throw UsageError("maps: naive ones have no light maps");
-  parameters_.render = changed;
+  parameters_.render = settings_in(body, parameters_.render);
   settings_changed_ = true;
   traced_as_asked_ = false;
   for (auto& [name, viewer] : viewers_) viewer.done = viewer.request.moving;
-}
-
-/// As pages show them.
-json LiveRoom::settings() const {
-  json list = json::array();
-  for (const char* const name : page_settings) {
-    const Setting& setting = setting_named(name);
-    json& entry = list.emplace_back(json{{"name", name}, {"help", setting.help}});
-    entry["value"] =
-        setting.is_given(parameters_.render) ? text_of(setting.value(parameters_.render)) : "";
-    if (const auto* words = std::get_if<Words>(&setting.range)) entry["words"] = words->words;
-  }
-  return list;
-}
-
-/// The lights of a page, in the order of the mix: power, and the tint's parts.
-std::vector<ShownLight> LiveRoom::lights_in(const json& body) const {
-  std::vector<ShownLight> lights;
-  const json rows = body.value("mix", json());
-  const auto refuse = [] { throw InputError("mix: is not four numbers for each light"); };
-  if (!rows.is_array() || rows.size() != edition_.mix.lights.size()) refuse();
-  for (const json& row : rows) {
-    if (!row.is_array() || row.size() != 4) refuse();
-    for (const json& number : row) {
-      if (!number.is_number()) refuse();
-      const double value = number.get<double>();
-      if (!(value >= 0 && value <= limits::max_light_power)) refuse();
-    }
-    lights.push_back(
-        {row[0].get<double>(), {row[1].get<float>(), row[2].get<float>(), row[3].get<float>()}});
-  }
-  return lights;
 }
 
 }  // namespace photile::serve

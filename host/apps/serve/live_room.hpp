@@ -114,8 +114,6 @@ class LiveRoom {
   void point(Viewer& viewer, const nlohmann::json& body);
   void change_moods(const nlohmann::json& body);
   void change_settings(const nlohmann::json& body);
-  nlohmann::json settings() const;
-  std::vector<ShownLight> lights_in(const nlohmann::json& body) const;
   void find_presets();
   nlohmann::json work_of(const Viewer& viewer) const;
   void changed();

@@ -110,7 +110,9 @@ WebServer::WebServer(const WebAddress& address, Answer answer, Listen listen)
       return;
     }
     try {
-      if (std::optional<WebReply> reply = answer_(asked)) {
+      if (std::optional<WebReply> reply = answer_(asked); reply && reply->type.empty()) {
+        response.status = 204;
+      } else if (reply) {
         response.set_content(std::move(reply->body), reply->type.c_str());
       } else {
         response.status = 404;

@@ -33,7 +33,7 @@ struct WebRequest {
 };
 
 struct WebReply {
-  std::string type, body;
+  std::string type, body;  ///< no type: there is nothing to say
 };
 
 /// News for one page, as long as it is open.

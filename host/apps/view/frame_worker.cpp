@@ -1,8 +1,6 @@
 #include "view/frame_worker.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "common/stoppable_progress.hpp"
@@ -10,31 +8,12 @@
 
 namespace photile::view {
 
-void FrameSize::record(double pixels, double seconds) {
-  const double latest = seconds / pixels;
-  constexpr double weight = 0.3;  // of the newest frame: steady, and adapted in a few frames
-  seconds_per_pixel_ =
-      seconds_per_pixel_ > 0 ? (1 - weight) * seconds_per_pixel_ + weight * latest : latest;
-}
-
-std::pair<int, int> FrameSize::fit(int width, int height) const {
-  if (seconds_per_pixel_ <= 0) return {width, height};
-  const double pixels = static_cast<double>(width) * height;
-  const double scale = std::clamp(std::sqrt(budget_ / (seconds_per_pixel_ * pixels)), 1.0 / 8, 1.0);
-  const auto scaled = [&](int length) {
-    return std::max(1, static_cast<int>(std::lround(length * scale)));
-  };
-  return {scaled(width), scaled(height)};
-}
-
 namespace {
 
 /// Seconds of valuing nodes before the first picture of a scene is shown.
 constexpr double first_fill = 0.35;
 /// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
-/// Of each side of a picture that shows a lamp which was just set, before the whole one does.
-constexpr int relit_fraction = 2;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
 constexpr int first_samples = 4, more_samples = 4;
@@ -45,7 +24,6 @@ FrameWorker::FrameWorker(int most_samples, double frames_per_second, Drawn drawn
     : most_samples_(most_samples),
       drawn_(std::move(drawn)),
       frame_seconds_(1 / frames_per_second),
-      size_(frames_per_second),
       thread_([this](std::stop_token stop) { work(std::move(stop)); }) {}
 
 FrameWorker::~FrameWorker() { stop(); }
@@ -134,10 +112,8 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const FrameRequest& requested = task.request;
   MapGeneration& maps = *task.maps;
   const bool is_first = std::exchange(drawn_scene_, maps.scene) != maps.scene;
-  // A dragged slider requests frames all the time: a frame that is shown at once is finished in any
-  // case.
-  bool at_once = is_first || requested.moving || requested.relit;
-  Film film{requested.width, requested.height, 1};
+  bool at_once = is_first || requested.moving;
+  const Film film{requested.width, requested.height, 1};
   std::vector<glm::vec3> picture;
   const auto hand_over = [&](const DrawnFrame& drawn) {
     Frame frame;
@@ -167,12 +143,6 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     if (ended()) throw Interrupted();
     hand_over(drawn);
   };
-  if (requested.relit && !requested.moving && !is_first) {
-    film.width = std::max(1, requested.width / relit_fraction);
-    film.height = std::max(1, requested.height / relit_fraction);
-    draw_with({0, ended});
-    film = {requested.width, requested.height, 1};
-  }
   const double seconds = is_first           ? first_fill
                          : requested.moving ? time_to_fill(task, draw_seconds_)
                                             : 0;
@@ -183,13 +153,11 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
   Film film;
   film.width = task.request.width;
   film.height = task.request.height;
-  if (task.request.moving) std::tie(film.width, film.height) = size_.fit(film.width, film.height);
   film.samples_per_pixel = task.samples;
   // Requests while the viewer moves would otherwise let no frame end.
   StoppableProgress progress(Progress::none(), [&] {
     return stop.stop_requested() || (!task.request.moving && outdated(task));
   });
-  const Stopwatch stopwatch;
   const LayerMixdown* const mixdown = task.request.mixdown.get();
   RenderResult result =
       task.maps->renderer->render(camera_hits(task.request.camera), film, progress, mixdown);
@@ -198,10 +166,6 @@ std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, co
     reflections = std::move(
         task.maps->renderer->render(reflected_hits(task.request.camera), film, progress, mixdown)
             .layers);
-  }
-  // The first frame of maps waits for kernels to be compiled.
-  if (std::exchange(timed_maps_, task.maps.get()) == task.maps.get()) {
-    size_.record(static_cast<double>(film.width) * film.height * task.samples, stopwatch.seconds());
   }
   return std::make_shared<Frame>(Frame{std::move(result.layers),
                                        {},

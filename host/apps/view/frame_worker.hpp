@@ -1,4 +1,4 @@
-// Frames of the walkthrough, rendered on their own thread, as large as the requested rate allows.
+// Frames of the walkthrough, rendered on their own thread.
 #pragma once
 
 #include <condition_variable>
@@ -9,7 +9,6 @@
 #include <mutex>
 #include <optional>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "view/frame.hpp"
@@ -17,32 +16,13 @@
 
 namespace photile::view {
 
-/// Learns from each frame what a pixel costs.
-class FrameSize {
- public:
-  explicit FrameSize(double frames_per_second) : budget_(1 / frames_per_second) {}
-
-  /// A frame of this many pixels took this many seconds.
-  void record(double pixels, double seconds);
-
-  /// Width and height in the page's proportions, at most the page and at least an eighth of it;
-  /// the whole before anything was recorded.
-  std::pair<int, int> fit(int width, int height) const;
-
- private:
-  double budget_;                 ///< seconds
-  double seconds_per_pixel_ = 0;  ///< smoothed; 0 = unknown
-};
-
 /// What a frame is to show.
 struct FrameRequest {
   Camera camera;  ///< in the scene's coordinates
   int width = 0, height = 0;
-  /// While the viewer moves, frames are as small as their rate asks for. Standing still, they are
-  /// whole and get more and more samples.
+  /// Standing still, frames get more and more samples.
   bool moving = false;
   bool reflections = false;  ///< asks for Frame::reflections
-  bool relit = false;        ///< only lamps changed: a smaller quick frame comes first
   /// Per layer, power x tint: asks for quick frames where there are light maps, while the viewer
   /// moves and until no node is lacking. Empty: frames with layers are requested.
   std::vector<glm::vec3> powers = {};
@@ -109,12 +89,10 @@ class FrameWorker {
   std::shared_ptr<const Frame> latest_;
   std::exception_ptr error_;
   // The worker's alone:
-  const double frame_seconds_;  ///< aimed at while moving
-  FrameSize size_;
+  const double frame_seconds_;                               ///< aimed at while moving
   std::optional<std::shared_ptr<const Scene>> drawn_scene_;  ///< that of the frame before
-  double draw_seconds_ = 0;                    ///< of the newest quick frame, its nodes left out
-  const MapGeneration* timed_maps_ = nullptr;  ///< those of the frame before
-  std::jthread thread_;                        // last: it uses all of the above
+  double draw_seconds_ = 0;  ///< of the newest quick frame, its nodes left out
+  std::jthread thread_;      // last: it uses all of the above
 };
 
 }  // namespace photile::view

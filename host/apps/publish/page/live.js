@@ -56,7 +56,7 @@ class Live {
   post(what, body) {
     const answered = this.posts.then(async () => {
       const answer = await this.ask(what, body);
-      if (!answer.ok) return null;
+      if (answer.status !== 200) return null;
       const told = await answer.json();
       if (told.message) tell(told.message);
       return told;
@@ -69,7 +69,7 @@ class Live {
   ///   body   that is posted to ask for it
   async load(what, body) {
     const answer = await (body ? this.ask(what, body) : fetch(what));
-    if (!answer.ok) return null;
+    if (answer.status !== 200) return null;
     const bytes = new Uint8Array(await answer.arrayBuffer());
     const text = new TextDecoder();
     const start = 8 + parseInt(text.decode(bytes.subarray(0, 8)), 16);
