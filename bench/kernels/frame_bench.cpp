@@ -1,4 +1,5 @@
 // A frame of a walkthrough: the camera moved, photon maps stay. One sample a pixel.
+#include "common/touched_memory.hpp"
 #include "photile/estimator.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/photons.hpp"
@@ -92,6 +93,7 @@ bool run(BenchOptions& options) {
 
 int main(int argument_count, char** arguments) {
   BenchOptions options;
+  keep_freed_memory();  // as the command does
   CLI::App command("A frame of a walkthrough", "frame");
   add_options(command, options);
   return run_bench(command, argument_count, arguments, [&] { return run(options); });

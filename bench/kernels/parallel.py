@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """How much of a command's time one thread alone has work, stage by stage, and what that leaves of more cores.
 
-    bench/kernels/parallel.py [--program FILE] [--threads N] [-o FILE.json] [-- COMMAND OF PHOTILE...]
+    bench/kernels/parallel.py [--program FILE] [--threads N] [-o FILE.json] [--write] [-- COMMAND OF PHOTILE...]
 
-Without a command it measures those of COMMANDS. The states of all threads are read every few milliseconds. A thread
+Without a command it measures those of COMMANDS; --write puts their sums, and the rivals' of docs/measured/quality.md by
+their wall seconds, into docs/measured/cores.md. The states of all threads are read every few milliseconds. A thread
 that waits for a processor counts as one with work, and so does one of TBB that looks for work and waits for a
 processor meanwhile: beside other work on the machine the figures come out too low. The time on n cores is forecast by Amdahl's law: the
 processor seconds that were spent while one thread alone was runnable, and the others divided by n. Stages are those
@@ -23,18 +24,22 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from tools import measured  # noqa: E402
+from tools.report_section import replace_section  # noqa: E402
 
 SECONDS_BETWEEN_SAMPLES = 0.004
 CORES = (4, 16, 64)
 STAGE = re.compile(r"^([a-z][a-z ]+): ([\d.]+) (s|min)\b")
 BETWEEN = "between stages"
+# Of docs/measured/quality.md, about as good as `good`.
+RIVALS = (("photile", "`--quality good`"), ("photile, paths denoised", "64 spp"), ("Mitsuba, denoised", "128 spp"),
+          ("Cycles, denoised", "64 spp"))
 LIVING_ROOM = "scenes/living-room/living-room.gltf"
 COMMANDS = {
     "living room, good": ["render", LIVING_ROOM, "--size", "288x192"],
     "living room, draft": ["render", LIVING_ROOM, "--size", "288x192", "--quality", "draft"],
     "living room, paths": ["render", LIVING_ROOM, "--size", "288x192", "--integrator", "path"],
-    "office, good": ["render", "scenes/office/office.gltf", "--size", "288x192",
-                     "--luminaires", "scenes/office/luminaires.json"],
+    "office by day, good": ["render", "scenes/office/office.gltf", "--size", "288x192", "--sky", "perez=700,120",
+                            "--site", "52.5,13.4,1", "--time", "2026-03-21T10:00"],
     "Cornell box, published": ["publish", "scenes/cornell-box/cornell-box.gltf", "--quality", "draft"],
 }
 
@@ -109,11 +114,27 @@ def measure(command):
     return [*rows, row_of("all", pairs)]
 
 
+def rivals():
+    """Of the kitchen of docs/measured/quality.md: name, wall and processor seconds, those of one thread alone."""
+    results = json.loads((measured.ROOT / "docs/measured/quality/quality.json").read_text(encoding="utf-8"))["results"]
+    for row in results:
+        if row["view"] == "kitchen 256x192" and (row["tool"], row["setting"]) in RIVALS:
+            wall, used = row["first"]["seconds"], row["first"]["processor"]
+            yield [f"kitchen, {row['tool']}, {row['setting']}", wall, used, max(0.0, 2 * wall - used)]
+
+
+def line(name, wall, used, alone):
+    part = 2 * alone / (used + alone) if used else 0
+    return (f"| {name} | {wall:.1f} | {used:.1f} | {alone:.2f} | {part:.1%} |"
+            + "".join(f" {alone + max(0.0, used - alone) / cores:.2f} |" for cores in CORES))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=measured.ROOT / "build/release/photile")
     parser.add_argument("--threads", type=int, default=0, help="of the host; 0 = all cores")
     parser.add_argument("-o", "--output", help="file for all rows")
+    parser.add_argument("--write", action="store_true", help="write docs/measured/cores.md")
     parser.add_argument("command", nargs="*", help="of photile, without its output")
     options = parser.parse_args()
     commands = {" ".join(options.command): options.command} if options.command else COMMANDS
@@ -132,6 +153,14 @@ def main():
             print(f"| {name} | {row['stage']} | {row['wall seconds']:.2f} | {used:.2f} | {alone:.2f} | {part:.1%} |"
                   + "".join(f" {row[f'seconds on {cores} cores']:.2f} |" for cores in CORES), flush=True)
         results.append({"command": name, "rows": rows})
+    if options.write:
+        sums = [[result["command"], *(result["rows"][-1][f"{kind}seconds{what}"] for kind, what in
+                                      (("wall ", ""), ("processor ", ""), ("processor ", " of one thread alone")))]
+                for result in results]
+        head = ("| command | wall, s, on 2 cores | processor, s | of one thread alone | part of the time on 2 cores |"
+                + "".join(f" {cores} cores, s |" for cores in CORES))
+        rows = [head, "|---|" + "--:|" * (4 + len(CORES)), *(line(*row) for row in [*sums, *rivals()])]
+        replace_section(measured.ROOT / "docs/measured/cores.md", "kernels/parallel.py", "\n".join(rows))
     if options.output:
         pathlib.Path(options.output).write_text(
             json.dumps({**measured.now(), "cores": os.cpu_count(), "threads": options.threads, "results": results},

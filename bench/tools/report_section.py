@@ -14,11 +14,13 @@ RECORD = re.compile(r"\A\n\*Measured by `bench/[^*]*\*\n")  # below a block of d
 ALL = ["host", "kernels"]
 MEASURES = {
     "kernels/kernel_registers.py": ["kernels"],
+    "kernels/parallel.py": ["host/renderer", "kernels"],
     "kernels/report.py": ["host/renderer/estimate", "host/renderer/groups", "host/renderer/maps", "kernels"],
     "kernels/report_angle.py": ["host/renderer/groups", "kernels/estimate", "kernels/surface"],
     "kernels/report_area.py": ["kernels/estimate", "kernels/surface"],
     "kernels/report_borders.py": ["host/renderer/surface", "kernels/estimate", "kernels/surface"],
     "kernels/report_device.py": ["host/renderer", "kernels"],
+    "kernels/workstation.py": ["host/renderer", "kernels"],
     "lighting/daylight.py": ["host/lighting/daylight"],
     "lighting/daylight_hours.py": ["host/lighting/daylight"],
     "lighting/glare.py": ["host/lighting", "host/renderer"],

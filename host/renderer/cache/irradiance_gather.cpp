@@ -1,6 +1,7 @@
 #include "cache/irradiance_gather.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -24,9 +25,16 @@
 namespace photile::cache {
 namespace {
 
-/// Enough to fill a device with new nodes and for many cores to wait little between the steps of a
-/// run, little enough for its data to be a small part of memory.
-constexpr std::size_t rays_at_a_time = std::size_t{1} << 18;
+/// Rays of a run: enough to fill a device with new nodes and for all cores to wait little between
+/// its steps, little enough for its data, some 150 bytes a ray, to be a small part of memory.
+/// Processes that share the work take runs together, and may differ in their cores.
+std::size_t rays_at_a_time(bool shared) {
+  constexpr std::size_t of_a_core = std::size_t{1} << 17, most = of_a_core << 4;
+  if (shared) return 2 * of_a_core;
+  return std::min(most,
+                  of_a_core * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+}
+
 /// Whole rays of a batch.
 int per_batch(int all, int batches) { return (all + batches - 1) / batches; }
 
@@ -162,8 +170,8 @@ GatheredParts IrradianceGather::gather_own(const PrimaryHits& points,
       .slats = slats_,
       .bright = &bright_};
   const auto rays_per_point = static_cast<std::size_t>(rays_per_batch * parameters_.batches);
-  const std::size_t at_a_time =
-      std::max<std::size_t>(1, rays_at_a_time / std::max<std::size_t>(64, rays_per_point));
+  const std::size_t at_a_time = std::max<std::size_t>(
+      1, rays_at_a_time(ends_.processes() != nullptr) / std::max<std::size_t>(64, rays_per_point));
   GatheredRuns sums;
   for (std::size_t round = 0; round < most; round += at_a_time) {
     progress.throw_if_cancelled();

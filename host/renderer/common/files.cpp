@@ -120,16 +120,15 @@ OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(fi
   struct stat status {};
   const bool found = ::stat(target_.c_str(), &status) == 0;
   if (!found && errno == ELOOP) {
-    throw OutputError(fmt::format(
-        "{}: is a symbolic link that leads to itself; name a file to be written", file.string()));
+    throw OutputError(
+        fmt::format("{}: is a symbolic link to itself; name an output file", file.string()));
   }
   if (!found && errno == ENAMETOOLONG) {
     throw OutputError(
-        fmt::format("{}: the name is too long for a file; give a shorter one", file.string()));
+        fmt::format("{}: the file name is too long; give a shorter one", file.string()));
   }
   if (found && !S_ISREG(status.st_mode)) {
-    throw OutputError(
-        fmt::format("{}: is not a regular file; name a file to be written", file.string()));
+    throw OutputError(fmt::format("{}: is not a regular file; name an output file", file.string()));
   }
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
   remove_abandoned(folder);
@@ -138,7 +137,7 @@ OutputFile::OutputFile(const fs::path& file) : file_(file), target_(target_of(fi
     descriptor_ = create_locked(temporary_);
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) {
-    throw OutputError(fmt::format("{}: cannot be created: {}; choose a folder that can be written",
+    throw OutputError(fmt::format("{}: cannot be created: {}; choose a writable folder",
                                   file.string(), std::strerror(errno)));
   }
   // Those who cannot read the old one are not to read the new one meanwhile.
@@ -235,7 +234,7 @@ std::optional<Run> run;
 [[noreturn]] void refuse(const std::string& output, const std::string& input) {
   throw UsageError(
       output == input
-          ? fmt::format("{}: is an input of this run, too; choose another output", output)
+          ? fmt::format("{}: is also an input of this run; choose another output", output)
           : fmt::format("{}: is the same file as {}, an input of this run; choose another output",
                         output, input));
 }

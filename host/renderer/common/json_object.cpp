@@ -47,8 +47,8 @@ void check_json_depth(std::string_view text, const std::string& file) {
     }
     if (depth > limits::max_json_depth) {
       throw InputError(
-          fmt::format("{}: the JSON is nested more than {} levels deep; no such file needs that",
-                      file, limits::max_json_depth));
+          fmt::format("{}: the JSON is nested more than {} levels deep; reduce the nesting", file,
+                      limits::max_json_depth));
     }
   }
 }
@@ -60,7 +60,7 @@ JsonObject::JsonObject(const json& object, std::string where,
   for (const auto& [key, value] : object.items()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       constexpr std::size_t most_told = 60;
-      refuse(fmt::format("'{}' is not a known key; there are {}", key.substr(0, most_told),
+      refuse(fmt::format("'{}' is not a known key; the keys are {}", key.substr(0, most_told),
                          fmt::join(known, ", ")));
     }
   }
@@ -96,7 +96,7 @@ glm::dvec3 JsonObject::vector(const char* key) const {
       !std::all_of(value.begin(), value.end(), [](const json& coordinate) {
         return is_within(coordinate, -limits::max_coordinate, limits::max_coordinate);
       })) {
-    refuse(fmt::format("'{}' is not three numbers of metres", key));
+    refuse(fmt::format("'{}' is not three numbers, in metres", key));
   }
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
@@ -104,7 +104,7 @@ glm::dvec3 JsonObject::vector(const char* key) const {
 std::string JsonObject::text(const char* key, const std::string& otherwise) const {
   const json value = object_.value(key, json(otherwise));
   if (!value.is_string() || value.get<std::string>().empty()) {
-    refuse(fmt::format("'{}' is not a text", key));
+    refuse(fmt::format("'{}' must be a non-empty string", key));
   }
   return value.get<std::string>();
 }

@@ -34,8 +34,8 @@ void require_threads(int count) {
   for (std::thread& thread : threads) thread.join();
   if (problem.empty()) return;
   throw Error(
-      fmt::format("only {} of {} threads can be made: {}; raise the limit of processes "
-                  "(ulimit -u, or pids of the container)",
+      fmt::format("only {} of {} threads can be created: {}; raise the limit of processes (ulimit "
+                  "-u, or pids of the container)",
                   threads.size(), count, problem));
 }
 
@@ -43,7 +43,7 @@ void require_stack() {
   constexpr rlim_t least = 1 << 20;  // the compilers of devices use half of it
   rlimit limit{};
   if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least) return;
-  throw Error(fmt::format("a stack has {} kB, and {} are needed; raise the limit (ulimit -s 8192)",
+  throw Error(fmt::format("the stack limit is {} kB, but {} are needed; raise it (ulimit -s 8192)",
                           limit.rlim_cur >> 10, least >> 10));
 }
 

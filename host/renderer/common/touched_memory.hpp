@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -61,6 +62,16 @@ std::vector<std::uint32_t> numbers_where(std::size_t count, const Is& is) {
   });
   return joined(
       found.size(), [&](std::size_t task) -> const auto& { return found[task]; });
+}
+
+/// Keeps what the process frees for what it allocates next: large arrays would go back to the
+/// system, which clears every page that it gives, and on many cores that takes longer than a
+/// frame's sums.
+inline void keep_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
 }
 
 /// Returns to the system what threads have freed: glibc keeps it separately for each thread, where

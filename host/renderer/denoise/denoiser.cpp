@@ -76,10 +76,10 @@ constexpr int format_float3 = 3;
 struct Denoiser::Library {
   Library(const std::filesystem::path& file, int threads) : module(file) {
     if (!module.error().empty()) {
-      throw UsageError(fmt::format(
-          "--denoise: {}; the command 'cmake/fetch.sh denoiser' in photile's folder brings the "
-          "library, or give its path, as --denoise FOLDER/libOpenImageDenoise.so.2",
-          module.error()));
+      throw UsageError(
+          fmt::format("--denoise: {}; run 'cmake/fetch.sh denoiser' in photile's source folder, or "
+                      "give the library's path: --denoise FOLDER/libOpenImageDenoise.so.2",
+                      module.error()));
     }
     find(new_device, "oidnNewDevice", file);
     find(release_device, "oidnReleaseDevice", file);
@@ -94,7 +94,9 @@ struct Denoiser::Library {
     find(commit_filter, "oidnCommitFilter", file);
     find(execute_filter, "oidnExecuteFilter", file);
     device = {new_device(device_type_cpu), release_device};
-    if (!device) throw UsageError(fmt::format("--denoise: {} makes no device", file.string()));
+    if (!device)
+      throw UsageError(
+          fmt::format("--denoise: {} cannot create a device; try another version", file.string()));
     if (threads > 0) set_device_int(device.get(), "numThreads", threads);
     commit_device(device.get());
     check("no device");
@@ -113,8 +115,8 @@ struct Denoiser::Library {
   void check(const char* doing) const {
     const char* message = nullptr;
     if (get_error(device.get(), &message) != 0) {
-      throw DeviceError(fmt::format("Open Image Denoise: {}: {}", doing,
-                                    message ? message : "an error without a name"));
+      throw DeviceError(
+          fmt::format("Open Image Denoise: {}: {}", doing, message ? message : "unknown error"));
     }
   }
 

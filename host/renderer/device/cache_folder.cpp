@@ -125,9 +125,7 @@ void keep_test_result(const DeviceInfo& device, const std::string& result) {
   if (const auto store = results()) {
     store->store(key_of(device), result);
   } else {
-    warn(
-        "the result of the device's test is not kept; set XDG_CACHE_HOME to a folder that can be "
-        "written");
+    warn("the result of the device test is not stored; set XDG_CACHE_HOME to a writable folder");
   }
 }
 

@@ -43,10 +43,9 @@ ListedDevice find_one(const std::string& selector) {
   if (found.size() != 1) {
     std::vector<std::string> ids;
     for (const auto& listed : found) ids.push_back(listed.info.id);
-    throw DeviceError(
-        fmt::format("{} devices are chosen ({}) where one is needed; choose one, by its "
-                    "number or by {}",
-                    found.size(), fmt::join(ids, ", "), device_variable));
+    throw DeviceError(fmt::format(
+        "{} devices are selected ({}), but one is needed; select one by its number or by {}",
+        found.size(), fmt::join(ids, ", "), device_variable));
   }
   return std::move(found.front());
 }
@@ -88,8 +87,8 @@ void Context::Impl::check(cl_int status, std::string_view call, const std::strin
   if (status == CL_SUCCESS) return;
   if (!is_out_of_memory(status)) throw_status(status, call, what);
   throw DeviceMemoryError(
-      fmt::format("{}; {}; '{}' allows {} bytes a buffer and {} {} bytes of memory, {} "
-                  "bytes are in use; use {}",
+      fmt::format("{}; {}; '{}' allows {} bytes per buffer and {} {} bytes of memory, of which {} "
+                  "are in use; use {}",
                   failure_text(call, status), what, info.name, info.max_allocation_bytes,
                   limited ? "may use" : "has", memory_limit, memory->live.load(),
                   limited ? "a larger memory limit, fewer photons or a smaller radius"

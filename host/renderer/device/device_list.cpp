@@ -181,7 +181,7 @@ void require_address_space() {
   const std::uint64_t left = address_bytes_left();
   if (left >= reserved_address_bytes) return;
   throw DeviceMemoryError(
-      fmt::format("{} MiB of address space are left, and the compiler of a device takes up to {}; "
+      fmt::format("{} MiB of address space are left, but the compiler of a device takes up to {}; "
                   "raise its limit (ulimit -v)",
                   left >> 20, reserved_address_bytes >> 20));
 }
@@ -193,7 +193,7 @@ void require_file_size() {
   rlimit limit{};
   if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur >= least) return;
   throw DeviceError(
-      fmt::format("a file may have {} kB, and the compiler of a device writes up to {}; raise the "
+      fmt::format("a file may have {} kB, but the compiler of a device writes up to {}; raise the "
                   "limit (ulimit -f)",
                   limit.rlim_cur >> 10, least >> 10));
 }
@@ -239,7 +239,7 @@ std::vector<ListedDevice> make_sub_devices(const ListedDevice& whole,
   check(clCreateSubDevices(whole.device, properties.data(), static_cast<cl_uint>(devices.size()),
                            devices.data(), &made),
         "clCreateSubDevices",
-        fmt::format("{} of the {} compute units of {} '{}'; choose the whole device",
+        fmt::format("{} of the {} compute units of {} '{}'; select the whole device",
                     fmt::join(compute_units, " + "), whole.info.compute_units, whole.info.id,
                     whole.info.name));
   std::vector<ListedDevice> parts;

@@ -123,7 +123,7 @@ std::vector<std::uint32_t> compute_units_of(const Partition& partition, const De
       std::accumulate(partition.compute_units.begin(), partition.compute_units.end(),
                       std::uint64_t{partition.equal_parts});
   if (requested > device.compute_units) {
-    source.refuse(fmt::format("asks for {} compute units, and {} {} has {}; ask for fewer",
+    source.refuse(fmt::format("asks for {} compute units, but {} {} has {}; ask for fewer",
                               requested, device.id, device.name, device.compute_units));
   }
   std::vector<std::uint32_t> units = partition.compute_units;
@@ -184,8 +184,8 @@ std::string untested_gpu(std::span<const DeviceInfo> devices, const DeviceInfo& 
                               ? "has not been tested; run photile devices --test once"
                               : "did not pass its test (" + gpu.test_result + ")";
   return is_gpu ? fmt::format("{} {} {}, and there is no other device", gpu.id, gpu.name, why)
-                : fmt::format("{} {} is not used, as it {}; or choose it by --device {}", gpu.id,
-                              gpu.name, why, gpu.id);
+                : fmt::format("{} {} is not used because it {}; or select it by --device {}",
+                              gpu.id, gpu.name, why, gpu.id);
 }
 
 namespace {
@@ -212,7 +212,7 @@ std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, st
   }
   if (devices.empty() && files_run_out()) {
     throw DeviceError(
-        "no more files can be opened, and so no OpenCL runtime; raise the limit (ulimit -n)");
+        "too many files are open to load an OpenCL runtime; raise the limit (ulimit -n)");
   }
   if (devices.empty()) {
     throw DeviceError(fmt::format(
@@ -227,7 +227,7 @@ std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, st
   for (std::size_t begin = 0; begin <= selector.size();) {
     const std::size_t end = std::min(selector.find(',', begin), selector.size());
     if (begin == end && !selector.empty()) {
-      source.refuse("has a comma without a device on both sides; name one or leave it out");
+      source.refuse("has a comma without a device on both sides; name one or remove the comma");
     }
     choices.push_back(choose(devices, selector.substr(begin, end - begin), source));
     const std::size_t index = choices.back().index;

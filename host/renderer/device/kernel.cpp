@@ -62,8 +62,8 @@ Kernel Context::kernel(const std::string& file, const std::string& name, const D
     arguments = kept->second;
   }
   if (!arguments) {
-    throw DeviceError(fmt::format("the device does not tell the names of the arguments of kernel "
-                                  "'{}' of '{}'; update its driver",
+    throw DeviceError(fmt::format("the device does not report the argument names of kernel '{}' of "
+                                  "'{}'; update its driver",
                                   name, file),
                       CL_KERNEL_ARG_INFO_NOT_AVAILABLE);
   }
@@ -130,17 +130,16 @@ void Launch::enqueue(std::size_t global_size, std::size_t local_size) {
   const KernelResources& resources = impl.resources;
   if (resources.local_bytes > context.info.local_memory_bytes) {
     throw DeviceError(
-        fmt::format("kernel '{}' takes {} bytes of local memory where '{}' has {}; use "
-                    "another device",
-                    impl.name, resources.local_bytes, context.info.name,
-                    context.info.local_memory_bytes),
+        fmt::format(
+            "kernel '{}' needs {} bytes of local memory, but '{}' has {}; use another device",
+            impl.name, resources.local_bytes, context.info.name, context.info.local_memory_bytes),
         CL_OUT_OF_RESOURCES);
   }
   if (local_size > resources.largest_group) {
     if (impl.required_group != 0 || resources.largest_group == 0) {
       throw DeviceError(
-          fmt::format("kernel '{}' works in groups of {} where '{}' runs at most {} "
-                      "work-items of it together; use another device",
+          fmt::format("kernel '{}' needs work-groups of {}, but '{}' runs at most {} work-items of "
+                      "it together; use another device",
                       impl.name, local_size, context.info.name, resources.largest_group),
           CL_INVALID_WORK_GROUP_SIZE);
     }
@@ -148,8 +147,8 @@ void Launch::enqueue(std::size_t global_size, std::size_t local_size) {
   }
   if (local_size != 0) global_size = (global_size + local_size - 1) / local_size * local_size;
   if (global_size > max_work_items) {
-    throw DeviceError(fmt::format("kernel '{}' is to run on {} work-items; at most {} can be",
-                                  impl.name, global_size, max_work_items),
+    throw DeviceError(fmt::format("kernel '{}': {} work-items; the limit is {}", impl.name,
+                                  global_size, max_work_items),
                       CL_INVALID_GLOBAL_WORK_SIZE);
   }
   // A runtime may compile within the first launch: it is timed alone, and in PoCL waited for.

@@ -74,7 +74,7 @@ class WorkFolder {
     if (folder_.empty()) {
       throw DeviceError(fmt::format(
           "no folder for compiled kernels: neither the user's cache folder nor '{}' can be written "
-          "with {} MiB free; set XDG_CACHE_HOME or TMPDIR to one that can",
+          "with {} MiB free; set XDG_CACHE_HOME or TMPDIR to another folder",
           fs::temp_directory_path(error).string(), min_free_cache_bytes >> 20));
     }
     ::setenv(variable, folder_.c_str(), 1);
@@ -98,7 +98,7 @@ class WorkFolder {
     if (value == nullptr || *value == '\0') return false;
     const auto problem = folder_problem(value);
     if (problem.empty()) return true;
-    warn(fmt::format("{} '{}' cannot be used ({}); using a folder of photile's", variable, value,
+    warn(fmt::format("{} '{}' cannot be used ({}); using photile's own folder", variable, value,
                      problem));
     return false;
   }

@@ -122,11 +122,10 @@ class SlowCompilation {
   void wait(const std::string& device) {
     std::unique_lock lock(mutex_);
     if (over_.wait_for(lock, std::chrono::minutes(1), [this] { return is_over_; })) return;
-    warn(
-        fmt::format("'{}' has compiled a kernel for a minute and goes on; fewer neighbours (-k), "
-                    "another device "
-                    "(--device) or a newer driver may be quicker; what is compiled is kept",
-                    device));
+    warn(fmt::format(
+        "'{}' has been compiling a kernel for a minute; fewer neighbours (-k), another device "
+        "(--device) or a newer driver may be faster; the compiled kernel is cached",
+        device));
   }
 
   std::mutex mutex_;

@@ -55,7 +55,7 @@ std::filesystem::path kernel_folder() {
     if (has(name)) return folder;
   }
   throw UsageError(
-      fmt::format("{}: the folder {} holds no kernel files such as {}; name a copy of kernels/",
+      fmt::format("{}: the folder {} holds no kernel files such as {}; give a copy of kernels/",
                   kernel_folder_variable, folder, embedded_files().front().path));
 }
 

@@ -192,12 +192,12 @@ std::string compare(const estimate::PlaneSample& sample, const NeighbourLists& l
     const double counted = k > 1 ? static_cast<double>(k - 1) : 1.0;
     const double expected = counted * flux / (glm::pi<double>() * squared_radius);
     if (!(std::abs(irradiance - expected) <= irradiance_tolerance * expected)) {
-      return fmt::format("the irradiance of hit {} from {} photons is {:.6g} where {:.6g} is right",
-                         i, k, irradiance, expected);
+      return fmt::format("the irradiance of hit {} from {} photons is {:.6g} instead of {:.6g}", i,
+                         k, irradiance, expected);
     }
   }
   if (k > 1 && !(std::abs(mean - 1) <= mean_tolerance)) {
-    return fmt::format("the mean irradiance is {:.4g} where 1 is right", mean);
+    return fmt::format("the mean irradiance is {:.4g} instead of 1", mean);
   }
   return {};
 }

@@ -46,10 +46,8 @@ class GridQuery : public Query {
     set_page_arguments(launch, hits);
     set_grid(launch, hits.page);
     launch.set("neighbours", photons).set("squared_radius", squared_radius);
-    const bool lanes = choice_.strategy == EstimateStrategy::lanes;
     run(launch, hits, [&](std::uint32_t count) {
-      launch.run(choice_.nearest_items(count),
-                 lanes ? choice_.work_group_size : maps::work_group_size);
+      launch.run(choice_.nearest_items(count), choice_.work_group_size);
     });
   }
 

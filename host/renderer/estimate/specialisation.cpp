@@ -39,6 +39,8 @@ EstimateTuning shipped_tuning(const DeviceInfo& device, EstimateStrategy strateg
   } else if (device.type == DeviceType::cpu) {
     tuning.vector_width = 16;
     tuning.hits_per_item = 16;
+    // PoCL gives a thread at least 32 groups: of larger ones, few threads would have any.
+    tuning.work_group_size = 1;
   }
   return tuning;
 }

@@ -182,10 +182,9 @@ double automatic_radius(const Photons& photons, int k) {
   const double squared = median_squared_distance(subsample, static_cast<std::size_t>(rank)) *
                          fraction * gamma_median(k) / gamma_median(rank);
   if (!(squared > 0)) {
-    throw UsageError(
-        fmt::format("automatic radius: most of the {} stored photons lie in the same "
-                    "points; give a radius",
-                    photons.total()));
+    throw UsageError(fmt::format(
+        "automatic radius: most of the {} stored photons lie at the same points; give a radius",
+        photons.total()));
   }
   return defaults::radius_over_median_kth_distance * std::sqrt(squared);
 }

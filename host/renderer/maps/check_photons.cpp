@@ -52,9 +52,9 @@ std::string problem_of(const Photons& photons, const SceneNeeds& needs,
                        std::uint64_t oriented_faces) {
   if (!has_all_arrays(photons, needs)) return "arrays of different lengths";
   if (!are_rows(photons.first_of, oriented_faces, photons.size()) || !are_in_their_rows(photons)) {
-    return "photons out of the order of their triangles";
+    return "photons that are not in the order of their triangles";
   }
-  if (!all_below(photons.light, needs.light_count)) return "photons of a light that is not there";
+  if (!all_below(photons.light, needs.light_count)) return "photons of a light that does not exist";
   if (!all_finite(photons.position) || !all_finite(photons.flux) || !all_finite(photons.incoming)) {
     return "photons that are NaN or infinite";
   }

@@ -83,7 +83,7 @@ void PhotonMaps::build(Device& device, const Scene& scene, const Photons& photon
   store_->statistics.photons = photons.size();
   if (groups.offsets.size() != 2 * scene.triangle_count() + 1) {
     throw InputError(
-        fmt::format("neighbour groups of {}: those of another scene", scene.source.string()));
+        fmt::format("neighbour groups of {}: they belong to another scene", scene.source.string()));
   }
   maps::build_maps_of_groups(*store_, scene, photons, consumed, groups, requested, progress);
 

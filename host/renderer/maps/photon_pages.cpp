@@ -62,10 +62,10 @@ std::vector<PhotonRange> plan_photon_pages(const Photons& photons, const Candida
       end_map = first_map + 1;
       const std::uint64_t members = first_member_of(end_map) - first_member_of(first_map);
       if (members >= most_indices) {
-        throw DeviceError(fmt::format(
-            "the photons of triangle {} may enter {} maps, more than 32 bits count; use a smaller "
-            "radius",
-            triangle_of(first_map), members));
+        throw DeviceError(
+            fmt::format("the photons of triangle {} may enter {} maps, more than 32 bits can "
+                        "count; use a smaller radius",
+                        triangle_of(first_map), members));
       }
     }
     const std::uint64_t last = std::min<std::uint64_t>(most, photons.first_of[end_map]);
@@ -139,7 +139,7 @@ std::uint64_t PhotonPages::page_bytes() const {
 }
 
 void PhotonPages::load(std::size_t page) {
-  if (released_) throw DeviceMemoryError("photons were let go of before their maps were built");
+  if (released_) throw DeviceMemoryError("photons were released before their maps were built");
   pages_[page] = upload_(ranges_[page]);
 }
 

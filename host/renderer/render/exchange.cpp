@@ -193,8 +193,7 @@ void require_same(Communicator& processes, const ContentHash& work, std::string_
   for (std::size_t rank = 1; rank < all.size(); ++rank) {
     if (all[rank] == all.front()) continue;
     throw UsageError(fmt::format(
-        "the processes of one rendering differ: rank {} has {} other than rank 0's; give all the "
-        "same files and options",
+        "ranks {0} and 0 of one rendering differ in their {1}; give all the same files and options",
         rank, what));
   }
 }

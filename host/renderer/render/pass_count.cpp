@@ -102,8 +102,8 @@ int automatic_passes(const RayScene& rays, const PhotonTracerParameters& paramet
   }
   if (passes > 1) {
     progress.note(
-        fmt::format("{} photons do not fit in half of {:.1f} GB of memory: they are traced in {} "
-                    "passes, which if asked for give the same picture on any machine",
+        fmt::format("{0} photons do not fit in half of {1:.1f} GB of memory: they are traced in "
+                    "{2} passes; passes={2} gives the same picture on any machine",
                     parameters.emitted_photons, static_cast<double>(memory) / 1e9, passes));
   }
   return passes;
@@ -118,10 +118,9 @@ void check_picture_memory(int width, int height, std::size_t lights, double byte
                   lights, lights == 1 ? "" : "s", bytes / 1e9);
   const auto installed = static_cast<double>(installed_host_bytes());
   if (bytes > installed) {
-    throw UsageError(
-        fmt::format("{}, and this machine has {:.1f}; give a smaller size, or join lights by "
-                    "--light-group",
-                    found, installed / 1e9));
+    throw UsageError(fmt::format(
+        "{}, but this machine has {:.1f}; give a smaller size, or group lights by --light-group",
+        found, installed / 1e9));
   }
   progress.note(found + " of memory");
 }

@@ -56,7 +56,7 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
     source.add_to(hash);
     hash.add(film_.width);
     hash.add(film_.height);
-    require_same(*processes, hash, "a camera, a size or points");
+    require_same(*processes, hash, "camera, size or points");
   }
   if (film_.pass == 0) begin_film(source);
   const auto height = static_cast<std::uint64_t>(film_.height);

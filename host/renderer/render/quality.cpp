@@ -26,7 +26,7 @@ std::string_view name_of(Quality quality) { return name_in({"draft", "good", "fi
 
 std::string_view description_of(Quality quality) {
   return name_in({"quick, and soft: nodes of light maps lie far apart", "clean to the eye",
-                  "more of everything, for stills"},
+                  "more photons, samples and rays, for stills"},
                  quality);
 }
 

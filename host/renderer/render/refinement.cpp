@@ -60,7 +60,7 @@ double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress
     } catch (const Interrupted&) {
       if (!may_end || progress.cancelled()) throw;
       progress.end();
-      progress.note("the time is over; unfinished work is discarded");
+      progress.note("the time is up; unfinished work is discarded");
       return error;
     }
     const int parts_before = std::exchange(parts, next);
@@ -78,7 +78,7 @@ double refine(const RefinementGoal& goal, const RefinementSteps& steps, Progress
       if (floor > goal.error) {
         progress.note(
             fmt::format("a standard error of {:.3g}% cannot be reached: about {:.2g}% remains "
-                        "however much is added; the picture is the best so far",
+                        "however many rays are added; the picture is the best so far",
                         100 * goal.error, 100 * floor));
         return error;
       }

@@ -37,8 +37,8 @@ void note_lonely_photons(const Photons& photons, double radius, Progress& progre
     const double nearest = automatic_radius(photons, 1) / defaults::radius_over_median_kth_distance;
     if (radius >= nearest) return;
     progress.note(
-        fmt::format("radius {:.3g} m: half of the photons have no other within {:.3g} m; "
-                    "most points receive no light; give a larger radius, or none",
+        fmt::format("radius {:.3g} m: half of the photons have no neighbour within {:.3g} m; most "
+                    "points receive no light; give a larger radius, or none",
                     radius, nearest));
   } catch (const UsageError&) {
     // Most photons coincide.
@@ -80,7 +80,7 @@ namespace {
 void require_same_work(const RenderParameters& asked, const Scene& scene) {
   ContentHash hash_of_scene, hash_of_settings;
   scene::add_scene(scene, hash_of_scene);
-  require_same(*asked.processes, hash_of_scene, "a scene");
+  require_same(*asked.processes, hash_of_scene, "scene");
   for (const Setting& setting : settings()) hash_of_settings.add(text_of(setting.value(asked)));
   require_same(*asked.processes, hash_of_settings, "settings");
 }
@@ -147,17 +147,17 @@ double RenderPlan::radius(const Photons& photons, Progress& progress) const {
   if (photons.total() < 2) {
     // Nothing but lights, mirrors and glass is seen, or rays find all the light there is.
     if (all_photons(used_).store_direct) {
-      progress.note(fmt::format("{}: no surface but mirrors and glass is lit", scene_));
+      progress.note(fmt::format("{}: only mirrors and glass are lit", scene_));
     }
     return std::max(1.0, least_radius_);  // any serves
   }
   try {
     const double radius = automatic_radius(photons, used_.neighbours);
     if (radius >= least_radius_) return radius;
-    throw UsageError(fmt::format(
-        "automatic radius: {:.3g} m is less than {:.3g} m, the least in a scene of this "
-        "extent; remove what lies far from the rest, or give a radius",
-        radius, least_radius_));
+    throw UsageError(
+        fmt::format("automatic radius: {:.3g} m is less than {:.3g} m, the minimum in a scene of "
+                    "this extent; remove distant objects, or give a radius",
+                    radius, least_radius_));
   } catch (const UsageError& error) {
     throw SettingError(setting_named("radius"), fmt::format("{}: {}", scene_, error.what()));
   }

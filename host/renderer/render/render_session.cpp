@@ -20,23 +20,19 @@ namespace {
 /// Errors: UsageError and SettingError where the passes cannot be kept, or not from these photons.
 void check_kept(const RenderPlan& plan, const TracedPhotons* prepared, bool keeps) {
   if (plan.used().processes && (prepared || keeps)) {
-    throw UsageError(
-        "saved maps work with one process only; leave them out where several share a rendering");
+    throw UsageError("saved maps work only with one process; leave them out, or start one process");
   }
   if (prepared && !prepared->caustics && plan.gathers_at_nodes()) {
-    throw SettingError(
-        setting_named("light_map_rays"),
-        "rays that gather take caustics from photons of their own, which these saved maps lack; "
-        "save them again with rays that gather");
+    throw SettingError(setting_named("light_map_rays"),
+                       "gathering rays need separate photons for caustics, which these saved maps "
+                       "lack; save them again with light_map_rays above 0");
   }
   if (!plan.may_keep_passes()) {
     throw SettingError(
         setting_named("passes"),
-        fmt::format(
-            "{} photon passes: walks, views, saved maps and glare need all "
-            "photons in memory at once; take fewer photons, or give a number of passes where "
-            "more memory may be had",
-            plan.passes()));
+        fmt::format("{} photon passes: walks, views, saved maps and glare need all photons in "
+                    "memory at once; use fewer photons, or passes=1 if more memory may be used",
+                    plan.passes()));
   }
 }
 

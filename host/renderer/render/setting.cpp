@@ -145,7 +145,7 @@ std::vector<Setting> picture_rows() {
                     "the same seed gives the same picture", kept_as_it_is),
       row<&P::max_specular_depth>(
           "max_specular_depth", hits, WholeNumbers{0, limits::max_specular_depth},
-          "most mirrors and glass surfaces that a ray from the eye follows", not_kept),
+          "maximum number of mirrors and glass surfaces that a ray from the eye follows", not_kept),
   };
 }
 
@@ -162,8 +162,8 @@ std::vector<Setting> photon_rows() {
           "how the lights share the paths: by power, equally, or balanced: half by each",
           kept_as_it_is),
       row<&P::photons, &PhotonPaths::max_path_length>(
-          "max_path_length", paths, WholeNumbers{1, most_int}, "most surfaces that a photon meets",
-          kept_as_it_is),
+          "max_path_length", paths, WholeNumbers{1, most_int},
+          "maximum number of surfaces that a photon meets", kept_as_it_is),
       row<&P::photons, &PhotonPaths::roulette_start>(
           "roulette_start", paths, WholeNumbers{1, most_int},
           "first bounce at which Russian roulette may end a path", kept_as_it_is),

@@ -57,10 +57,8 @@ class SceneCheck {
   template <class Array>
   void check_length(std::string_view name, const Array& array, bool may_be_empty) const {
     if (array.size() == scene_.triangle_count() || (may_be_empty && array.empty())) return;
-    refuse(
-        scene_,
-        fmt::format("{} has {} elements for {} triangles; fill it, or use SceneBuilder, which does",
-                    name, array.size(), scene_.triangle_count()));
+    refuse(scene_, fmt::format("{} has {} elements for {} triangles; fill it, or use SceneBuilder",
+                               name, array.size(), scene_.triangle_count()));
   }
 
   void check_lengths() const {
@@ -220,14 +218,14 @@ class SceneCheck {
     check_index(light.distribution, scene_.distributions.size(), "distribution", owner);
     check_index(light.environment, scene_.environments.size(), "environment", owner);
     if (light.kind == LightKind::environment && light.environment == none) {
-      refuse(scene_, owner + " is of surroundings that it does not name");
+      refuse(scene_, owner + " has no environment; set its index");
     }
     if (light.kind == LightKind::environment) {
       constexpr double least = 1e-6 * limits::min_illuminance;  // of lux that became watts
       const double sum = luminance(scene_.environments[light.environment].integral());
       if (!(sum >= least)) {
         refuse(scene_, fmt::format("{} is too dark: its radiance adds up to {:g} over all "
-                                   "directions, and {:g} is the least",
+                                   "directions; the minimum is {:g}",
                                    owner, sum, least));
       }
     }

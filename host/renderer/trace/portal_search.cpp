@@ -402,7 +402,8 @@ std::vector<Portal> portals_asked_for(const Scene& scene, std::span<const std::s
                                       std::span<const glm::dvec3> points) {
   for (const char* word : {"auto", "off"}) {
     if (asked.size() > 1 && std::find(asked.begin(), asked.end(), word) != asked.end())
-      throw UsageError(fmt::format("portals={}: give it alone, or materials alone", word));
+      throw UsageError(fmt::format(
+          "portals={}: cannot be combined with others; give it alone, or only materials", word));
   }
   if (asked.empty() || asked.front() == "auto") return find_portals(scene, points);
   if (asked.front() == "off") return {};
