@@ -23,11 +23,15 @@ def open_browser(width, height):
     for argument in ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"):
         options.add_argument(argument)
     driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                           {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+    set_size(driver, width, height)
     driver.set_page_load_timeout(PATIENCE)
     driver.set_script_timeout(PATIENCE)
     return driver
+
+
+def set_size(driver, width, height):
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                           {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
 
 
 def screenshot(driver):
@@ -36,8 +40,13 @@ def screenshot(driver):
 
 
 def canvas(driver):
-    """RGB bytes of the room alone, drawn anew."""
-    url = driver.execute_script("page.renderer.draw(page.walker); return page.canvas.toDataURL('image/png')")
+    """RGB bytes of the room alone, drawn anew, with all pixels."""
+    url = driver.execute_script("""
+const {renderer} = page, {share} = renderer;
+renderer.share = 1;
+renderer.draw(page.walker);
+renderer.share = share;
+return page.canvas.toDataURL('image/png');""")
     return np.asarray(Image.open(io.BytesIO(base64.b64decode(url.split(",")[1]))).convert("RGB"))
 
 

@@ -1,9 +1,6 @@
 #include "publish/light_choices.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "loading/surroundings.hpp"
@@ -53,30 +50,28 @@ SkyHours sky_hours(const LightMix& mix, const SkySituation& situation) {
                                    : year         ? std::optional(year->site)
                                                   : std::nullopt;
   if (patches.empty() || !site) return hours;
-  constexpr std::array months{"January",   "February", "March",    "April",
-                              "May",       "June",     "July",     "August",
-                              "September", "October",  "November", "December"};
   hours.lights = patches.size() + 1;
   for (int half = 0; half < 48; ++half) hours.times.push_back(half / 2.0);
   LocalTime time;
   if (situation.time) time.year = situation.time->year;
-  for (int month = 1; month <= 12; ++month) {
-    hours.dates.push_back(fmt::format("21 {}", months[month - 1]));
+  hours.year = time.year;
+  hours.weather = year.has_value();
+  time.day = 21;
+  for (time.month = 1; time.month <= 12; ++time.month) {
+    const int day = weather::day_of_year(time);
+    hours.days.push_back(day);
     for (const double hour : hours.times) {
-      time.month = month;
-      time.day = 21;
       time.hour = hour;
       const weather::WeatherHour* const row = year ? &weather::hour_at(*year, time) : nullptr;
       const weather::SunPosition sun =
           weather::sun_position(*site, row ? weather::middle_of(*row, time) : time);
-      const int day = weather::day_of_year(time);
       const weather::SkyIrradiance irradiance =
           row ? row->irradiance : weather::clear_sky(sun.elevation, day);
       const auto found = weather::sky_luminances(patches, sun, irradiance, day);
       hours.luminances.insert(hours.luminances.end(), found.begin(), found.end());
     }
   }
-  hours.start_date = situation.time ? static_cast<std::size_t>(situation.time->month - 1) : 5;
+  hours.start_day = situation.time ? weather::day_of_year(*situation.time) : hours.days[5];
   hours.start_time = situation.time ? std::min(2 * situation.time->hour, 47.0) : 24;
   return hours;
 }

@@ -26,12 +26,14 @@ nlohmann::json to_json(const std::vector<Preset>& presets);
 
 /// The luminances of a sky in patches over the hours of some days.
 struct SkyHours {
-  std::vector<std::string> dates;
-  std::vector<double> times;       ///< hours from midnight, of each date
-  std::vector<double> luminances;  ///< cd/m2: [date][time][patch], the ground last
+  int year = 0;
+  std::vector<int> days;           ///< of that year, from 1
+  std::vector<double> times;       ///< hours from midnight, of each day
+  std::vector<double> luminances;  ///< cd/m2: [day][time][patch], the ground last
   std::size_t lights = 0;          ///< patches, and the ground
-  std::size_t start_date = 0;      ///< that the page opens with ...
+  int start_day = 0;               ///< that the page opens with ...
   double start_time = 0;           ///< ... and the place in `times`
+  bool weather = false;            ///< the sky is that of a weather file
 };
 
 /// The 21st of each month, each half hour, for the patches of the mix; empty where it has none, or

@@ -387,15 +387,20 @@ class PageWriter {
       codes.push_back(static_cast<std::uint16_t>(std::clamp(code, 0.0, 65535.0)));
     }
     sections_.add_words("hours", codes);
-    document_["hours"] = {{"dates", hours.dates},         {"times", hours.times},
-                          {"lights", hours.lights},       {"steps", hour_steps},
-                          {"offset", hour_offset},        {"startDate", hours.start_date},
-                          {"startTime", hours.start_time}};
+    document_["hours"] = {{"days", hours.days},
+                          {"times", hours.times},
+                          {"lights", hours.lights},
+                          {"steps", hour_steps},
+                          {"offset", hour_offset},
+                          {"startDay", hours.start_day},
+                          {"startTime", hours.start_time},
+                          {"year", hours.year},
+                          {"weather", hours.weather}};
   }
 
   /// What the page shows differently from a picture.
   std::vector<std::string> simplified() const {
-    std::vector<std::string> list{"light on matt surfaces is exact as the light maps have it"};
+    std::vector<std::string> list{"matt surfaces show the light of the light maps"};
     const auto some = [&](const auto& accepts) {
       return std::any_of(scene_.materials.begin(), scene_.materials.end(), accepts);
     };
@@ -405,12 +410,12 @@ class PageWriter {
     }
     if (some([](const Material& m) { return m.interaction == Interaction::glass; })) {
       list.emplace_back(
-          "glass is smooth and bends no light, but what it casts is in the light maps");
+          "glass is smooth and does not refract the view, but light maps hold what it casts");
     }
     if (std::any_of(scene_.lights.begin(), scene_.lights.end(), [](const Light& light) {
           return light.distribution != none && !light.triangles.empty();
         })) {
-      list.emplace_back("lamps look as bright from all sides as they are on the whole");
+      list.emplace_back("lamps have their mean brightness from all sides");
     }
     if (some([](const Material& m) { return m.normal_texture != none; })) {
       list.emplace_back("bumps of normal maps are left out");
@@ -452,7 +457,7 @@ const Camera& opening_camera(const Scene& scene) {
 void check_materials(const Scene& scene) {
   constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max() + 1;
   if (scene.materials.size() <= most) return;
-  throw InputError(fmt::format("{}: {} materials, of which a page holds {}; join equal ones",
+  throw InputError(fmt::format("{}: {} materials; a page holds at most {}; merge equal ones",
                                scene.source.string(), scene.materials.size(), most));
 }
 

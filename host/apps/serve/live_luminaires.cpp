@@ -36,7 +36,7 @@ glm::dvec3 direction_in(const JsonObject& object, const char* key) {
 const json& pair_in(const json& body, const char* key, const JsonObject& object) {
   static const json none;
   const json& pair = body.contains(key) ? body[key] : none;
-  if (!pair.is_array() || pair.size() != 2) object.refuse(fmt::format("'{}' is no pair", key));
+  if (!pair.is_array() || pair.size() != 2) object.refuse(fmt::format("'{}' is not a pair", key));
   return pair;
 }
 
@@ -185,7 +185,7 @@ std::shared_ptr<const Scene> LiveLuminaires::take_scene() {
 
 void LiveLuminaires::tell_unsaved(Progress& notes) const {
   if (!editor_.unsaved()) return;
-  notes.note(fmt::format("{}: changes of luminaires are not saved", editor_.file().string()));
+  notes.note(fmt::format("{}: changes to luminaires are not saved", editor_.file().string()));
 }
 
 }  // namespace photile::serve

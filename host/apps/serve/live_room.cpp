@@ -1,11 +1,13 @@
 #include "serve/live_room.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -32,6 +34,17 @@ constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_points = 99;
 /// Pixels of the view that light is computed for before a page tells its own.
 constexpr int opening_width = 1280, opening_height = 800;
+
+/// Threads of this process, and those that they begin, take what processor time other programs
+/// leave: a browser without a graphics chip draws on the same cores.
+void let_others_first() {
+  constexpr int niceness = 10;
+  std::error_code missing;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task", missing)) {
+    const auto id = parse_number<id_t>(thread.path().filename().string());
+    if (id) setpriority(PRIO_PROCESS, *id, niceness);
+  }
+}
 
 bool is_same(const Camera& a, const Camera& b) {
   return a.position == b.position && a.forward == b.forward &&
@@ -189,6 +202,7 @@ LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene)
 
 void LiveRoom::make_page() {
   Edition edition = made(1, first_scene_);
+  let_others_first();
   // The room is seen before its light is computed, which takes all cores.
   const std::lock_guard lock(mutex_);
   photons_.trace(first_scene_, parameters_.render,
@@ -244,7 +258,7 @@ void LiveRoom::take_maps() {
   std::shared_ptr<view::MapGeneration> maps = photons_.take();
   if (!maps) return;
   if (!maps->renderer->reads_light_maps()) {
-    constexpr const char* problem = "a live page needs light maps, which these settings do without";
+    constexpr const char* problem = "the live page needs light maps; choose maps other than naive";
     if (!seen_) throw UsageError(problem);
     const std::lock_guard lock(mutex_);
     message_ = problem;
@@ -509,7 +523,7 @@ void LiveRoom::change_moods(const json& body) {
   const JsonObject mood(body, "mood", {"keep", "remove", "lights"});
   const bool keeps = mood.has("keep");
   const std::string name = mood.text(keeps ? "keep" : "remove", "");
-  if (name.empty() || name.size() > longest_name) mood.refuse("has no name, or a long one");
+  if (name.empty() || name.size() > longest_name) mood.refuse("has no name, or too long a name");
   if (!keeps) {
     moods_.remove(name);
   } else {

@@ -51,7 +51,7 @@ view::FrameRequest view_in(const json& body, const LightMix& mix) {
   const JsonObject view(body, "view",
                         {"eye", "forward", "angle", "width", "height", "moving", "sky", "glare"});
   const glm::dvec3 eye = view.vector("eye"), forward = view.vector("forward");
-  if (!(glm::length(forward) > 0.5)) view.refuse("looks nowhere");
+  if (!(glm::length(forward) > 0.5)) view.refuse("'forward' is too short");
   view::FrameRequest request;
   request.camera = Camera::look_at(eye, eye + forward, {0, 1, 0}, view.number("angle", 0.01, 3.0));
   request.width = view.count("width", 1, most_side);
@@ -63,14 +63,14 @@ view::FrameRequest view_in(const json& body, const LightMix& mix) {
   if (view.has("sky")) {
     const std::vector<std::uint32_t> patches = loading::patch_of_layers(mix);
     const json& sky = body["sky"];
-    if (!sky.is_array() || sky.size() != patches.size()) view.refuse("has another sky");
+    if (!sky.is_array() || sky.size() != patches.size()) view.refuse("'sky' has a wrong length");
     auto mixdown = std::make_shared<LayerMixdown>();
     mixdown->layer_of.assign(patches.size(), 0);
     mixdown->scale.assign(patches.size(), 1.0f);
     for (std::size_t i = 0; i < patches.size(); ++i) {
       if (patches[i] != none) {
         const double power = sky[i].is_number() ? sky[i].get<double>() : -1;
-        if (!(power >= 0 && power <= limits::max_light_power)) view.refuse("has another sky");
+        if (!(power >= 0 && power <= limits::max_light_power)) view.refuse("'sky' has a bad power");
         mixdown->scale[i] = static_cast<float>(power);
         continue;
       }
@@ -129,7 +129,7 @@ view::LightBoard board_in(const json& lights, const LightMix& mix) {
 RenderParameters settings_in(const json& body, RenderParameters parameters) {
   for (const auto& [name, value] : body.items()) {
     if (std::find(page_settings.begin(), page_settings.end(), name) == page_settings.end()) {
-      throw InputError(fmt::format("settings: '{}' is none that pages change", one_line(name)));
+      throw InputError(fmt::format("settings: a page cannot change '{}'", one_line(name)));
     }
     const Setting& setting = setting_named(name);
     SettingValue asked = std::string_view();
@@ -145,7 +145,7 @@ RenderParameters settings_in(const json& body, RenderParameters parameters) {
     setting.set(parameters, asked);
   }
   check(parameters);
-  if (parameters.maps == MapMode::naive) throw UsageError("maps: naive ones have no light maps");
+  if (parameters.maps == MapMode::naive) throw UsageError("maps: naive has no light maps");
   return parameters;
 }
 

@@ -64,7 +64,7 @@ WebAddress WebAddress::parse(const std::string& text) {
   const auto number = port.empty() ? 0 : parse_number<int>(port).value_or(-1);
   if (!is_number(host) || number < 0 || number > 65535) {
     throw UsageError(fmt::format(
-        "--listen: '{}' is no address such as 127.0.0.1, 0.0.0.0:8080 or [::1]:8080", text));
+        "--listen: '{}' is not an address such as 127.0.0.1, 0.0.0.0:8080 or [::1]:8080", text));
   }
   return {host, number};
 }
@@ -113,7 +113,12 @@ WebServer::WebServer(const WebAddress& address, Answer answer, Listen listen)
       if (std::optional<WebReply> reply = answer_(asked); reply && reply->type.empty()) {
         response.status = 204;
       } else if (reply) {
-        response.set_content(std::move(reply->body), reply->type.c_str());
+        // A body that is given whole would be packed, for seconds, though it goes to this machine.
+        const auto body = std::make_shared<const std::string>(std::move(reply->body));
+        response.set_content_provider(body->size(), reply->type,
+                                      [body](std::size_t at, std::size_t length, auto& sink) {
+                                        return sink.write(body->data() + at, length);
+                                      });
       } else {
         response.status = 404;
       }
@@ -132,7 +137,7 @@ WebServer::WebServer(const WebAddress& address, Answer answer, Listen listen)
   else if (!server.bind_to_port(address.host, port))
     port = -1;
   if (port < 0) {
-    throw UsageError(fmt::format("--listen: {}:{} is taken, or is no address of this machine",
+    throw UsageError(fmt::format("--listen: {}:{} is in use or not on this machine; give another",
                                  address.host, address.port));
   }
   const bool bracketed = address.host.find(':') != std::string::npos;

@@ -7,7 +7,7 @@ class Lights {
     this.states = room.lights.map((light) => ({
       power: light.power, on: light.power > 0, solo: false, kelvin: 0, tint: light.tint.slice(),
     }));
-    this.hour = null;  // {date, time}: indices into room.hours
+    this.hour = null;  // {day, time}: of the year, and an index into room.hours
   }
 
   /// What the light of each layer at power 1 is multiplied by.
@@ -38,10 +38,21 @@ class Lights {
 
   skyPowers() {
     const {times, luminances, lights} = room.hours;
-    const row = this.hour.date * times.length, whole = Math.floor(this.hour.time);
-    const next = Math.min(whole + 1, times.length - 1), part = this.hour.time - whole;
-    return Array.from({length: lights}, (_, i) =>
-      luminances[(row + whole) * lights + i] * (1 - part) + luminances[(row + next) * lights + i] * part);
+    const {before, after, part} = this.days, whole = Math.floor(this.hour.time), of = this.hour.time - whole;
+    const next = Math.min(whole + 1, times.length - 1);
+    const rows = [[before, whole, (1 - part) * (1 - of)], [before, next, (1 - part) * of],
+                  [after, whole, part * (1 - of)], [after, next, part * of]];
+    return Array.from({length: lights}, (_, i) => rows.reduce((sum, [date, time, weight]) =>
+      sum + weight * luminances[(date * times.length + time) * lights + i], 0));
+  }
+
+  /// The days of room.hours before and after the day, and what part of the way it lies; the nearest one's weather.
+  get days() {
+    const {days, weather} = room.hours, {day} = this.hour, count = days.length;
+    const after = (days.findLastIndex((one) => one <= day) + 1) % count, before = (after + count - 1) % count;
+    const since = (date) => (day - days[date] + 365) % 365, past = since(before);
+    const part = past / (past + 365 - since(after));
+    return {before, after, part: weather ? Math.round(part) : part};
   }
 
   ///   kelvin   0: the light's own colour

@@ -121,6 +121,7 @@ class Live {
     this.reloads = true;
     sessionStorage.setItem('kept', JSON.stringify({
       state: page.state, mode: renderer.mode, exposes, unit, folded: find('#controls').hidden,
+      pace: Number(find('#speed').value), follows: find('#follow').checked,
       points: page.points.all.map(({place, normal}) => ({place, normal})), scroll: find('#controls').scrollTop, picture: canvas.toDataURL('image/jpeg')}));
     location.reload();
   }

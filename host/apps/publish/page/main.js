@@ -46,7 +46,7 @@ class Page {
           codes, (code) => (code ? 2 ** (code / room.hours.steps - room.hours.offset) : 0));
     }
     this.lights = new Lights();
-    if (room.hours) this.lights.hour = {date: room.hours.startDate, time: room.hours.startTime};
+    if (room.hours) this.lights.hour = {day: room.hours.startDay, time: room.hours.startTime};
     await this.renderer.load(archive);
     if (!room.live) this.errors = await archive.array('errors');
     this.surfaces = new Surfaces(this.renderer.positions, this.renderer.indices);
@@ -72,6 +72,7 @@ class Page {
     window.addEventListener('gamepadconnected', () => this.wake());
     this.dirty = true;
     this.wake();
+    if (this.renderer.isSlow) this.coarsen();
     if (kept) this.resume();
     else loading.remove();
     this.canvas.focus({preventScroll: true});
@@ -81,6 +82,8 @@ class Page {
   resume() {
     this.setMode(kept.mode);
     this.panel.unfold(!kept.folded);
+    this.setPace(kept.pace);
+    find('#follow').checked = kept.follows;
     for (const {place, normal} of kept.points) {
       const from = add(place, scaled(normal, 0.01)), down = scaled(normal, -1);
       const hit = this.surfaces.meet(from, down);
@@ -156,7 +159,7 @@ class Page {
   show(what) {
     this.lightIsOld = true;
     this.live?.lampsChanged();
-    if (what === 'hour' || what === 'preset') this.adapt();
+    if (what === 'preset' || (what === 'hour' && find('#follow').checked)) this.adapt();
     this.wake();
     this.points.show();
   }
@@ -198,6 +201,12 @@ class Page {
     this.frameTime = performance.now() - began;
   }
 
+  /// Draws few pixels until all has rested for a moment.
+  coarsen() {
+    this.renderer.share = this.movingShare = motion.least;
+    this.lastMotion = performance.now();
+  }
+
   fitFrames(moved, milliseconds) {
     const {renderer} = this;
     if (moved) {
@@ -232,6 +241,9 @@ class Page {
       this.setExposure(Number(event.target.value));
     });
     find('#adapt').addEventListener('click', () => this.adapt());
+    find('#follow').addEventListener('input', () => {
+      if (this.live) this.live.exposes = false;
+    });
     const kind = find('#contours');
     kind.addEventListener('input', () => {
       this.renderer.falseColours.contours = Number(kind.value);
@@ -277,6 +289,7 @@ class Page {
     for (const [button, act] of Object.values(tools)) {
       if (button && button !== '#adapt') find(button).addEventListener('click', act);
     }
+    find('#speed').addEventListener('input', ({target}) => this.setPace(Number(target.value)));
     window.addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || find('#about').open) return;
       if (isWriting(event.target)) return;
@@ -297,11 +310,18 @@ class Page {
     find('#simplified').textContent = `Simplified here: ${room.simplified.join('; ')}.`;
   }
 
+  ///   doublings   of the usual pace
+  setPace(doublings) {
+    this.walker.pace = walking.pace * 2 ** doublings;
+    find('#speed').value = doublings;
+    this.panel.tellValue('speed', `${shortNumber(this.walker.pace)} m/s`);
+  }
+
   tellFrames() {
-    const {drawCalls, rest, screen, canvas: {width, height}} = this.renderer;
+    const {drawCalls, texelsRead, rest, screen, canvas: {width, height}} = this.renderer;
     const samples = rest ? `${rest.samples} samples, rendered by photile` : `${Math.max(1, screen.count)} samples`;
     find('#frames').textContent = `The last frame: ${width} × ${height} pixels of ${samples}; draw calls: ${
-        drawCalls}; ${this.frameTime.toFixed(1)} ms of JavaScript.`;
+        drawCalls}; texels of light maps: ${shortNumber(texelsRead)}; ${this.frameTime.toFixed(1)} ms of JavaScript.`;
   }
 
   /// From the eye to a place of the page.
@@ -398,7 +418,7 @@ class Page {
         return [[light.name, [short(power), on ? 1 : 0, kelvin || (same ? 0 : tint.map(short)), solo ? 1 : 0]]];
       })),
       sky: this.lights.sky.on ? 1 : 0,
-      hour: this.lights.hour ? [this.lights.hour.date, this.lights.hour.time] : null,
+      day: this.lights.hour ? [this.lights.hour.day, this.lights.hour.time] : null,
     };
   }
 
@@ -410,7 +430,7 @@ class Page {
       if (!sound) throw new Error('light');
       return {name, power, on: Boolean(on), colour, solo: Boolean(solo)};
     });
-    if (state.hour && !areNumbers(state.hour, 2)) throw new Error('hour');
+    if (state.day && !areNumbers(state.day, 2)) throw new Error('day');
     return {...state, lights};
   }
 
@@ -454,9 +474,9 @@ class Page {
       else if (colour) this.lights.setKelvin(i, clamp(colour, kelvins.low, kelvins.high));
     }
     this.lights.sky.on = Boolean(state.sky ?? 1);
-    if (room.hours && state.hour) {
-      this.lights.hour = {date: clamp(Math.round(state.hour[0]), 0, room.hours.dates.length - 1),
-                          time: clamp(state.hour[1], 0, room.hours.times.length - 1)};
+    if (room.hours && state.day) {
+      this.lights.hour = {day: clamp(Math.round(state.day[0]), 1, 365),
+                          time: clamp(state.day[1], 0, room.hours.times.length - 1)};
     }
     this.lightIsOld = true;
   }

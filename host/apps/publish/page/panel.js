@@ -178,42 +178,48 @@ class Panel {
     if (!room.hours) return;
     const section = find('#hours'), date = find('#date'), hour = find('#hour');
     section.hidden = false;
-    room.hours.dates.forEach((text, i) => date.append(element('option', {value: i, textContent: text})));
+    if (room.hours.weather) find('label[for=date]').textContent = 'Nearest 21st';
     Object.assign(hour, {min: 0, max: room.hours.times.length - 1, step: 0.25});
-    const change = ({target}) => this.setHour(Number(date.value), Number(hour.value), target === hour);
+    const change = () => this.setHour(Number(date.value), Number(hour.value), true);
     date.addEventListener('input', change);
     hour.addEventListener('input', change);
   }
 
-  ///   date, time   indices into room.hours
-  setHour(date, time, holds) {
-    this.lights.hour = {date: clamp(date, 0, room.hours.dates.length - 1),
-                        time: clamp(time, 0, room.hours.times.length - 1)};
+  ///   day    of the year; after the last follows the first
+  ///   time   an index into room.hours
+  setHour(day, time, holds) {
+    this.lights.hour = {day: (day + 364) % 365 + 1, time: clamp(time, 0, room.hours.times.length - 1)};
     this.showHour();
     this.changed('hour', holds);
   }
 
-  /// Returns whether a key sets the hour or the month.
+  /// Returns whether a key sets the hour or the day.
   takeHourKey({code, shiftKey}) {
     const hours = (code === 'BracketRight') - (code === 'BracketLeft');
-    const months = (code === 'PageDown') - (code === 'PageUp');
-    if (!room.hours || (!hours && !months)) return false;
-    const {date, time} = this.lights.hour, {times} = room.hours;
-    this.setHour(date + months, time + hours * (shiftKey ? 1 : 0.25) / (times[1] - times[0]), true);
+    const days = (code === 'PageDown') - (code === 'PageUp');
+    if (!room.hours || (!hours && !days)) return false;
+    const {day, time} = this.lights.hour, {times} = room.hours;
+    this.setHour(day + days * (shiftKey ? 30 : 1), time + hours * (shiftKey ? 1 : 0.25) / (times[1] - times[0]), true);
     return true;
   }
 
   showHour() {
     if (!room.hours || !this.lights.hour) return;
-    const {date, time} = this.lights.hour;
-    find('#date').value = date;
+    const {day, time} = this.lights.hour, {year, weather, days} = room.hours, {before, after, part} = this.lights.days;
+    const shown = new Date(year, 0, weather ? days[part ? after : before] : day);
+    find('#date').value = day;
+    this.tellValue('date', shown.toLocaleDateString('en-GB', {day: 'numeric', month: 'short'}));
     find('#hour').value = time;
     const {times} = room.hours, whole = Math.floor(time);
     const hours = times[whole] + (time - whole) * ((times[whole + 1] ?? times[whole]) - times[whole]);
     const minutes = Math.round(hours * 60);
-    const text = `${String(Math.floor(minutes / 60)).padStart(2, '0')}:${String(minutes % 60).padStart(2, '0')}`;
-    find('#hours output[for=hour]').textContent = text;
-    find('#hour').setAttribute('aria-valuetext', text);
+    this.tellValue('hour', `${String(Math.floor(minutes / 60)).padStart(2, '0')}:${String(minutes % 60).padStart(2, '0')}`);
+  }
+
+  ///   id   of a slider
+  tellValue(id, text) {
+    find(`output[for=${id}]`).textContent = text;
+    find(`#${id}`).setAttribute('aria-valuetext', text);
   }
 
   show() {

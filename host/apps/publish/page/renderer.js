@@ -17,11 +17,15 @@ class Renderer {
       throw new Error('This graphics processor cannot draw into half floats.');
     }
     this.gl = gl;
+    const named = gl.getExtension('WEBGL_debug_renderer_info');
+    this.isSlow = /SwiftShader|llvmpipe|software|basic render/i.test(
+        gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER));  // there is no graphics chip
     this.exposure = 1;
     this.mode = 0;  // 0 the picture, 1 its light, 2 lux
     this.falseColours = {contours: 0, top: 1000};  // filled, in steps, isolines, bands; lux
     this.unit = 1 / room.display.exposure;  // luminance of white when the page was opened
     this.drawCalls = 0;
+    this.texels = this.texelsRead = 0;  // of light maps: since the last frame, and for it
     this.share = 1;           // of the pixels that are drawn, across and down
     this.isLit = !room.live;  // else an even light stands for that which is to come
     this.rest = null;         // an exact picture of where the viewer rests
@@ -258,6 +262,7 @@ class Renderer {
       gl.uniform1i(uniforms.uFirst, from);
       gl.uniform1i(uniforms.uCount, of);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
+      if (maps === this.maps) this.texels += of * this.mapTexels;
     }
     gl.disable(gl.BLEND);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -307,6 +312,7 @@ class Renderer {
     gl.bindVertexArray(this.emptyVertices);
     this.bind(0, gl.TEXTURE_2D, this.fresh.texture, uniforms.uPicture);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.texels += this.mapTexels;
     gl.disable(gl.BLEND);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     if (part === 1) this.probeIsOld = true;
@@ -535,7 +541,10 @@ class Renderer {
     gl.bindTexture(gl.TEXTURE_CUBE_MAP, this.probe);
     gl.generateMipmap(gl.TEXTURE_CUBE_MAP);
     this.drawsProbe = false;
+    this.texels += this.mapTexels;
   }
+
+  get mapTexels() { return this.light.width * this.light.height; }
 
   get far() { return 4 * Math.hypot(...subtract(room.high, room.low)) + 10; }
 
@@ -572,6 +581,7 @@ class Renderer {
       screen.begin(width, height, this.share === 1);
       this.drawView(camera, mode);
       screen.keep(target);
+      this.texels += this.mapTexels;
     };
     const isSeen = !showsLux || contours >= 2;  // between lines and bands
     if (isSeen && (!rest || (rest.shown < 1 && !rest.before))) drawInto(screen.pixels, 0);
@@ -581,6 +591,7 @@ class Renderer {
                 showsLux ? {contours, lux: room.lux * this.unit / top, palette: this.palette} : null);
     for (const draw of this.overlays) draw(camera);
     ++this.drawCalls;
+    [this.texelsRead, this.texels] = [this.texels, 0];
   }
 
   /// Lux of what is seen of matt surface, some thousand samples.

@@ -51,6 +51,9 @@ uniform int uLayer;                       // 0 what is there, 1 what passes it, 
 out vec4 fragment;
 ${shaderMode}
 const float largest = 60000.0;            // that half floats hold
+// GGX alpha: a lobe above it is so wide that it reflects no more than the mean of what lights the surface, where the probe
+// may see a window that the surface does not.
+const float rough = 0.1;
 // What comes from a direction, from a cube map that stands for a box (Lagarde and Zanuttini, "Local
 // image-based lighting with parallax-corrected cubemaps", 2012).
 vec3 reflected(vec3 direction, float alpha) {
@@ -105,7 +108,9 @@ void main() {
       float a = min(r.x * r.x, exp2(-9.28 * facing)) * r.x + r.y;
       vec2 lobe = vec2(-1.04, 1.04) * a + r.zw;
       vec3 part = vSpecular.rgb * lobe.x + vEmission.a * lobe.y;
-      radiance = radiance * (1.0 - part) + part * reflected(direction, vSpecular.a);
+      vec3 coat = reflected(direction, vSpecular.a);
+      if (vSpecular.a > rough) coat = min(coat, light * 0.31830988618);
+      radiance = radiance * (1.0 - part) + part * coat;
     }
   }
   radiance = min(radiance, largest);

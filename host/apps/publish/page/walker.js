@@ -1,6 +1,6 @@
 // Where the viewer stands and looks, and how keys, mouse, fingers and gamepads move them.
 
-const walking = {speed: 1.4, fast: 2.5, radius: 0.22, step: 0.45, headroom: 0.12,
+const walking = {pace: 1.4, fast: 2.5, radius: 0.22, step: 0.45, headroom: 0.12,
                  orbit: 0.005, ahead: 2};  // radians a pixel; metres, of what is turned around where nothing is ahead
 
 class Walker {
@@ -15,6 +15,7 @@ class Walker {
     this.keys = new Set();
     this.stick = [0, 0];  // right, forward: of the pad on the screen
     this.speed = [0, 0, 0];
+    this.pace = walking.pace;  // metres a second
     this.enabled = true;
   }
 
@@ -69,7 +70,7 @@ class Walker {
     const length = Math.max(1, Math.hypot(across, ahead));
     across /= length;
     ahead /= length;
-    const pace = held('ShiftLeft', 'ShiftRight') ? walking.fast * walking.speed : walking.speed;
+    const pace = held('ShiftLeft', 'ShiftRight') ? walking.fast * this.pace : this.pace;
     const level = normalized([Math.sin(this.yaw), 0, -Math.cos(this.yaw)]);
     const wanted = scaled(add(scaled(this.right, across),
                               scaled(this.flies ? this.forward : level, ahead)), pace);
