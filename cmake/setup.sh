@@ -37,6 +37,7 @@ libopenexr-dev         | pictures: EXR
 libpng-dev             | PNG, written
 zlib1g-dev             | packs published pages
 libopenimageio-dev     | all other pictures
+openimageio-tools      | the CMake files of the last refuse to work without them
 libfreetype-dev        | the letters of legends
 libtinygltf-dev        | reads glTF
 libtinyobjloader-dev   | reads OBJ
@@ -71,7 +72,6 @@ if ((tests)); then
   packages+=$'\n'$(cat <<'END'
 oclgrind               | tests: checks every memory access of the kernels
 python3-pil            | tests: another reader and writer of pictures
-openimageio-tools      | tests: reads the pictures as other tools do
 chromium               | tests: published pages in a browser
 chromium-driver        | the same
 python3-selenium       | the same
