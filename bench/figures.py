@@ -95,6 +95,12 @@ def on_gpu(k):
     return best(libraries, "seconds") / best(photile, "kernel seconds")
 
 
+def on_sixteen_cores():
+    """Wall seconds of the default picture of the living room, its neighbours found by the processor and by a card."""
+    rows = read("results/workstations/intel-xeon-and-nvidia-h200.json")["pictures"]
+    return [row["seconds"] for row in rows if row["cores"] == 16]
+
+
 # What is measured here.
 
 def processor_seconds(photile, *arguments):
@@ -117,6 +123,7 @@ FOUND = {
     "search.h100": (lambda: [on_gpu(50), on_gpu(200)], "results/cuda/nvidia-h100-photile.json", SEARCH),
     "build.hundred_thousand": (lambda: build_over_one_tree(100_000), "docs/measured/benchmarks/build.json", BUILD),
     "build.million": (lambda: build_over_one_tree(1_000_000), "docs/measured/benchmarks/build.json", BUILD),
+    "living_room.sixteen_cores_s": (on_sixteen_cores, "results/workstations/intel-xeon-and-nvidia-h200.json", PICTURE),
     "pictures.good_relmse": (lambda: pictures("photile", "`--quality good`", "rel_mse"),
                                 "docs/measured/quality/quality.json", PICTURE),
     "pictures.good_processor_s": (lambda: pictures("photile", "`--quality good`", "processor"),
@@ -144,8 +151,8 @@ def main():
     figures = {name: figure for name, figure in figures.items() if name in MEASURED}
     for name, (find, file, measures) in FOUND.items():
         figures[name] = {"values": find(), "command": file, **measured.of_file(file), "measures": measures}
-        if file.startswith("results/cuda/"):
-            figures[name]["card"] = "NVIDIA H100"
+        if file.startswith("results/"):
+            figures[name]["card"] = "NVIDIA H100 and H200"
     for name, (measure, command, measures) in MEASURED.items():
         if any(part in name for part in given.measure):
             figures[name] = {"values": measure(given.photile), "command": command, **measured.now(),

@@ -18,30 +18,30 @@ EVENING = ("--light daylight=off --light ceiling_panel=off --light floor_lamp=15
 # What a command is for, the command, the pictures it leaves with their captions, what begins the
 # lines that are shown of what it prints.
 STEPS = (
-    Step("What does the file hold, and which lamps?",
+    Step("What does the file contain, and which lamps?",
          "photile info living-room.gltf", {}, ("scene", "extents", "light:")),
-    Step("Render it once, a layer for each lamp.",
+    Step("Render it once, with a layer for each lamp.",
          "photile render living-room.gltf --size 960x640 -o room.exr -o dusk.png",
          {"dusk.png": "On a summer evening, every lamp on"}, ()),
-    Step("How much light is there to read and work by? Points in or just over furniture are left out.",
+    Step("How much light is there for reading and work? Points in furniture or just above it are left out.",
          "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
          "-s 600 -o report.html -o plan.svg",
          {"plan.svg": "Illuminance on the working plane"}, ("working plane", "lux", "all lights")),
-    Step("A mood for work after dark: the ceiling in neutral white, the floor lamp off.",
+    Step("A mood for work after dark: the ceiling panel in neutral white, the floor lamp off.",
          "photile relight room.exr --light daylight=off --light floor_lamp=off "
          "--light ceiling_panel=4000K -o work.exr -o work.png", {}, ()),
-    Step("And one to sit and talk by: the floor lamp, warm, and the panel off.",
+    Step("And one for the evening: the floor lamp in warm white, the ceiling panel off.",
          f"photile relight room.exr {EVENING} -o evening.exr -o evening.png",
-         {"evening.png": "Later: the floor lamp, the sconces and the picture"}, ()),
-    Step("How do they differ? Red is where work is brighter, blue where the evening is.",
+         {"evening.png": "Evening: the floor lamp, the sconces and the picture light"}, ()),
+    Step("How do they differ? Red is where the work mood is brighter, blue where the evening mood is.",
          "photile compare work.exr evening.exr -o moods.png",
          {"moods.png": "Work, evening, and the difference of their luminances"},
          ("work.exr", "luminance,", "illuminance,")),
-    Step("What is left of the light on the plane in the evening?",
+    Step("How much light does the working plane get in the evening?",
          f"photile measure living-room.gltf {EVENING} --plane floor+0.75 --clearance 0.1 "
          "--maintenance 0.8 -s 600 --cb -o evening.svg",
-         {"evening.svg": "The evening's contour bands"}, ("working plane", "lux", "all lights")),
-    Step("Is a reflection five times as bright as the mean of the picture?",
+         {"evening.svg": "Contour bands in the evening"}, ("working plane", "lux", "all lights")),
+    Step("Is any reflection more than five times as bright as the mean of the picture?",
          "photile render living-room.gltf --glare glare.png",
          {}, ("glare",)),
 )

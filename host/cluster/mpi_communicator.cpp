@@ -305,11 +305,10 @@ class MpiCommunicator final : public Communicator {
 
   [[noreturn]] void give_up(int silent_rank) {
     tell(aborting);
-    std::fprintf(
-        stderr,
-        "photile: error: rank %d of %u has been silent for %d s: its process or its machine "
-        "has stopped; all ranks are ended (PHOTILE_MPI_PATIENCE sets the seconds)\n",
-        silent_rank, size_, patience());
+    std::fprintf(stderr,
+                 "photile: error: rank %d of %u has not answered for %d s: its process or machine "
+                 "has stopped; all ranks are terminated (PHOTILE_MPI_PATIENCE sets the seconds)\n",
+                 silent_rank, size_, patience());
     std::this_thread::sleep_for(3 * watch_period);  // until they know
     const std::lock_guard lock(calls());
     MPI_Abort(MPI_COMM_WORLD, 1);

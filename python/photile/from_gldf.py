@@ -136,9 +136,9 @@ def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python3 -m photile.from_gldf",
-                                     description="Photometric files and luminaires of a GLDF file.")
+                                     description="Write the photometric files and luminaires of a GLDF file.")
     parser.add_argument("gldf", type=Path)
-    parser.add_argument("folder", type=Path, help="a new one")
+    parser.add_argument("folder", type=Path, help="new folder to write to")
     options = parser.parse_args()
     try:
         entries = convert(options.gldf, options.folder)

@@ -66,7 +66,7 @@ def _material(modifier: Any) -> tuple[dict[str, Any], str]:
             extensions["KHR_materials_specular"] = {
                 "specularColorFactor": [modifier.specularity / 0.04] * 3}
         if kind == "Trans":
-            lost = "what it transmits"
+            lost = "its transmission is left out"
     elif kind == "Mirror":
         colour = _colour(modifier, "reflectance")
         surface.update(metallicFactor=1.0, roughnessFactor=0.0)
@@ -84,7 +84,7 @@ def _material(modifier: Any) -> tuple[dict[str, Any], str]:
         material["emissiveFactor"] = [value / most for value in nits]
         extensions["KHR_materials_emissive_strength"] = {"emissiveStrength": most}
     else:
-        colour, lost = [0.5] * 3, f"all: photile has no {kind}; it becomes matt grey (0.5)"
+        colour, lost = [0.5] * 3, f"{kind} is not supported; it becomes matt grey (0.5)"
     surface["baseColorFactor"] = [*colour, 1.0]
     return material, lost
 
@@ -124,7 +124,7 @@ def _gltf(model: Any, warnings: list[str]) -> dict[str, Any]:
     for number, (name, points) in enumerate(corners.items()):
         material, lost = _material(modifiers[name])
         if lost:
-            warnings.append(f"modifier '{name}': left out is {lost}")
+            warnings.append(f"modifier '{name}': {lost}")
         array: NDArray[np.float32] = np.array(points, "<f4")
         gltf["materials"].append(material)
         gltf["bufferViews"].append(
@@ -170,7 +170,7 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
         factor *= lamp.candela_multiplier
         if lamp.custom_lamp is not None:
             factor *= lamp.custom_lamp.depreciation_factor
-            warnings.append(f"luminaire '{name}': its colour is left out; --temperature sets one")
+            warnings.append(f"luminaire '{name}': its colour is left out; set it by --light NAME=KELVINK")
         if factor != 1:
             # The third number after the line of the tilt multiplies all intensities.
             match = re.search(r"TILT\s*=\s*NONE\s+\S+\s+\S+\s+(\S+)", text)
@@ -178,8 +178,8 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
                 text = (f"{text[:match.start(1)]}{float(match[1]) * factor:.9g}"
                         f"{text[match.end(1):]}")
             else:
-                warnings.append(f"luminaire '{name}': its factor of {factor:g} is left out, "
-                                "since its file has a TILT")
+                warnings.append(f"luminaire '{name}': its factor of {factor:g} is left out "
+                                "because its file has a TILT")
         _add(files, f"{name}.ies", text)
         small = max(lamp.width_m, lamp.length_m) == 0 == min(lamp.width_m, lamp.length_m)
         for number, instance in enumerate(lamp.luminaire_zone or ()):
@@ -205,7 +205,7 @@ def _read(file: Path, warnings: list[str]) -> Any:
     def harmless(part: dict[str, Any]) -> dict[str, Any]:
         if part.get("type") == "BSDF":  # is written to a file that its identifier names
             grey = {f"{channel}_reflectance": 0.5 for channel in _channels}
-            warning = (f"modifier '{part['identifier']}': left out is all: photile has no BSDF; "
+            warning = (f"modifier '{part['identifier']}': BSDF is not supported; "
                        "it becomes matt grey (0.5)")
             if warning not in warnings:
                 warnings.append(warning)
@@ -259,7 +259,7 @@ def main() -> int:
         prog="python3 -m photile.from_honeybee",
         description="Write a Honeybee model as a scene, and print the command that measures it.")
     parser.add_argument("model", type=Path, help="HBJSON file")
-    parser.add_argument("folder", type=Path, help="for what is written")
+    parser.add_argument("folder", type=Path, help="folder to write to")
     options = parser.parse_args()
     try:
         # Honeybee prints what goes wrong, with its stack, before it raises it.

@@ -61,7 +61,7 @@ TEST_CASE("a small EXR that says that it is huge is refused in little memory") {
                                  "--environment", file}}) {
     const Outcome taken = run_photile(command);
     CHECK_THAT(last_error(taken, bad_input), Catch::Contains("a.exr: ") &&
-                                                 Catch::Contains("pixels a byte") &&
+                                                 Catch::Contains("pixels per byte") &&
                                                  Catch::Contains("scale it down"));
     CHECK(taken.kilobytes < most_kilobytes);
   }

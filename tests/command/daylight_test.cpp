@@ -195,7 +195,7 @@ TEST_CASE("a room that no sky shines into is warned of") {
       quick("daylight", closed, {"--inside", "0,0,0", "--weather", write_weather(folder)});
   std::erase(arguments, "--quiet");
   const Outcome year = succeed(arguments);
-  CHECK_THAT(year.errors, Contains("no light of the sky") && Contains("glass"));
+  CHECK_THAT(year.errors, Contains("no skylight") && Contains("glass"));
   // Without daylight lamps stay on in every hour, here at a share of their power over one point.
   arguments = quick("daylight", closed,
                     {"--inside", "0,0,0", "--weather", write_weather(folder), "--lamps-to", "1e-3",
@@ -210,14 +210,14 @@ TEST_CASE("a room that no sky shines into is warned of") {
   arguments = quick("measure", closed, {"--inside", "0,0,0", "--daylight-factor"});
   std::erase(arguments, "--quiet");
   const Outcome factors = succeed(arguments);
-  CHECK_THAT(factors.errors, Contains("no light of the sky") && Contains("glass"));
+  CHECK_THAT(factors.errors, Contains("no skylight") && Contains("glass"));
   // The same as lux, as a picture, at eyes and on a page.
   const auto errors_of = [&](std::vector<std::string> words) {
     return succeed(typed(words, "--sky overcast=10000 --light left=off --light right=off -q"))
         .errors;
   };
   const std::string eyes = folder.write("eyes.pts", "0 0 0.5 0 0 -1\n");
-  const std::string told = "no light of the sky reaches any ";
+  const std::string told = "no skylight reaches any ";
   CHECK_THAT(errors_of(typed("measure", closed, "--inside 0,0,0 --plane floor+0.75 --wall-band 0.2",
                              "--photons 20k --rays 64 --repeats 2")),
              Contains(told + "point") && Contains("has any light"));
@@ -233,9 +233,9 @@ TEST_CASE("a room that no sky shines into is warned of") {
 }
 
 TEST_CASE("next to no light of the sky is told of with how much it is") {
-  CHECK_THAT(report::darkness_warning(0), Contains("no light of the sky reaches any point"));
+  CHECK_THAT(report::darkness_warning(0), Contains("no skylight reaches any point"));
   CHECK_THAT(report::darkness_warning(0.0123),
-             Contains("next to no light of the sky") && Contains("0.012%") && Contains("glass"));
+             Contains("hardly any skylight") && Contains("0.012%") && Contains("glass"));
   CHECK(report::darkness_warning(0.11).empty());
 }
 

@@ -39,7 +39,7 @@ TEST_CASE("where threads cannot be made, every command says so in one line") {
   Run run;
   run.arguments = typed(filled(words, folder).c_str());
   run.limits[RLIMIT_NPROC] = limit;
-  CHECK_THAT(only_error(run_photile(run), failure), Contains("threads can be made"));
+  CHECK_THAT(only_error(run_photile(run), failure), Contains("threads can be created"));
 }
 
 TEST_CASE("numbers of threads that PoCL cannot have are bounded before it is asked") {

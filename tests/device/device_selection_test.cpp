@@ -72,7 +72,7 @@ TEST_CASE("without a selector a GPU comes first, then PoCL, other CPUs, the simu
 TEST_CASE("a GPU that has not passed its test is taken by default only where it is alone") {
   const Variable none("");
   std::vector<DeviceInfo> devices = machine;
-  for (const char* result : {"", "the mean irradiance is 2 where 1 is right"}) {
+  for (const char* result : {"", "the mean irradiance is 2 instead of 1"}) {
     devices[3].test_result = devices[4].test_result = result;
     CHECK(select_device(devices, "") == 2);
     CHECK(select_device(devices, "gpu") == 3);
@@ -234,7 +234,7 @@ TEST_CASE("one part of a device leaves the rest of it alone") {
 
 TEST_CASE("several devices are refused where one is needed") {
   CHECK_THROWS_WITH(Device({.selector = "/2"}),
-                    Catch::Contains("2 devices are chosen (0:0.0, 0:0.1)"));
+                    Catch::Contains("2 devices are selected (0:0.0, 0:0.1)"));
 }
 
 TEST_CASE("two sub-devices compute at once, compiling the same program") {

@@ -99,8 +99,7 @@ TEST_CASE("a launch that runs out of memory says what the device has and what to
   const Failure failure{"clEnqueueNDRangeKernel", -4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"};
   const auto result = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, 1, true, ""));
   CHECK(result.exit_code == 4);
-  CHECK_THAT(result.errors, Catch::Contains("'squares'") &&
-                                Catch::Contains("4000 bytes are in use") &&
+  CHECK_THAT(result.errors, Catch::Contains("'squares'") && Catch::Contains("4000 are in use") &&
                                 Catch::Contains("use fewer photons"));
 }
 

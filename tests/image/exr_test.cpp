@@ -411,7 +411,7 @@ TEST_CASE("layers near the largest float, turned up, are written as that and tol
   CHECK(relit.image.find("R")->back() == largest);
   REQUIRE(relit.overflows.size() == 1);
   CHECK_THAT(relit.overflows[0], Contains("light 'lamp'") && Contains("210 of 210 pixels") &&
-                                     Contains("3.4e+38") && Contains("turn it down"));
+                                     Contains("3.4e+38") && Contains("reduce the power"));
 }
 
 TEST_CASE("pixels of a layer that are no numbers are black, and the rest of the picture is kept") {

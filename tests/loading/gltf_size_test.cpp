@@ -74,7 +74,7 @@ TEST_CASE("meshes are not repeated beyond the limit from files that hold few byt
   make_large(document);
   CHECK_THAT(size_refusal(document),
              Catch::Contains(std::to_string(16 * (many / 3))) &&
-                 Catch::Contains("no more than 51") &&  // 140 bytes, 5 nodes
+                 Catch::Contains("at most 51") &&  // 140 bytes, 5 nodes
                  Catch::Contains("mesh 'square'") && Catch::Contains("in 16 instances"));
   document = placed_often(1);
   make_large(document);

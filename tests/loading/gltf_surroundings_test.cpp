@@ -114,7 +114,7 @@ TEST_CASE("surroundings that cannot be read are named, with the remedy") {
     CHECK(scene.lights.size() == 1);
     REQUIRE(scene.report.warnings.size() == 1);
     CHECK_THAT(scene.report.warnings[0],
-               Catch::Contains("EXT_lights_image_based") && Catch::Contains("environment picture"));
+               Catch::Contains("EXT_lights_image_based") && Catch::Contains("--environment"));
     return scene.report.warnings[0];
   };
   using Catch::Contains;

@@ -268,7 +268,7 @@ TEST_CASE("points that the user gives stay where they lie in things, with a mark
                     std::nullopt};
   CHECK(leave_out_furniture(scene, 0, points) == 0);
   REQUIRE(points.sensors.size() == 4);
-  CHECK(points.marks == std::vector<std::string>{"", "inside a thing or a closed room", "",
+  CHECK(points.marks == std::vector<std::string>{"", "inside an object or a closed room", "",
                                                  "less than 1 cm from a surface"});
   CHECK(counted_marks(points).size() == 2);
 }

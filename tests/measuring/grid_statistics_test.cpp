@@ -93,7 +93,7 @@ TEST_CASE("a sky that reaches nothing is told once, its ground never") {
   };
   const auto dark = told({"sun", "sky", "ground"}, {false, false, false});
   REQUIRE(dark.size() == 1);
-  CHECK_THAT(dark[0], Contains("no light of the sky reaches any point") && Contains("no opening"));
+  CHECK_THAT(dark[0], Contains("no skylight reaches any point") && Contains("no opening"));
   CHECK(told({"sky", "ground"}, {true, false}).empty());
   CHECK(told({"sky_0001", "sky_0002", "ground"}, {false, true, false}).empty());
   CHECK(told({"sky_0001", "sky_0002", "ground"}, {false, false, false}).size() == 1);

@@ -134,4 +134,4 @@ def test_a_model_writes_into_its_folder_alone(tmp_path):
         file.write_text(changed(lambda radiance: radiance["modifiers"].append(bsdf)))
         made = converted(file, tmp_path / "out")
     assert not (tmp_path / "elsewhere.xml").exists()
-    assert made.returncode == 0 and "modifier 'blinds': left out is all: photile has no BSDF" in made.stderr
+    assert made.returncode == 0 and "modifier 'blinds': BSDF is not supported" in made.stderr

@@ -291,7 +291,7 @@ TEST_CASE(
   };
   CHECK(error_of(room).empty());
   CHECK_THAT(error_of(room + far),
-             Catch::Contains("automatic radius") && Catch::Contains("far from the rest"));
+             Catch::Contains("automatic radius") && Catch::Contains("distant objects"));
 }
 
 TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a line") {

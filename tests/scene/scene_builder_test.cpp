@@ -303,7 +303,7 @@ TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, a
     stages_refuse([power](Scene& s) { s.lights[0].power = power; }, "has the power");
   }
   stages_refuse([](Scene& s) { s.lights[0].distribution = 2; }, "has distribution 2 of 0");
-  stages_refuse([](Scene& s) { s.lights[0].kind = LightKind::environment; }, "surroundings");
+  stages_refuse([](Scene& s) { s.lights[0].kind = LightKind::environment; }, "no environment");
   stages_refuse([](Scene& s) { s.instances.emplace_back(); }, "instance of mesh 0");
 }
 

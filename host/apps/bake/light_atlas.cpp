@@ -47,12 +47,12 @@ LightAtlas::LightAtlas(const Scene& scene, const cache::Charts& charts,
     if (texel_ > widest_texel) {
       const bool bounded = parameters.most_texels != std::numeric_limits<std::uint64_t>::max();
       throw UsageError(fmt::format(
-          "a picture of {} x {}{} has no room for {} surfaces; give more by --most-texels",
+          "a picture of {} x {}{} has no room for {} surfaces; give a larger --most-texels",
           most_side, most_side,
           bounded ? fmt::format(" and {} texels", parameters.most_texels) : "", charts.size()));
     }
     if (parameters.texel > 0 && parameters.exact) {
-      throw UsageError(fmt::format("texels {} m apart do not fit a picture of {} x {}; give more",
+      throw UsageError(fmt::format("texels {} m apart do not fit in {} x {}; give a larger --texel",
                                    texel_, most_side, most_side));
     }
     texel_ *= coarser;

@@ -97,8 +97,8 @@ void write_layer(const std::filesystem::path& file, const BakedLight& baked, std
   }
   if (lost > 0) {
     throw InputError(
-        fmt::format("light '{}': {} of {} values of its texture are beyond any number; "
-                    "turn it down",
+        fmt::format("light '{}': {} of {} values of its texture are infinite or not numbers; "
+                    "reduce its power",
                     light.name, lost, 3 * image.pixels()));
   }
   image.attributes["photile.light"] = light.name;

@@ -149,7 +149,7 @@ void add_devices_command(CLI::App& photile) {
 
 void add_settings_command(CLI::App& photile) {
   CLI::App* command =
-      photile.add_subcommand("settings", "List what --set sets, with defaults and ranges");
+      photile.add_subcommand("settings", "List the settings of --set, with defaults and ranges");
   auto markdown = std::make_shared<bool>(false);
   command->add_flag("--markdown", *markdown, "print the tables of docs/reference/settings.md");
   command->callback(
@@ -169,7 +169,7 @@ void print_text(const Scene& scene, const LightMix& mix, const SceneLoadOptions&
   for (const auto& line : sky_lines(load)) std::cout << line << '\n';
   const auto rooms = measuring::rooms_of_cameras(scene);
   if (rooms.empty()) {
-    std::cout << "room: none with a ceiling around a camera or in front of it\n";
+    std::cout << "room: none found; no camera is in, or faces, a room with a ceiling\n";
   }
   for (const auto& [camera, room] : rooms) {
     std::cout << fmt::format(

@@ -176,7 +176,7 @@ void PictureOutputs::write(LayeredPicture& picture, Progress& notes,
     root = picture.root();
     const ToneMapping shown = shown_as(options_, picture);
     if (shown.white != ToneMapping{}.white) {
-      notes.note(fmt::format("white balance: light of {:.3f}, {:.3f}, {:.3f} (R, G, B) is white",
+      notes.note(fmt::format("white balance: linear RGB {:.3f}, {:.3f}, {:.3f} is shown as white",
                              shown.white[0], shown.white[1], shown.white[2]));
     }
     displayed = tone_map(root, shown);

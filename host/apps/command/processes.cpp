@@ -150,18 +150,18 @@ void join_processes(std::span<const char* const> arguments) {
   if (!found) {
     if (launched == 1) return;
     throw UsageError(
-        fmt::format("mpirun has started {} processes, and photile's module for MPI cannot be "
+        fmt::format("mpirun has started {} processes, but photile's module for MPI cannot be "
                     "loaded: {}; install the package photile-mpi, or start one process",
                     launched, module.error()));
   }
   other_failed_of_module =
       module.find<decltype(photile_mpi_other_failed)>("photile_mpi_other_failed");
   communicator = found();
-  if (!communicator) throw UsageError("MPI cannot be initialised; see what mpirun says");
+  if (!communicator) throw UsageError("MPI cannot be initialised; read the messages of mpirun");
   const std::string version = version_number();
   for (const Communicator::Bytes& other : communicator->gather(std::as_bytes(std::span(version)))) {
     if (std::ranges::equal(other, std::as_bytes(std::span(version)))) continue;
-    throw UsageError("the processes of one rendering are of several versions of photile");
+    throw UsageError("processes run different versions of photile; install one on all machines");
   }
   ContentHash request;
   add_request(arguments, request);
@@ -194,7 +194,7 @@ std::vector<bool> as_first_says(const std::vector<bool>& own) {
 
 void refuse_several(const std::string& what, const std::string& remedy) {
   if (communicator == nullptr || communicator->size() == 1) return;
-  throw UsageError(fmt::format("{} works with one process only, and {} share the work; {}", what,
+  throw UsageError(fmt::format("{} works only with one process, and there are {}; {}", what,
                                communicator->size(), remedy));
 }
 

@@ -56,7 +56,7 @@ void write_sheet(const RelightOptions& options, const std::vector<LightChange>& 
   const std::filesystem::path file = moods_of_picture(options.moods_file, options.input);
   const std::vector<std::string> names =
       options.moods.empty() ? view::Moods(file).names() : options.moods;
-  if (names.empty()) throw UsageError(file.string() + ": there are no moods for a contact sheet");
+  if (names.empty()) throw UsageError(file.string() + ": no moods; save some on the live page");
   std::vector<Image> pictures;
   for (const std::string& mood : names) {
     const auto asked = mood_of_picture({mood, file.string()}, options.input);

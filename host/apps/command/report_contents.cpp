@@ -54,7 +54,7 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
   const std::vector<float> lux = report::illuminance_of(picture);
   pictures.push_back({{"caption", caption},
                       {"png", png_of(report::false_colour_picture(lux, displayed, colours))},
-                      {"shows", "illuminance of the surfaces that are seen, lux"}});
+                      {"shows", "illuminance of the visible surfaces, lux"}});
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ std::optional<int> run_python(std::vector<std::string> arguments, const fs::path
   posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
     throw OutputError(
-        "there is no Python, which writes reports, plans, UGR tables and Honeybee's files: apt-get "
+        "Python, which writes reports, plans, UGR tables and Honeybee's files, is missing: apt-get "
         "install python3-jinja2 python3-contourpy");
   }
   int status = 0;
@@ -94,7 +94,7 @@ void run_program(const nlohmann::ordered_json& record, const fs::path& folder,
   std::string said = lines.empty() ? "" : one_line(lines.back());
   const std::string head = "photile.report: error: ";
   if (said.starts_with(head)) said.erase(0, head.size());
-  if (said.empty()) said = "photile.report was ended; try again";
+  if (said.empty()) said = "photile.report was killed; try again";
   if (code == static_cast<int>(ExitCode::usage)) throw UsageError(said);
   if (code == static_cast<int>(ExitCode::input)) throw InputError(said);
   throw OutputError(said);

@@ -83,7 +83,7 @@ std::filesystem::path moods_file(const std::string& given, const std::filesystem
     if (std::filesystem::exists(file)) return file;
   }
   throw UsageError(
-      fmt::format("{}: there is no such file of moods; keep moods on the live page, or "
+      fmt::format("{}: there is no such moods file; save moods on the live page, or "
                   "give --moods FILE",
                   files.front().string()));
 }

@@ -306,7 +306,7 @@ std::vector<std::string> doubts_of(const Scene& scene, const LightMix& mix) {
   if (materials > 0) {
     lines.push_back(fmt::format(
         "{} on {} reflect {:.0f}% of light and more, '{}' {:.0f}%; white paint reflects 85%: set "
-        "others with --reflectance",
+        "lower values with --reflectance",
         counted(materials, "material"), counted(covered, "triangle"),
         100 * defaults::doubtful_reflectance, brightest, 100 * most));
   }
@@ -339,9 +339,8 @@ std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix) 
   for (std::size_t i = 0; i < open.size(); ++i) {
     if (open[i] == 0) continue;
     lines.push_back(fmt::format(
-        "material {}: solid glass that ends in the open at {}: all that lies behind it is inside "
-        "glass, unless it ends at other surfaces as water does in a basin; a pane of one sheet is "
-        "thin glass",
+        "material {}: solid glass is open at {}: all that lies behind counts as glass, unless "
+        "other surfaces close it (water in a basin); make a pane of one sheet thin glass",
         scene.materials[i].name, counted(open[i], "edge")));
   }
   return lines;

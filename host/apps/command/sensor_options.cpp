@@ -118,7 +118,7 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
           grid.name, all));
     }
     if (grid.sensors.empty()) {
-      throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; give less",
+      throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; reduce it",
                                    options.clearance, all, grid.name));
     }
     left += grid.sensors.size();

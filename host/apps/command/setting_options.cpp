@@ -193,14 +193,14 @@ Settings scene_settings(SceneLoadOptions& options) {
                  "the file's default scene, otherwise the first",
                  [&options](std::string_view scene) { options.scene = scene; }),
       bound_word("hide", group, Text{"GLOB"},
-                 "leave out what has a matching name in the file: nodes with all below them, "
-                 "meshes, objects, groups; repeatable",
+                 "leave out nodes with all below them, meshes, objects and groups whose names "
+                 "match; repeatable",
                  "nothing is left out",
                  [&options](std::string_view glob) { options.hidden.emplace_back(glob); }),
       bound_word("glass", group, Text{"MATERIAL=SHARE"},
-                 "materials whose names match become clear glass that lets this fraction of light "
-                 "through, as Tvis of a data sheet; repeatable",
-                 "as the file says",
+                 "materials whose names match become clear glass of this visible transmittance "
+                 "(Tvis of a data sheet); repeatable",
+                 "as in the file",
                  [&options](std::string_view glass) {
                    options.glasses.push_back(MaterialShare::parse(std::string(glass)));
                  }),
@@ -222,7 +222,7 @@ Settings scene_settings(SceneLoadOptions& options) {
           "multiplies the picture of --environment, which is in cd/m2, or W/(m2 sr) for OBJ"),
       bound_number(
           "environment_rotation", group, loading::turns, options.environment.rotation_degrees,
-          "rotation of that picture, clockwise as seen from above; at 0 its middle lies towards -z",
+          "clockwise rotation of --environment as seen from above; at 0 its middle lies towards -z",
           "degrees"),
       bound_switch(
           "lambertian", group, options.lambertian,
@@ -238,7 +238,7 @@ Settings device_settings(DeviceOptions& options) {
       {.name = "device_memory",
        .unit = "GiB",
        .group = group,
-       .help = "most memory for all buffers on the device",
+       .help = "maximum memory for all buffers on the device",
        .otherwise = "all memory of the device",
        .range = PositiveNumbers{},
        .assign =

@@ -177,8 +177,8 @@ void run_validate(ValidateOptions& options) {
   const std::size_t failed = rows_not_within(rows);
   if (failed > 0) {
     throw Error(
-        fmt::format("{} of {} readings are not within {}%; those that are only too noisy "
-                    "need more --photons or --paths, and fewer photons need a lower -k",
+        fmt::format("{} of {} readings are not within {}%; those marked 'too noisy' "
+                    "need more --photons or --paths; with fewer photons lower -k",
                     failed, rows.size(), 100 * validation::tolerance));
   }
 }

@@ -168,14 +168,14 @@ void add_view_command(CLI::App& photile) {
           "--listen",
           [options](const std::string& text) { options->address = serve::WebAddress::parse(text); },
           "ADDRESS[:PORT]",
-          "numbers that the page is served at; others than 127.0.0.1 let in "
-          "whoever has the address of the page")
+          "IP address that serves the page; unless it is 127.0.0.1, anyone "
+          "who has the link can open it")
       ->default_str("127.0.0.1, any port");
-  page.flag("--no-browser", options->no_browser, "print the address alone");
-  page.add("--keep", options->keep, "TIME", "end so long after the last page was closed",
+  page.flag("--no-browser", options->no_browser, "print only the address");
+  page.add("--keep", options->keep, "TIME", "end this long after the last page is closed",
            duration())
       ->default_str("1min");
-  page.add("--title", options->title, "TEXT", "of the page; default: the name of the scene's file");
+  page.add("--title", options->title, "TEXT", "title; default: the name of the scene file");
   add_white_option(page, options->render.pictures.white);
   set_quality(options->render.quality_options(), Quality::good);
   add_quality_preset(*command, options->render.quality_options());

@@ -80,7 +80,7 @@ std::vector<int> frames_to_make(const WalkOptions& options, int count) {
     }
   }
   if (frames.empty()) {
-    throw UsageError(fmt::format("--frames: the walk has frames {} to {}, and none of these",
+    throw UsageError(fmt::format("--frames: the walk has frames {} to {}; give some of them",
                                  options.first_number, options.first_number + count - 1));
   }
   return frames;

@@ -26,7 +26,7 @@ glm::vec3 color_of(const std::string& hex) {
   const auto code =
       hex.size() == 7 && hex[0] == '#' ? parse_number<unsigned>(hex.substr(1), 16) : std::nullopt;
   if (!code) {
-    throw std::invalid_argument(fmt::format("'{}' is no colour such as #ffd9a0", hex));
+    throw std::invalid_argument(fmt::format("'{}' is not a colour such as #ffd9a0", hex));
   }
   return glm::vec3((*code >> 16) & 255, (*code >> 8) & 255, *code & 255) / 255.0f;
 }
@@ -35,7 +35,7 @@ double kelvin_of(double value) {
   if (value >= limits::min_color_temperature && value <= limits::max_color_temperature) {
     return value;
   }
-  throw std::invalid_argument(fmt::format("{} is no colour temperature from {} to {}", value,
+  throw std::invalid_argument(fmt::format("{} is not a colour temperature from {} to {}", value,
                                           limits::min_color_temperature,
                                           limits::max_color_temperature));
 }
@@ -46,7 +46,7 @@ double rounded(double power) { return *parse_number<double>(fmt::format("{:.4g}"
 PowerUnit unit_of(const std::string& word) {
   if (word == "lm") return PowerUnit::lumen;
   if (word == "W") return PowerUnit::watt;
-  throw std::invalid_argument(fmt::format("'{}' is no unit; use lm or W", word));
+  throw std::invalid_argument(fmt::format("'{}' is not a unit; use lm or W", word));
 }
 
 }  // namespace
@@ -59,12 +59,12 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
   if (!std::filesystem::exists(file_)) return;
   std::string place = "the file";
   const auto refuse = [&](const std::string& reason) {
-    throw InputError(fmt::format("{}: {}: {}; mend or remove it", file_.string(), place, reason));
+    throw InputError(fmt::format("{}: {}: {}; fix or remove it", file_.string(), place, reason));
   };
   const std::string text = read_own_text(file_);
   check_json_depth(text, file_.string());
   const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (document.is_discarded()) refuse("is no JSON");
+  if (document.is_discarded()) refuse("is not JSON");
   try {
     if (document.at("photile_moods") != version) {
       throw std::invalid_argument(fmt::format("\"photile_moods\" is not {}", version));
@@ -85,7 +85,7 @@ Moods::Moods(std::filesystem::path file) : file_(std::move(file)) {
       }
     }
   } catch (const json::exception&) {  // its text is meaningful to programmers only
-    refuse("holds a value of another type than moods have");
+    refuse("contains a value of the wrong type");
   } catch (const std::invalid_argument& error) {
     refuse(error.what());
   }
@@ -171,7 +171,7 @@ void Moods::refuse_unknown_lights(const std::string& name,
   for (const auto& [light, setting] : named(name)) {
     if (std::find(there.begin(), there.end(), light) != there.end()) continue;
     throw UsageError(fmt::format(
-        "{}: mood '{}' names a light '{}' that is not there; there {}; mend it or keep it again",
+        "{}: mood '{}': there is no light '{}'; there {}; correct the mood or save it again",
         file_.string(), name, light, scene::names_like(light, there)));
   }
 }

@@ -64,7 +64,7 @@ FrameNames::FrameNames(const std::string& pattern) {
       name.find('%') != std::string::npos || folder.find("##") != std::string::npos;
   if (placeholders > 1 || (placeholders == 0 && meant_one)) {
     throw UsageError(
-        fmt::format("{}: needs one field for the number of a frame, #### or %04d", pattern));
+        fmt::format("{}: needs one field for the frame number, #### or %04d", pattern));
   }
   if (placeholders == 0) {
     const std::filesystem::path path(name);

@@ -116,7 +116,7 @@ std::filesystem::path SceneFolder::resolve(const std::string& name) const {
   if (name.empty()) throw ResourceError("the name is empty");
   if (name.find('\0') != std::string::npos) throw ResourceError("the name contains a NUL byte");
   if (name.find("://") != std::string::npos) {
-    throw ResourceError("addresses are not fetched; save the file in the scene's folder");
+    throw ResourceError("URLs are not fetched; save the file in the scene's folder");
   }
   namespace fs = std::filesystem;
   std::error_code error;

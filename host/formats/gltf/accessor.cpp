@@ -79,7 +79,8 @@ bool is_index_type(int type) {
 
 const tinygltf::Accessor& AccessorReader::at(int accessor, const std::string& use) const {
   if (const tinygltf::Accessor* const found = element(model_.accessors, accessor)) return *found;
-  throw context_.error(fmt::format("{}: there is no accessor {}; export it again", use, accessor));
+  throw context_.error(
+      fmt::format("{}: there is no accessor {}; export the file again", use, accessor));
 }
 
 std::uint64_t AccessorReader::count(int accessor, const std::string& use) const {
@@ -95,18 +96,17 @@ std::span<const unsigned char> AccessorReader::view(int buffer_view, const std::
   const tinygltf::BufferView* const view = element(model_.bufferViews, buffer_view);
   if (view == nullptr) {
     throw context_.error(
-        fmt::format("{}: there is no buffer view {}; export it again", use, buffer_view));
+        fmt::format("{}: there is no buffer view {}; export the file again", use, buffer_view));
   }
   const tinygltf::Buffer* const buffer = element(model_.buffers, view->buffer);
   if (buffer == nullptr) {
     throw context_.error(
-        fmt::format("{}: there is no buffer {}; export it again", use, view->buffer));
+        fmt::format("{}: there is no buffer {}; export the file again", use, view->buffer));
   }
   const auto& data = buffer->data;
   if (view->byteOffset > data.size() || view->byteLength > data.size() - view->byteOffset) {
     throw context_.error(
-        fmt::format("{}: buffer view {} ends beyond its buffer of {} bytes; "
-                    "export it again",
+        fmt::format("{}: buffer view {} ends beyond its buffer of {} bytes; export the file again",
                     use, buffer_view, data.size()));
   }
   return {data.data() + view->byteOffset, view->byteLength};
@@ -124,8 +124,8 @@ AccessorReader::Elements AccessorReader::elements(int buffer_view, std::uint64_t
   if (!starts_inside || available < element_size ||
       count - 1 > (available - element_size) / stride) {
     throw context_.error(
-        fmt::format("{}: {} elements end beyond buffer view {} of {} bytes; export it again", use,
-                    count, buffer_view, bytes.size()));
+        fmt::format("{}: {} elements end beyond buffer view {} of {} bytes; export the file again",
+                    use, count, buffer_view, bytes.size()));
   }
   return {bytes.data() + offset, stride};
 }
@@ -138,8 +138,8 @@ std::vector<float> AccessorReader::floats(int accessor_index, int components,
   const int type = components == 1 ? TINYGLTF_TYPE_SCALAR : components;
   if (accessor.type != type || size == 0) {
     throw context_.error(
-        fmt::format("{}: accessor {} is of the wrong type (not {} numbers of at "
-                    "most 32 bits); export it again",
+        fmt::format("{}: accessor {} is of the wrong type (not {} numbers of at most 32 bits); "
+                    "export the file again",
                     use, accessor_index, components));
   }
   const auto width = static_cast<std::size_t>(components);
@@ -185,7 +185,7 @@ void AccessorReader::for_each_sparse(const tinygltf::Accessor& accessor, std::ui
   if (sparse.count < 1 || static_cast<std::uint64_t>(sparse.count) > accessor.count ||
       sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0 ||
       !is_index_type(sparse.indices.componentType)) {
-    throw context_.error(use + ": malformed sparse accessor; export it again");
+    throw context_.error(use + ": malformed sparse accessor; export the file again");
   }
   const auto count = static_cast<std::uint64_t>(sparse.count);
   const Elements indices =
@@ -199,8 +199,8 @@ void AccessorReader::for_each_sparse(const tinygltf::Accessor& accessor, std::ui
         index(indices.first + i * indices.stride, sparse.indices.componentType);
     if (target >= accessor.count) {
       throw context_.error(
-          fmt::format("{}: sparse index {} is out of range of {} elements; export it again", use,
-                      target, accessor.count));
+          fmt::format("{}: sparse index {} is out of range of {} elements; export the file again",
+                      use, target, accessor.count));
     }
     visit(target, replacements.first + i * replacements.stride);
   }
@@ -210,8 +210,9 @@ std::vector<std::uint32_t> AccessorReader::indices(int accessor_index,
                                                    const std::string& use) const {
   const tinygltf::Accessor& accessor = at(accessor_index, use);
   if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType)) {
-    throw context_.error(fmt::format(
-        "{}: accessor {} does not hold unsigned integers; export it again", use, accessor_index));
+    throw context_.error(
+        fmt::format("{}: accessor {} does not hold unsigned integers; export the file again", use,
+                    accessor_index));
   }
   std::vector<std::uint32_t> result;
   if (accessor.count == 0) return result;

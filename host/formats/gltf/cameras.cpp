@@ -69,7 +69,7 @@ void add_gltf_cameras(const tinygltf::Model& model, const std::vector<NodeVisit>
     if (visit.source->camera < 0) continue;
     const tinygltf::Camera* const camera = element(model.cameras, visit.source->camera);
     if (camera == nullptr) {
-      throw context.error(fmt::format("node '{}': there is no camera {}; export it again",
+      throw context.error(fmt::format("node '{}': there is no camera {}; export the file again",
                                       node_name(model, visit.node), visit.source->camera));
     }
     add_camera(*camera, name_of_camera(model, visit, *camera), visit.world, context);
@@ -170,7 +170,7 @@ class AnimationReader {
     const tinygltf::AnimationSampler* const sampler = element(animation.samplers, source.sampler);
     if (sampler == nullptr) {
       throw context_.error(
-          fmt::format("{}: there is no sampler {}; export it again", use, source.sampler));
+          fmt::format("{}: there is no sampler {}; export the file again", use, source.sampler));
     }
     Channel channel{source.target_node,
                     source.target_path,
@@ -188,14 +188,16 @@ class AnimationReader {
     if (channel.times.empty() || !ascending ||
         channel.values.size() !=
             per_key * channel.times.size() * static_cast<std::size_t>(channel.components)) {
-      throw context_.error(fmt::format(
-          "{}: the times do not ascend, or do not match the number of values; export it again",
-          use));
+      throw context_.error(
+          fmt::format("{}: the times do not ascend, or do not match the number of values; export "
+                      "the file again",
+                      use));
     }
     const auto finite = [](auto value) { return std::isfinite(value); };
     if (!std::all_of(channel.times.begin(), channel.times.end(), finite) ||
         !std::all_of(channel.values.begin(), channel.values.end(), finite)) {
-      throw context_.error(fmt::format("{}: has NaN or infinite values; export it again", use));
+      throw context_.error(
+          fmt::format("{}: has NaN or infinite values; export the file again", use));
     }
     return channel;
   }
@@ -289,7 +291,7 @@ reading::CameraMotion read_camera_animation(const std::filesystem::path& file,
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
+    throw context.error(fmt::format("malformed file ({}); export the file again", error.what()));
   }
 }
 

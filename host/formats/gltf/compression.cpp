@@ -52,7 +52,7 @@ std::span<const unsigned char> bytes_of(const tinygltf::Model& model, int buffer
       return std::span(data).subspan(offset, length);
     }
   }
-  throw context.error(use + " lies outside its buffer; export it again");
+  throw context.error(use + " lies outside its buffer; export the file again");
 }
 
 /// A member that counts bytes or elements, 0 where it is not there. Errors: InputError.
@@ -60,7 +60,7 @@ std::uint64_t size_member(const tinygltf::Value& object, const std::string& key,
                           const std::string& use, const reading::ImportContext& context) {
   const double value = number_member(object, key, 0);
   if (value >= 0 && value <= 0x1p53) return static_cast<std::uint64_t>(value);
-  throw context.error(fmt::format("{}: {} is {}; export it again", use, key, value));
+  throw context.error(fmt::format("{}: {} is {}; export the file again", use, key, value));
 }
 
 template <class Value, std::size_t count>
@@ -71,7 +71,8 @@ Value value_named(const std::array<std::pair<std::string_view, Value>, count>& v
       std::ranges::find(values, std::string_view(name), &std::pair<std::string_view, Value>::first);
   if (found != values.end()) return found->second;
   throw context.error(fmt::format(
-      "{}: '{}' is not a known mode or filter of the compression; export it again", use, name));
+      "{}: '{}' is not a known mode or filter of the compression; export the file again", use,
+      name));
 }
 
 /// The number of a new buffer with these bytes.
@@ -119,7 +120,7 @@ class Unpacking {
     if (is_new) {
       std::vector<unsigned char> bytes(take(view.count * view.stride, use));
       if (!codec<decltype(photile_unpack_meshopt)>("photile_unpack_meshopt")(view, bytes.data())) {
-        throw context_.error(use + ": its meshopt data is damaged; export it again");
+        throw context_.error(use + ": its meshopt data is damaged; export the file again");
       }
       known->second = add_buffer(model_, std::move(bytes));
     }
@@ -153,7 +154,7 @@ class Unpacking {
     }
     const tinygltf::BufferView* const view = element(model_.bufferViews, packed);
     if (view == nullptr) {
-      throw context_.error(use + ": its Draco data has no buffer view; export it again");
+      throw context_.error(use + ": its Draco data has no buffer view; export the file again");
     }
     std::vector<std::uint32_t> requested;
     for (const DracoAttribute& one : attributes) requested.push_back(one.id);
@@ -168,14 +169,15 @@ class Unpacking {
         bytes_of(model_, view->buffer, view->byteOffset, view->byteLength, use, context_),
         most_ - taken_, attributes, mesh);
     if (!problem.empty()) {
-      throw context_.error(fmt::format("{}: its Draco data is {}; export it again", use, problem));
+      throw context_.error(
+          fmt::format("{}: its Draco data is {}; export the file again", use, problem));
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       tinygltf::Accessor accessor = *accessor_of(primitive, names[i]);
       if (accessor.count != mesh.points) {
-        throw context_.error(
-            fmt::format("{}: its Draco data has {} points, and the accessor {}; export it again",
-                        use, mesh.points, accessor.count));
+        throw context_.error(fmt::format(
+            "{}: its Draco data has {} points, and the accessor {}; export the file again", use,
+            mesh.points, accessor.count));
       }
       primitive.attributes[names[i]] =
           add_accessor(std::move(accessor), std::move(attributes[i].values), use);
@@ -205,9 +207,9 @@ class Unpacking {
         view.count <= most_packed * view.packed.size() / view.stride) {
       return;
     }
-    throw context_.error(
-        fmt::format("{}: {} elements of {} bytes cannot come from {} packed bytes; export it again",
-                    use, view.count, view.stride, view.packed.size()));
+    throw context_.error(fmt::format(
+        "{}: {} elements of {} bytes cannot come from {} packed bytes; export the file again", use,
+        view.count, view.stride, view.packed.size()));
   }
 
   /// Counts the bytes that files unpack to. Errors: InputError.

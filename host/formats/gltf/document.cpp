@@ -89,7 +89,7 @@ tinygltf::Model read_gltf(reading::ImportContext& context) {
     error = "a value has the wrong type";
   }
   if (!loaded) {
-    throw context.error("malformed glTF: " + first_line(error) + "; export it again");
+    throw context.error("malformed glTF: " + first_line(error) + "; export the file again");
   }
   if (!error.empty()) context.warnings.add("malformed glTF: " + first_line(error));
   warn_of_extensions(model, context);
@@ -402,7 +402,7 @@ class JsonCheck {
     }
     levels_.push_back(level);
     if (levels_.size() <= static_cast<std::size_t>(limits::max_json_depth)) return true;
-    problem = fmt::format("the JSON is nested more than {} levels deep; export it again",
+    problem = fmt::format("the JSON is nested more than {} levels deep; export the file again",
                           limits::max_json_depth);
     return false;
   }
@@ -433,7 +433,7 @@ std::vector<std::string> check_json(std::string_view json, const reading::Import
   JsonCheck check;
   if (nlohmann::json::sax_parse(json, &check)) return std::move(check.required);
   const bool malformed = check.problem.starts_with("malformed");
-  throw context.error(check.problem + (malformed ? "; export it again" : ""));
+  throw context.error(check.problem + (malformed ? "; export the file again" : ""));
 }
 
 }  // namespace photile::gltf

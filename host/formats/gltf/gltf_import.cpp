@@ -93,8 +93,8 @@ void check_scene_size(const tinygltf::Model& model, const AccessorReader& access
       std::max(limits::unchecked_triangles, held * limits::max_triangle_expansion);
   if (triangles > most_placed) {
     throw context.error(
-        fmt::format("the scene has {} triangles, from a file that can hold no more than {}; the "
-                    "limit for it is {}; use fewer instances: {} are of mesh '{}', in {} instances",
+        fmt::format("the scene has {} triangles, from a file of at most {}; the limit for such a "
+                    "file is {}; use fewer instances: {} are of mesh '{}', in {} instances",
                     triangles, held, most_placed, most, name_of_mesh(model, largest),
                     places[static_cast<std::size_t>(largest)]));
   }
@@ -147,8 +147,8 @@ const tinygltf::Value* light_of_scene(const tinygltf::Model& model,
   const int number = integer_member(*reference, "light", -1);
   const tinygltf::Value* const light = light_of_extension(model, extension_name, number);
   if (light == nullptr) {
-    throw context.error(fmt::format("scene {}: there is no light {} of {}; export it again", *scene,
-                                    number, extension_name));
+    throw context.error(fmt::format("scene {}: there is no light {} of {}; export the file again",
+                                    *scene, number, extension_name));
   }
   return light;
 }
@@ -233,7 +233,7 @@ void add_gltf_surroundings(const tinygltf::Model& model, const AccessorReader& a
     add_light(*light, model, accessors, context);
   } catch (const files::ResourceError& error) {
     context.warnings.add(
-        fmt::format("{}: {}; the surroundings are dark; give them as an environment picture",
+        fmt::format("{}: {}; the surroundings are black; give them by --environment",
                     extension_name, error.what()));
   }
 }

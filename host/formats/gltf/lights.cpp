@@ -262,7 +262,7 @@ class LightImporter {
     if (extension == nullptr) return nullptr;
     const double index = number_member(*extension, "light", -1.0);
     if (!(index >= 0.0 && index < static_cast<double>(model_.lights.size()))) {
-      throw context_.error(fmt::format("node '{}': there is no light {}; export it again",
+      throw context_.error(fmt::format("node '{}': there is no light {}; export the file again",
                                        node_name(model_, node), index));
     }
     return &model_.lights[static_cast<std::size_t>(index)];

@@ -143,8 +143,8 @@ MetallicRoughness Converter::model_of(const tinygltf::Material& source) {
     model.base_color = glm::dvec3(scene::missing_albedo);
     model.metallic = model.specular_factor = 0;
     warn(
-        "the file does not describe its surface; it becomes matt grey (0.5); --reflectance sets "
-        "another reflectance");
+        "the file does not describe its surface; it becomes matt grey (0.5); set another "
+        "reflectance by --reflectance");
     return model;
   }
   model.base_color = glm::clamp(rgb_of(pbr.baseColorFactor, glm::dvec3(1.0)), 0.0, 1.0);

@@ -64,8 +64,8 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
   for (const std::uint32_t index : indices) {
     if (index >= corner_count) {
       throw context.error(
-          fmt::format("{}: index {} is out of range of {} vertices; export it again", use, index,
-                      corner_count));
+          fmt::format("{}: index {} is out of range of {} vertices; export the file again", use,
+                      index, corner_count));
     }
   }
   return indices;
@@ -241,7 +241,7 @@ void MeshImporter::add(const NodeVisit& visit, std::uint64_t visit_number) {
   if (node.mesh < 0) return;
   const tinygltf::Mesh* const mesh = element(model_.meshes, node.mesh);
   if (mesh == nullptr) {
-    throw context_.error(fmt::format("node '{}': there is no mesh {}; export it again",
+    throw context_.error(fmt::format("node '{}': there is no mesh {}; export the file again",
                                      node_name(model_, visit.node), node.mesh));
   }
   const std::string name = name_of_mesh(model_, node.mesh);
@@ -303,7 +303,7 @@ void MeshImporter::add_primitive(const tinygltf::Primitive& primitive, const Nod
   const std::vector<std::uint32_t> indices =
       read_indices(primitive, vertices.size(), use, accessors_, context_);
   if (primitive.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0) {
-    context_.warnings.add("mesh", mesh_name, "the corners do not fill the last triangle; ignored");
+    context_.warnings.add("mesh", mesh_name, "the last triangle lacks corners; ignored");
   }
   // A mirrored node turns the winding of its triangles round.
   const bool mirrored = glm::determinant(glm::dmat3(visit.world)) < 0.0;
@@ -327,7 +327,7 @@ std::uint32_t MeshImporter::material_of(const tinygltf::Primitive& primitive,
     return static_cast<std::uint32_t>(model_.materials.size());  // default
   if (element(model_.materials, primitive.material) == nullptr) {
     throw context_.error(
-        fmt::format("{}: there is no material {}; export it again", use, primitive.material));
+        fmt::format("{}: there is no material {}; export the file again", use, primitive.material));
   }
   return static_cast<std::uint32_t>(primitive.material);
 }

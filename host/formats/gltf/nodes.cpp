@@ -146,11 +146,11 @@ class Walk {
   void enter(int node, const glm::dmat4& parent, std::vector<NodeVisit>& visits) {
     const tinygltf::Node* const source = element(model_.nodes, node);
     if (source == nullptr) {
-      throw context_.error(fmt::format("there is no node {}; export it again", node));
+      throw context_.error(fmt::format("there is no node {}; export the file again", node));
     }
     if (on_path_[static_cast<std::size_t>(node)]) {
-      throw context_.error(
-          fmt::format("node '{}' is its own ancestor; export it again", node_name(model_, node)));
+      throw context_.error(fmt::format("node '{}' is its own ancestor; export the file again",
+                                       node_name(model_, node)));
     }
     if (path_.size() >= static_cast<std::size_t>(limits::max_node_depth)) {
       throw context_.error(
@@ -201,10 +201,9 @@ void warn_about_empty_nodes(const tinygltf::Model& model, const std::vector<Node
     if (node.mesh < 0 && node.camera < 0 && node.children.empty() && node.extensions.empty() &&
         !is_joint[static_cast<std::size_t>(visit.node)] && !has_profile(node) && !has_panel(node) &&
         !asked_for(node) && sounds_like_light(node.name)) {
-      context.warnings.add(
-          "node", node_name(model, visit.node),
-          "has no mesh, light, camera or child; Blender's exporter drops area lights like that: "
-          "give it a luminous panel, see docs/guide/luminaires.md");
+      context.warnings.add("node", node_name(model, visit.node),
+                           "has no mesh, light, camera or child, like area lights exported by "
+                           "Blender: restore it by --area-light, see docs/guide/luminaires.md");
     }
   }
 }
@@ -228,10 +227,9 @@ std::optional<std::size_t> scene_number(const tinygltf::Model& model,
   }
   const int scene = std::max(model.defaultScene, 0);  // else the first
   if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
-    throw context.error(
-        fmt::format("the default scene is {}, but there are only {}; choose a scene or export it "
-                    "again",
-                    scene, model.scenes.size()));
+    throw context.error(fmt::format(
+        "the default scene is {}, but there are only {}; choose a scene or export the file again",
+        scene, model.scenes.size()));
   }
   return static_cast<std::size_t>(scene);
 }

@@ -71,8 +71,8 @@ std::optional<Panel> panel_of_extension(const tinygltf::Model& model,
   const double index = number_member(reference, "light", -1.0);
   const tinygltf::Value* const found = light_of_extension(model, area_extension, index);
   if (found == nullptr) {
-    throw context.error(fmt::format("node '{}': there is no light {} of {}; export it again", name,
-                                    index, area_extension));
+    throw context.error(fmt::format("node '{}': there is no light {} of {}; export the file again",
+                                    name, index, area_extension));
   }
   const tinygltf::Value& light = *found;
   const std::string type = string_member(light, "type");
@@ -106,7 +106,7 @@ std::optional<Panel> panel_of(const tinygltf::Model& model, int number,
   for (const LuminousPanel& asked : context.options.panels) {
     if (asked.node != node.name) continue;
     if (asked.lumens > limits::max_light_power) {
-      throw UsageError(fmt::format("area light '{}' of {:g} lm: the limit is {:g} lm; give it less",
+      throw UsageError(fmt::format("area light '{}' of {:g} lm: the limit is {:g} lm; reduce it",
                                    asked.node, asked.lumens, limits::max_light_power));
     }
     Panel panel{asked.width, asked.height};
@@ -151,8 +151,8 @@ void check_panel_names(const tinygltf::Model& model, const std::vector<NodeVisit
     std::vector<std::string> names;
     for (const NodeVisit& visit : visits) names.push_back(node_name(model, visit.node));
     if (std::find(names.begin(), names.end(), panel.node) == names.end()) {
-      throw UsageError(fmt::format("panel at node {}: there is no node '{}'; there {}", panel.node,
-                                   panel.node, scene::listed_names(names)));
+      throw UsageError(fmt::format("area light at node {}: there is no node '{}'; there {}",
+                                   panel.node, panel.node, scene::listed_names(names)));
     }
   }
 }

@@ -134,8 +134,8 @@ void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperat
     Light& light = light_named(temperature.light, "temperature of", scene);
     if (light.kind == LightKind::environment || light.emission_texture != none) {
       throw UsageError(
-          fmt::format("temperature of {}: its colours come from a picture; tint the light in a "
-                      "light mix instead",
+          fmt::format("temperature of {}: its colours come from a picture; tint it by --light "
+                      "NAME=#RRGGBB instead",
                       light.name));
     }
     light.color = glm::vec3(scene::color_of_temperature(temperature.kelvin));

@@ -102,7 +102,7 @@ Sun Sun::parse(const std::string& text) {
     throw UsageError(fmt::format(
         "sun '{}': use AZIMUTH,ELEVATION,LUX[,DIAMETER], such as 135,40,80000: degrees clockwise "
         "from north, degrees above the horizon, lux on a surface facing the sun, diameter of its "
-        "disc in degrees; or LUX alone where a site and a time are given",
+        "disc in degrees; or only LUX if a site and a time are given",
         text));
   }
   Sun sun{(*numbers)[0], (*numbers)[1], (*numbers)[2]};

@@ -95,10 +95,9 @@ void finish_directional_lights(const reading::ImportContext& context) {
     if (light.kind != LightKind::directional) continue;
     light.power = scene::directional_flux(light.power, radius);
     if (!std::isfinite(light.power)) {
-      throw context.error(
-          fmt::format("light '{}': its flux over a scene of {:g} m is too large for a number; give "
-                      "it fewer lux",
-                      light.name, 2 * radius));
+      throw context.error(fmt::format(
+          "light '{}': its flux over a scene of {:g} m is too large for a float; reduce its lux",
+          light.name, 2 * radius));
     }
   }
 }
@@ -178,7 +177,7 @@ SourcedScene load_sourced_scene(const std::filesystem::path& file, const SceneLo
     throw context.error("not enough memory to load the scene; split it");
   } catch (const std::exception& error) {
     // The importer libraries may throw any exception on malformed files.
-    throw context.error(fmt::format("malformed file ({}); export it again", error.what()));
+    throw context.error(fmt::format("malformed file ({}); export the file again", error.what()));
   }
   gltf::group_instances(scene.lights, context.light_sources);
   scene::make_light_names_unique(scene.lights);

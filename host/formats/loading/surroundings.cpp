@@ -45,7 +45,7 @@ Weathered with_weather(const SceneLoadOptions& given) {
   SkySituation& situation = result.options.situation;
   if (situation.weather.empty()) return result;
   if (!situation.time) {
-    throw UsageError("--weather needs an hour; give --time, too");
+    throw UsageError("--weather needs an hour; also give --time");
   }
   const weather::WeatherYear year = weather::read_weather(situation.weather);
   if (!situation.site) situation.site = year.site;
@@ -59,9 +59,9 @@ Weathered with_weather(const SceneLoadOptions& given) {
 /// The sun as the time places it, without light. Nothing where no time is given.
 std::optional<Sun> sun_by_time(const SkySituation& situation) {
   if (!situation.time && !situation.site) return std::nullopt;
-  if (!situation.time) throw UsageError("--site needs a time; give --time, too");
+  if (!situation.time) throw UsageError("--site needs a time; also give --time");
   if (!situation.site) {
-    throw UsageError("--time needs a place; give --site or --weather, too");
+    throw UsageError("--time needs a place; also give --site or --weather");
   }
   const weather::SunPosition position = weather::sun_position(*situation.site, *situation.time);
   return Sun{position.azimuth * degrees, position.elevation * degrees, 0};
@@ -98,11 +98,11 @@ SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
   SkySituationLights lights;
   if (options.sun) {
     if (options.sun->placed_by_time && !place)
-      throw UsageError("--sun with its lux alone needs --site and --time");
+      throw UsageError("--sun LUX needs --site and --time");
     if (!options.sun->placed_by_time && place)
       throw UsageError(
-          "--sun AZIMUTH,ELEVATION,LUX and --time both place the sun; give its lux "
-          "alone, or leave out --time");
+          "--sun AZIMUTH,ELEVATION,LUX and --time both place the sun; give only its lux, or leave "
+          "out --time");
     lights.sun = options.sun;
     if (place) {
       lights.sun->azimuth_degrees = place->azimuth_degrees;
@@ -126,7 +126,8 @@ SkySituationLights sun_and_sky(const SceneLoadOptions& given) {
   sky.north = north / degrees;
   if (sky.kind == SkyKind::clear) {
     if (!place || !(place->elevation_degrees > 0.0)) {
-      throw UsageError("a clear sky needs a sun above the horizon; give one, too");
+      throw UsageError(
+          "a clear sky needs a sun above the horizon; give --sun, or --site and --time");
     }
     sky.to_sun = direction_to(*place);
   }
@@ -205,7 +206,7 @@ constexpr const char* fewer_lux = "give fewer lux";
 
 void check_lux(const char* light, double lux) {
   if (lux >= limits::min_illuminance && lux <= limits::max_illuminance) return;
-  throw UsageError(fmt::format("{} of {:g} lux: give {:g} at least and {:g} at most", light, lux,
+  throw UsageError(fmt::format("{} of {:g} lux: give {:g} to {:g} lux", light, lux,
                                limits::min_illuminance, limits::max_illuminance));
 }
 

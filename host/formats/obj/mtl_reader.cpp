@@ -183,8 +183,8 @@ class MtlReader {
   /// One number stands for all three channels. Values of `xyz` are those of CIE.
   glm::dvec3 color_of(Words words, const Range& range) {
     if (!words.empty() && lower(words[0]) == "spectral") {
-      refuse(
-          fmt::format("'{}': spectral curves are not read; give red, green and blue", statement_));
+      refuse(fmt::format("'{}': spectral curves are not supported; give red, green and blue",
+                         statement_));
     }
     const bool is_xyz = !words.empty() && lower(words[0]) == "xyz";
     if (is_xyz) words.erase(words.begin());
@@ -243,7 +243,7 @@ class MtlReader {
       name = name.substr(1, name.size() - 2);
     }
     if (name.empty())
-      refuse(fmt::format("'{}' names no file; name one, or leave the line out", statement_));
+      refuse(fmt::format("'{}' names no file; name one, or remove the line", statement_));
     material.*map.file = name;
   }
 
@@ -284,10 +284,8 @@ class MtlReader {
     }
     if (found->name == "-mm") {
       if (values[0] != 0 || values[1] != 1) {
-        refuse(
-            fmt::format("'{}': -mm changes the texture's values and is not read; change the "
-                        "picture, and leave -mm out",
-                        statement_));
+        refuse(fmt::format("'{}': -mm is not supported; change the picture, and remove -mm",
+                           statement_));
       }
     } else if (found->name == "-bm") {
       if (map.keyword == "norm") materials_.back().norm_scale = values[0];

@@ -350,14 +350,13 @@ void move_to_origin(ObjFile& file, Scene& scene) {
 void import_obj(reading::ImportContext& context) {
   if (!context.options.panels.empty()) {
     throw UsageError(
-        fmt::format("panel at node {}: only glTF files have nodes, and this is an OBJ file; leave "
-                    "the panel out",
+        fmt::format("area light at node {}: OBJ files have no nodes; leave out the area light, or "
+                    "give a glTF file",
                     context.options.panels.front().node));
   }
   if (!context.options.scene.empty()) {
     throw UsageError(
-        fmt::format("scene {}: only glTF files hold several scenes, and this is an OBJ file; leave "
-                    "the scene out",
+        fmt::format("scene {}: OBJ files have no scenes; leave out the scene, or give a glTF file",
                     context.options.scene));
   }
   const std::vector<unsigned char> bytes = context.folder.read_scene_file();

@@ -134,10 +134,10 @@ void check_corners(ObjFile& file, reading::ImportContext& context) {
         return index >= 0 && static_cast<std::size_t>(index) >= count;
       };
       if (corner.vertex_index < 0 || beyond(corner.vertex_index, file.positions.size())) {
-        throw context.error(fmt::format(
-            "face {} (object '{}') has a corner without a valid vertex index; the file has {} "
-            "vertices; repair or export it again",
-            f + 1, file.objects[face.object], file.positions.size()));
+        throw context.error(
+            fmt::format("face {} (object '{}') has a corner without a valid vertex index; the file "
+                        "has {} vertices; repair the file or export it again",
+                        f + 1, file.objects[face.object], file.positions.size()));
       }
       if (beyond(corner.normal_index, file.normals.size())) {
         corner.normal_index = -1;

@@ -29,7 +29,7 @@ IntensityDistribution read_photometry(const std::string& name, std::span<const u
     return distribution;
   } catch (const files::ResourceError& error) {
     throw files::ResourceError(fmt::format(
-        "photometric file '{}': {}; get it again from the maker of the lamp", name, error.what()));
+        "photometric file '{}': {}; get a new one from the manufacturer", name, error.what()));
   }
 }
 

@@ -30,7 +30,7 @@ std::uint32_t AreaLights::find_or_add(std::uint64_t object, const std::string& o
                                                     static_cast<std::uint32_t>(pending_.size()));
   if (inserted) {
     if (pending_.size() >= limits::max_lights) {
-      throw InputError(fmt::format("{}: more than {} lights; join emissive objects",
+      throw InputError(fmt::format("{}: more than {} lights; merge emissive objects",
                                    scene_.source.string(), limits::max_lights));
     }
     pending_.push_back({object, object_name, material, emission, traits});

@@ -83,7 +83,7 @@ Camera read_radiance_view(const std::filesystem::path& file) {
     }
   }
   if (!(glm::length(direction) > 0) || !(glm::length(glm::cross(direction, up)) > 0)) {
-    refuse("-vd and -vu do not span a picture");
+    refuse("-vd and -vu are parallel or zero");
   }
   const double most = type == 'v' ? 179 : type == 'h' ? 180 : type == 'a' ? 360 : 1e9;
   if (!(across > 0 && high > 0 && across <= most && high <= most)) {

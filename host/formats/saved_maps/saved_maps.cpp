@@ -198,9 +198,9 @@ Header read_header(Reader& reader) {
     reader.refuse("the file was saved on a machine with another byte order; save it again here");
   }
   if (header.version != version) {
-    reader.refuse(fmt::format(
-        "the file has version {} of the format, and this photile reads {}; save it again",
-        header.version, version));
+    reader.refuse(
+        fmt::format("the file has format version {}, but this photile reads {}; save it again",
+                    header.version, version));
   }
   if (header.head != digest_of(header)) reader.refuse("the file is damaged; save it again");
   if (header.whole != all_photons)

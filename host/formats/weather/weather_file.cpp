@@ -149,8 +149,8 @@ bool follows(const WeatherHour& hour, const WeatherHour& before) {
 
 WeatherHour hour_of(const Line& line) {
   if (line.fields() > fields_of_hour) {
-    line.refuse(fmt::format("there are {} fields, and an hour has {}: numbers need a decimal point",
-                            line.fields(), fields_of_hour));
+    line.refuse(fmt::format("{} fields instead of {} (numbers need a decimal point)", line.fields(),
+                            fields_of_hour));
   }
   WeatherHour hour;
   hour.month = static_cast<int>(line.number(1, "month", 1, 12));

@@ -150,7 +150,7 @@ class Document {
       if (!is_first_instance(light)) return;
       set_definition(own_definition(light, "KHR_lights_punctual"), "intensity", light);
     } else if (light.recolored) {
-      left_out_.push_back(light.name + ": has no colour in the file; its power is set alone");
+      left_out_.push_back(light.name + ": has no colour in the file; only its power is set");
     }
   }
 
@@ -208,11 +208,11 @@ class Document {
         std::any_of(options_.panels.begin(), options_.panels.end(),
                     [&](const LuminousPanel& panel) { return panel.node == node_name; });
     if (by_option) {
-      left_out_.push_back(light.name + ": comes from an option; give it other lumens there");
+      left_out_.push_back(light.name + ": comes from an option; change its lumens in that option");
     } else if (extra(light, "photile_area")) {
       *extra(light, "photile_lumens") = light.power;
       if (light.recolored) {
-        left_out_.push_back(light.name + ": photile_area has no colour; its power is set alone");
+        left_out_.push_back(light.name + ": photile_area has no colour; only its power is set");
       }
     } else if (is_first_instance(light)) {
       set_definition(own_definition(light, "EXT_lights_area"), "intensity", light);
@@ -262,9 +262,9 @@ void write_lit_gltf(const std::filesystem::path& scene, const std::filesystem::p
                          ? gltf::BinaryFile::head(json.dump(), parts.rest.size()).append(parts.rest)
                          : json.dump(2) + "\n");
   } catch (const Json::exception&) {  // its text is meaningful to programmers only
-    throw InputError(
-        fmt::format("{}: its lights cannot be set, because the file is malformed; export it again",
-                    scene.string()));
+    throw InputError(fmt::format(
+        "{}: its lights cannot be set, because the file is malformed; export the file again",
+        scene.string()));
   }
 }
 

@@ -83,8 +83,8 @@ std::vector<LightSetting> settings_of(const loading::SourcedScene& sourced,
       settings.push_back(setting);
     } else if (setting.changed()) {
       left_out.push_back(
-          fmt::format("{}: {}; set it where the file is loaded", light.name,
-                      is_picture ? "its pictures stay as they are" : "comes from an option"));
+          fmt::format("{}: {}; set it by --light when the file is loaded", light.name,
+                      is_picture ? "its pictures are not rewritten" : "comes from an option"));
     }
   }
   return settings;

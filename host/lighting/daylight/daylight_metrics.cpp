@@ -47,7 +47,7 @@ std::vector<bool> read_schedule(const std::filesystem::path& file, std::size_t h
     occupied.push_back(*value > 0);
   }
   if (occupied.size() != hours) {
-    throw InputError(fmt::format("{}: {} hours, where the weather has {}; give a line for each",
+    throw InputError(fmt::format("{}: {} hours, but the weather file has {}; give a line for each",
                                  file.string(), occupied.size(), hours));
   }
   return occupied;

@@ -26,16 +26,15 @@ constexpr double most_points = 0.02;
 void close(const BlindGroup& group, Material& material) {
   const auto transmittance = scene::pane_transmittance(material);
   if (!transmittance) {
-    throw UsageError(
-        fmt::format("--blinds {}: '{}' is not a thin pane of glass; give the scene with closed "
-                    "blinds as a file",
-                    group.glob, material.name));
+    throw UsageError(fmt::format(
+        "--blinds {}: '{}' is not thin glass; give the scene with closed blinds as a file",
+        group.glob, material.name));
   }
   const double now = luminance(*transmittance);
   if (group.transmittance > now + 1e-6) {
     throw UsageError(
-        fmt::format("--blinds {}={:g}: '{}' lets {:.3g} through without them; give less",
-                    group.glob, group.transmittance, material.name, now));
+        fmt::format("--blinds {}={:g}: '{}' transmits {:.3g} without blinds; give less", group.glob,
+                    group.transmittance, material.name, now));
   }
   scene::set_transmittance(material, group.transmittance);
 }
@@ -49,7 +48,7 @@ BlindGroup BlindGroup::parse(const std::string& text) {
                          : parse_signed(text.substr(equals + 1));
   if (!value || !(*value >= 0) || *value > 1) {
     throw UsageError(fmt::format(
-        "--blinds {}: use MATERIAL=TRANSMITTANCE, such as 'Glass*=0.05', or a scene's file", text));
+        "--blinds {}: use MATERIAL=TRANSMITTANCE, such as 'Glass*=0.05', or a scene file", text));
   }
   return {text.substr(0, equals), *value};
 }

@@ -35,10 +35,10 @@ void sweep_until_settled(const Sweep& sweep) {
     if (change.of == 0 || change.of * fades <= left_at_end * (1 - fades) * change.all) return;
     before = change.of;
   }
-  throw InputError(fmt::format(
-      "light between the surfaces does not fade within {} reflections: a daylight study needs "
-      "reflectances below 1; make white materials darker",
-      most_sweeps));
+  throw InputError(
+      fmt::format("reflected light does not fade within {} reflections: a daylight study needs "
+                  "reflectances below 1; set lower values with --reflectance",
+                  most_sweeps));
 }
 
 /// Rows of one channel, without their batches.

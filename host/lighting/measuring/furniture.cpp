@@ -275,7 +275,7 @@ std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid
     } else if (is_touched(rays, places[i])) {
       mark = fmt::format("less than {:g} cm from a surface", 100 * touching);
     } else if (hidden[i] != 0) {
-      mark = "inside a thing or a closed room";
+      mark = "inside an object or a closed room";
     } else if (has_surface_near(rays, places[i], clearance, on_wall)) {
       reason = fmt::format("less than {} m from a surface", clearance);
     }

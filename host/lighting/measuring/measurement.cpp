@@ -161,14 +161,13 @@ std::vector<std::string> doubts_of(const Measurement& measurement,
                                   [](const MixedLight& light) { return light.power > 0; });
   if (dark > 0 && dark < points) {
     lines.push_back(fmt::format(
-        "{} of {} points have no light at all; they may lie outside the room or in things", dark,
-        points));
+        "{} of {} points have no light at all; they may lie outside the room or inside objects",
+        dark, points));
   } else if (dark > 0) {
-    lines.push_back(fmt::format(
-        "none of the {} points has any light: {}", points,
-        any_on ? "they may lie outside the room or in things, or have another unit or another axis "
-                 "that points up than the scene"
-               : "all lights are off"));
+    lines.push_back(fmt::format("none of the {} points has any light: {}", points,
+                                any_on ? "they may lie outside the room or inside objects, or "
+                                         "differ from the scene in unit or up axis"
+                                       : "all lights are off"));
   }
   std::vector<bool> reaches;
   for (const MixedLight& light : lights) {
@@ -205,7 +204,7 @@ std::vector<std::string> lights_that_reach_nothing(std::span<const MixedLight> l
   }
   const bool no_sky = skies > 0 && dark_skies == skies;
   if (no_sky) {
-    lines.push_back(fmt::format("no light of the sky reaches any {}: {}", what, closed_to_the_sky));
+    lines.push_back(fmt::format("no skylight reaches any {}: {}", what, closed_to_the_sky));
   }
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const MixedLight& light = lights[i];
@@ -238,9 +237,9 @@ void Readings::add(const LightLayers& layers, const LightMix& mix, double factor
       lost += std::isfinite(values[sensor]) ? 0 : 1;
     }
     if (lost > 0) {
-      throw InputError(
-          fmt::format("light '{}': its lux at {} of {} points are beyond any number; turn it down",
-                      layer.light, lost, sensors_));
+      throw InputError(fmt::format(
+          "light '{}': lux at {} of {} points are infinite or not numbers; reduce its power",
+          layer.light, lost, sensors_));
     }
   }
 }

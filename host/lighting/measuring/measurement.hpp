@@ -103,8 +103,8 @@ std::vector<std::string> doubts_of(const Measurement& measurement,
 
 /// Why the light of a sky does not reach a room, and the remedy.
 inline constexpr const char* closed_to_the_sky =
-    "the room has no opening and no pane of glass; leave out what closes its windows, or make it "
-    "of glass (KHR_materials_transmission in glTF, d below 1 or illum 4 in MTL)";
+    "the room has no opening and no glass; hide what closes its windows, or make it glass "
+    "(KHR_materials_transmission in glTF, d below 1 or illum 4 in MTL)";
 
 /// A line for each light that is on and reaches nothing; one for all of the sky. The ground is not
 /// named: a floor in the scene may hide it.

@@ -177,7 +177,7 @@ std::vector<std::string> requirement_lines(const Measurement& measurement,
   }
   if (requirement.rendering > 0) {
     lines.push_back(
-        fmt::format("  Ra at least {:g}: the lamps' data sheets tell", requirement.rendering));
+        fmt::format("  Ra at least {:g}: see the lamps' data sheets", requirement.rendering));
   }
   return lines;
 }

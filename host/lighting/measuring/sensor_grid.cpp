@@ -120,7 +120,7 @@ constexpr double right_angle_slack = 1e-6;
 
 PointCounts counts_of(const JsonObject& plane, double u, double v) {
   if (plane.has("columns") || plane.has("rows")) {
-    if (plane.has("spacing")) plane.refuse("'spacing' and 'columns'; remove one of them");
+    if (plane.has("spacing")) plane.refuse("has both 'spacing' and 'columns'; remove one");
     return {plane.count("columns", 1, limits::max_sensors),
             plane.count("rows", 1, limits::max_sensors)};
   }
@@ -135,13 +135,13 @@ PointCounts counts_of(const JsonObject& plane, double u, double v) {
 SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
   const glm::dvec3 along_u = plane.vector("u"), along_v = plane.vector("v");
   const double u = glm::length(along_u), v = glm::length(along_v);
-  if (!(u > 0) || !(v > 0)) plane.refuse("'u' or 'v' has no length");
+  if (!(u > 0) || !(v > 0)) plane.refuse("'u' or 'v' has length 0");
   if (std::abs(glm::dot(along_u, along_v)) > right_angle_slack * u * v) {
-    plane.refuse("'u' and 'v' are not at a right angle");
+    plane.refuse("'u' and 'v' are not perpendicular");
   }
   const PointCounts counts = counts_of(plane, u, v);
   if (counts.total() > limits::max_sensors) {
-    plane.refuse(fmt::format("{} points are more than {}", counts.total(), limits::max_sensors));
+    plane.refuse(fmt::format("{} points; the limit is {}", counts.total(), limits::max_sensors));
   }
   return grid_on_plane(plane.text("name", name),
                        full_plane(plane.vector("origin"), along_u, along_v, counts));
@@ -220,7 +220,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& where) {
   if (words.size() != 6) {
     throw InputError(
-        fmt::format("{}: {} numbers where a point has 6, x y z dx dy dz", where, words.size()));
+        fmt::format("{}: {} numbers; a point has 6: x y z dx dy dz", where, words.size()));
   }
   std::array<double, 6> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -234,7 +234,7 @@ Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& 
   const glm::dvec3 facing(numbers[3], numbers[4], numbers[5]);
   const double length = glm::length(facing);
   if (!(length > 0)) {
-    throw InputError(fmt::format("{}: the direction is 0 0 0; it has to face somewhere", where));
+    throw InputError(fmt::format("{}: the direction has length 0; give another", where));
   }
   return {{numbers[0], numbers[1], numbers[2]}, facing / length};
 }

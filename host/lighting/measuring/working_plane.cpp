@@ -58,10 +58,9 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   const std::optional<trace::Room> room = trace::Room::meant(rays, axes, plane.inside);
   const Floor floor = find_floor(rays, axes, room ? &*room : nullptr);
   if (floor.triangles.empty()) {
-    throw InputError(
-        fmt::format("{}: no floor found with {} m free above it; give points of measurement with "
-                    "--points or --grid",
-                    scene.source.string(), least_room));
+    throw InputError(fmt::format(
+        "{}: no floor found with {} m free above it; give points with --points or --grid",
+        scene.source.string(), least_room));
   }
   const FloorPlan plan(scene, floor, axes, room ? &*room : nullptr);
   const glm::dvec2 low = plan.low() + plane.wall_band, high = plan.high() - plane.wall_band;
@@ -88,8 +87,8 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   grid.chosen = true;
   if (!room) {
     grid.remark =
-        "the camera comes to no room with a ceiling: this is the widest floor of the scene; name a "
-        "point in the room by --inside X,Y,Z, or give the area by --grid FILE";
+        "no room with a ceiling is at the camera or in front of it: the widest floor of the scene "
+        "is measured; give a point in the room by --inside X,Y,Z, or the area by --grid FILE";
   }
   return grid;
 }
@@ -155,9 +154,8 @@ trace::Room room_of(const RayScene& rays, const trace::PlanAxes& axes, const Wor
   auto room = trace::Room::meant(rays, axes, plane.inside);
   if (!room) {
     throw InputError(
-        fmt::format("{}: the camera comes to no room with a ceiling, so there are no walls; name a "
-                    "point in the "
-                    "room by --inside X,Y,Z",
+        fmt::format("{}: no room with a ceiling is at the camera or in front of it, so there are "
+                    "no walls; give a point in the room by --inside X,Y,Z",
                     rays.scene().source.string()));
   }
   return *std::move(room);

@@ -37,7 +37,7 @@ std::string hours_of(const DaylightAsked& asked) {
     return fmt::format("the {:L} hours of {}", count, occupancy.schedule.filename().string());
   const bool daily = std::count(occupancy.days.begin(), occupancy.days.end(), true) == 7;
   return fmt::format("the hours from {:g} to {:g}{}", occupancy.from, occupancy.to,
-                     daily ? "" : fmt::format(" of the days asked for ({} h)", count));
+                     daily ? "" : fmt::format(" of the requested days ({} h)", count));
 }
 
 /// "83.9%", with its standard error where there is one.
@@ -134,11 +134,11 @@ std::string darkness_warning(double most_percent) {
   constexpr double least_percent = 0.1;
   if (most_percent >= least_percent) return {};
   const std::string reaches =
-      most_percent > 0 ? fmt::format(
-                             "next to no light of the sky reaches the points, {:.2g}% of that on "
-                             "open ground at most",
-                             most_percent)
-                       : "no light of the sky reaches any point";
+      most_percent > 0
+          ? fmt::format(
+                "hardly any skylight reaches the points: at most {:.2g}% of that on open ground",
+                most_percent)
+          : "no skylight reaches any point";
   return fmt::format("warning: {}: {}", reaches, measuring::closed_to_the_sky);
 }
 

@@ -142,8 +142,8 @@ std::vector<float> illuminance_of(const LayeredPicture& picture) {
       if (rows.illuminance.empty()) {
         const std::string channel = picture.channel_names(light).front();  // Combined_LIGHT.R
         throw InputError(
-            fmt::format("the picture has no illuminance beside its channel {}; render it with "
-                        "photile, or leave out --illuminance",
+            fmt::format("the picture has channel {} but no illuminance; render it with photile, or "
+                        "leave out --illuminance",
                         channel));
       }
       const std::size_t offset = static_cast<std::size_t>(first) * width;
@@ -160,8 +160,8 @@ std::vector<float> luminance_of(const Image& picture) {
   const std::vector<float>*r = picture.find("R"), *g = picture.find("G"), *b = picture.find("B");
   if (white == picture.numbers.end() || !r || !g || !b) {
     throw InputError(
-        "the picture does not say how many cd/m2 its values are (R, G, B and the attribute "
-        "whiteLuminance); render it with photile, or leave out --luminance");
+        "the picture lacks R, G, B or the attribute whiteLuminance, which states cd/m2; render it "
+        "with photile, or leave out --luminance");
   }
   std::vector<float> values(picture.pixels());
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -19,7 +19,8 @@ constexpr int entries = 256;
 Palette::Palette(const std::string& name) {
   const auto& known = names();
   if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw UsageError(fmt::format("no palette '{}'; there are {}", name, fmt::join(known, ", ")));
+    throw UsageError(
+        fmt::format("no palette '{}'; the palettes are {}", name, fmt::join(known, ", ")));
   }
   for (int i = 0; i < entries; ++i) {
     const double share = static_cast<double>(i) / (entries - 1);

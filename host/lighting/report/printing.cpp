@@ -29,8 +29,7 @@ std::string base64(std::string_view bytes) {
 ScratchFolder::ScratchFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "photile-XXXXXX").string();
   if (!mkdtemp(name.data())) {
-    throw OutputError(name +
-                      ": cannot make a temporary folder; set TMPDIR to one that can be written");
+    throw OutputError(name + ": cannot create a temporary folder; set TMPDIR to a writable folder");
   }
   path_ = name;
 }

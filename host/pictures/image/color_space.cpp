@@ -26,7 +26,7 @@ glm::dmat3 xyz_of_rgb(const Chromaticities& space) {
   const glm::dmat3 primaries(xyz_of(space.red), xyz_of(space.green), xyz_of(space.blue));
   const double volume = glm::determinant(primaries);
   if (!std::isfinite(volume) || std::abs(volume) < 1e-6 || !(space.white.y > 0)) {
-    throw DecodeError("its primaries span no colours; save it in another colour space");
+    throw DecodeError("its primaries are degenerate; save it in another colour space");
   }
   const glm::dvec3 weights = glm::inverse(primaries) * xyz_of(space.white);
   return {primaries[0] * weights[0], primaries[1] * weights[1], primaries[2] * weights[2]};
@@ -246,7 +246,7 @@ ColorSpace coded_space(int primaries, int transfer, int matrix, bool full_range)
   if (matrix != 0) problem = fmt::format("matrix {}", matrix);
   if (!full_range) problem = "a narrow range";
   if (!problem.empty()) {
-    space.problem = "its cICP has " + problem + ", which is not read; convert it to sRGB";
+    space.problem = "its cICP has " + problem + ", which is not supported; convert it to sRGB";
     return space;
   }
   space.to_rec709 = to_rec709(from);

@@ -61,7 +61,7 @@ const char* reader_of(const std::string& name, Encoded bytes) {
   if (extension == ".pbm" || extension == ".pgm" || extension == ".ppm" || extension == ".pnm") {
     return "pnm";
   }
-  throw DecodeError("not a picture format that is read (EXR, PNG, JPEG, ...)");
+  throw DecodeError("not a supported picture format (EXR, PNG, JPEG, ...)");
 }
 
 namespace {
@@ -176,7 +176,7 @@ ExrPicture picture_in(const std::vector<ExrInput::Part>& parts) {
   const std::vector<std::string>& names = parts.front().channels;
   constexpr std::size_t most_named = 8;
   throw DecodeError(fmt::format(
-      "has no channels R, G and B, nor Y, but {}{}; name those of the picture so",
+      "has neither channels R, G and B nor Y, but {}{}; rename its channels",
       fmt::join(names.begin(), names.begin() + std::min(names.size(), most_named), ", "),
       names.size() > most_named ? ", ..." : ""));
 }

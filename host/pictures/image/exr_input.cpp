@@ -155,7 +155,7 @@ void take_attributes(const Imf::Header& header, ExrInput::Part& part) {
   if (const auto* turn = header.findTypedAttribute<Imf::IntAttribute>("Orientation")) {
     if (turn->value() > 1 && turn->value() <= 8) {
       throw DecodeError(fmt::format(
-          "its rows are turned (Orientation {}); turn it, e.g. with oiiotool --reorient",
+          "is rotated or flipped (Orientation {}); straighten it, e.g. with oiiotool --reorient",
           turn->value()));
     }
   }
@@ -183,7 +183,7 @@ ExrInput::Part part_of(const Imf::Header& header) {
   std::uint64_t pixel_bytes = 0;
   for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
     if (i.channel().xSampling != 1 || i.channel().ySampling != 1) {
-      throw DecodeError(std::string("channel '") + i.name() + "' leaves pixels out");
+      throw DecodeError(std::string("channel '") + i.name() + "' is subsampled");
     }
     part.channels.emplace_back(i.name());
     pixel_bytes += i.channel().type == Imf::HALF ? 2 : 4;
@@ -200,10 +200,10 @@ ExrInput::Part part_of(const Imf::Header& header) {
     if (block / 4 > width * height) most_bytes = std::min(most_bytes, unchecked_bytes);
   }
   if (pixel_bytes > 0 && block > most_bytes / pixel_bytes) {
-    throw DecodeError(fmt::format(
-        "has blocks of {} pixels of {} bytes, more than the limit of {} bytes; write it "
-        "in smaller ones",
-        block, pixel_bytes, most_bytes));
+    throw DecodeError(
+        fmt::format("has blocks of {} pixels of {} bytes, more than the limit of {} bytes; save it "
+                    "with smaller blocks",
+                    block, pixel_bytes, most_bytes));
   }
   return part;
 }
@@ -303,7 +303,7 @@ void ExrInput::find_parts(std::uint64_t bytes) {
   }
   throw DecodeError(
       fmt::format("is damaged or empty: {} bytes for the {} channels of {} x {} pixels; the limit "
-                  "is {} pixels a byte, and a factor of {}; scale it down",
+                  "is {} pixels per byte, and a factor of {}; scale it down",
                   encoded, channels, parts_.front().width, parts_.front().height,
                   limits::max_exr_pixels_per_byte, limits::max_image_expansion));
 }

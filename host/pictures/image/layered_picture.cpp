@@ -97,8 +97,8 @@ std::vector<std::string> LayeredPicture::overflows() const {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& what, std::uint64_t pixels) {
     lines.push_back(
-        fmt::format("{}: {} of {} pixels are beyond {:.2g} or no number; they are written as that, "
-                    "or as 0; turn it down",
+        fmt::format("{}: {} of {} pixels exceed {:.2g} or are not numbers; they are written as "
+                    "that limit, or as 0; reduce the power",
                     what, pixels, header_.pixels(), largest));
   };
   for (const auto& [light, overflow] : overflows_) {

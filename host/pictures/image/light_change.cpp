@@ -100,7 +100,7 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
     const double emitted = luminance(color->linear * glm::dvec3(light.color));
     if (!(emitted > 0.0)) {
       throw UsageError(fmt::format(
-          "light '{}' emits nothing of that colour; choose one that its own colour holds",
+          "light '{}' emits no light of that colour; choose one that overlaps its own colour",
           light.name));
     }
     light.tint = glm::vec3(color->linear / emitted);
@@ -112,7 +112,7 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
     for (int c = 0; c < 3; ++c) {
       if (own[c] > 0.0 || requested[c] == 0.0) continue;
       throw UsageError(fmt::format(
-          "light '{}' lacks a colour that {} K has; give the temperature when it is rendered",
+          "light '{}' is black in a channel that {} K needs; set the temperature when rendering",
           light.name, temperature->kelvin));
     }
     light.tint = glm::vec3(requested / glm::max(own, glm::dvec3(1e-30)));
@@ -126,8 +126,9 @@ void apply(MixedLight& light, const Request& request, double lumen_per_watt) {
     power = in_unit(set.power, set.unit.value_or(light.unit), light.unit, lumen_per_watt);
   }
   if (!(power <= limits::max_light_power)) {
-    throw UsageError(fmt::format("light '{}': its power would be {:g}; the limit is {:g}; use less",
-                                 light.name, power, limits::max_light_power));
+    throw UsageError(
+        fmt::format("light '{}': its power would be {:g}; the limit is {:g}; reduce it", light.name,
+                    power, limits::max_light_power));
   }
   light.power = power;
 }

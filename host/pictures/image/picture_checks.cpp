@@ -73,7 +73,7 @@ void check_bmp(Encoded bytes) {
   const std::uint32_t bits = number_at(bytes, os2 ? 24 : 28, 2);
   constexpr std::uint32_t known[] = {1, 4, 8, 16, 24, 32};
   if (std::find(std::begin(known), std::end(known), bits) == std::end(known)) {
-    throw DecodeError(fmt::format("{} bits a pixel are not read", bits));
+    throw DecodeError(fmt::format("{} bits per pixel are not supported", bits));
   }
 }
 
@@ -83,7 +83,7 @@ void check_targa(Encoded bytes) {
   const std::uint32_t first = number_at(bytes, 3, 2), colours = number_at(bytes, 5, 2),
                       bits = number_at(bytes, 16, 1);
   if (palette && (bits != 8 || first != 0 || colours < 256)) {
-    throw DecodeError("a palette of other than 256 colours is not read; save it in true colour");
+    throw DecodeError("only palettes of 256 colours are supported; save it in true colour");
   }
 }
 
@@ -101,10 +101,10 @@ void check_radiance(Encoded bytes) {
   const std::uint64_t pixels = std::uint64_t{header.rows} * header.columns;
   const std::size_t rest = bytes.size() - header.end;
   if (3 * sizeof(float) * pixels > unchecked_bytes && pixels >= rest * max_pixels_per_byte) {
-    throw DecodeError(fmt::format(
-        "is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels a byte; scale "
-        "it down",
-        rest, header.columns, header.rows, max_pixels_per_byte));
+    throw DecodeError(
+        fmt::format("is damaged or empty: {} bytes for {} x {} pixels; the limit is {} pixels per "
+                    "byte; scale it down",
+                    rest, header.columns, header.rows, max_pixels_per_byte));
   }
 }
 
@@ -128,8 +128,8 @@ std::string beyond_limits(int width, int height, std::size_t channels) {
 std::string too_large(std::size_t channels, std::uint64_t bytes) {
   if (channels <= limits::max_image_channels && bytes <= limits::max_image_bytes) return {};
   return fmt::format(
-      "has {} channels ({} bytes decoded), more than the limit of {} ({}); "
-      "leave channels out or scale it down",
+      "has {} channels ({} bytes decoded), more than the limit of {} ({}); remove channels or "
+      "scale it down",
       channels, bytes, limits::max_image_channels, limits::max_image_bytes);
 }
 
@@ -256,7 +256,7 @@ class HeaderCheck {
       if (width > size || height > size || 8 + 4 * width * height != size) refuse();
     }
     // Compressed, for deep pixels, which are not read.
-    if (type == "idmanifest") throw DecodeError("has a manifest of identities; leave it out");
+    if (type == "idmanifest") throw DecodeError("has an ID manifest; remove it");
   }
 
   void check_window() {

@@ -144,7 +144,7 @@ RelativeErrorWeights::RelativeErrorWeights(const Image& reference) {
   }
   mean_ = sum / (3.0 * static_cast<double>(counted_));
   if (!(mean_ > 0)) {
-    throw InputError("the reference is black where no light is visible; nothing can be compared");
+    throw InputError("the reference is black except for visible lights; give a brighter one");
   }
   divisor_.resize(3 * luminances.size());
   for (std::size_t pixel = 0; pixel < luminances.size(); ++pixel) {

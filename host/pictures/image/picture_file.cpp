@@ -76,7 +76,7 @@ std::string unreadable(const fs::path& file) {
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error) return "cannot be read: " + error.message();
-  if (bytes == 0) return "is empty; a picture is needed";
+  if (bytes == 0) return "is empty; give a picture";
   return {};
 }
 
@@ -186,7 +186,7 @@ void PictureFile::add_channel(const ExrInput::Part& part, std::size_t index) {
     refuse(fmt::format("has two channels named '{}'; rename one", own));
   }
   if (header_.channel_names.size() == limits::max_layered_channels) {
-    refuse(fmt::format("has more than {} channels; leave some out", limits::max_layered_channels));
+    refuse(fmt::format("has more than {} channels; remove some", limits::max_layered_channels));
   }
   header_.channel_names.push_back(name);
   slots_.push_back({parts_ - 1, index});
@@ -294,7 +294,7 @@ Image read_image(const std::filesystem::path& file) {
     }
     return image;
   } catch (const std::bad_alloc&) {
-    throw InputError(file.string() + ": there is not enough memory to read it; scale it down");
+    throw InputError(file.string() + ": not enough memory to read it; scale it down");
   }
 }
 

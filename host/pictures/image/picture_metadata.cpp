@@ -208,7 +208,7 @@ PictureMetadata tiff_metadata(Encoded tiff) {
   metadata.orientation = orientation_of(tiff);
   const std::string unread = unread_values(tiff_number(tiff, photometric, 2));
   if (!unread.empty())
-    throw DecodeError("its colours in " + unread + " are not read; save it in RGB");
+    throw DecodeError("its colours in " + unread + " are not supported; save it in RGB");
   const auto data_of = [&](std::size_t entry) {
     return number_at(tiff, entry + 8, 4, order_of(tiff));
   };
@@ -233,7 +233,7 @@ PictureMetadata tiff_metadata(Encoded tiff) {
     metadata.color.to_rec709 = to_rec709(from);
   }
   if (tiff_entry(tiff, transfer_function)) {
-    metadata.color.problem = "its TransferFunction is not read; convert it to sRGB";
+    metadata.color.problem = "its TransferFunction is not supported; convert it to sRGB";
   }
   return metadata;
 }
@@ -245,7 +245,7 @@ PictureMetadata bmp_metadata(Encoded bmp) {
   if (number_at(bmp, 14, 4) < version_4) return metadata;
   const std::string_view space = text_of(part_of(bmp, space_offset, 4));
   if (space == "DEBM" || space == "KNIL") {  // 'MBED', 'LINK' as numbers
-    metadata.color.problem = "the profile of a BMP is not read; convert it to sRGB";
+    metadata.color.problem = "profiles of BMP are not supported; convert it to sRGB";
   }
   return metadata;
 }
@@ -261,9 +261,8 @@ std::array<double, count> numbers_behind(std::string_view line) {
     rest.remove_prefix(word.size());
     const auto value = parse_signed(trimmed(word));
     if (!value || !(*value > 0)) {
-      throw DecodeError(
-          fmt::format("its header's line '{}' does not have {} numbers above 0; correct it",
-                      trimmed(line), count));
+      throw DecodeError(fmt::format("header line '{}' does not have {} numbers above 0; correct it",
+                                    trimmed(line), count));
     }
     number = *value;
   }
@@ -285,7 +284,7 @@ void take_variable(std::string_view line, std::string& format, PictureMetadata& 
         to_rec709({{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}});
   } else if (line.starts_with("GAMMA=")) {
     if (numbers_behind<1>(line)[0] != 1) {
-      throw DecodeError("a GAMMA other than 1 is not read; save it linear");
+      throw DecodeError("a GAMMA other than 1 is not supported; save it linear");
     }
   } else if (line.starts_with("VIEW=")) {
     const std::size_t type = line.find("-vt");

@@ -20,10 +20,10 @@ namespace {
 double ratio(double now, double before, const std::string& light) {
   if (now == before) return 1.0;  // keeps the bits, and 0 of 0
   if (before == 0.0) {
-    throw UsageError(fmt::format(
-        "light '{}' is off in the picture, or lacks a colour there, and cannot be turned up; "
-        "render it with some power",
-        light));
+    throw UsageError(
+        fmt::format("light '{}' is off in the picture, or black in a channel, and cannot be turned "
+                    "up; render it with power above 0",
+                    light));
   }
   return now / before;
 }
@@ -36,7 +36,7 @@ void apply_to_picture(image::LightRecords& records, const std::vector<LightChang
       if (std::holds_alternative<image::SetPower>(request) &&
           records.relative.contains(light.name)) {
         throw UsageError(fmt::format(
-            "light '{}': the picture does not say its power; use xFACTOR, #RRGGBB or off",
+            "light '{}': the picture does not state its power; use xFACTOR, #RRGGBB or off",
             light.name));
       }
       image::apply(light, request, records.mix.lumen_per_watt);

@@ -59,8 +59,8 @@ void write_hdr(const std::filesystem::path& file, const Image& scene_referred) {
              *b = scene_referred.find("B");
   if (white == scene_referred.numbers.end() || !r || !g || !b) {
     throw InputError(
-        fmt::format("{}: the picture does not say how many cd/m2 its values are (R, G, B and the "
-                    "attribute whiteLuminance); render it with photile, or write an .exr",
+        fmt::format("{}: the picture lacks R, G, B or the attribute whiteLuminance, which states "
+                    "cd/m2; render it with photile, or write an .exr",
                     file.string()));
   }
   OutputFile output(file);

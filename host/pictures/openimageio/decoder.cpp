@@ -34,7 +34,7 @@ image::Sample sample_of(OIIO::TypeDesc stored) {
 std::string reason_of(const OIIO::ImageInput& input) {
   std::string reason = input.geterror();
   reason.erase(std::find(reason.begin(), reason.end(), '\n'), reason.end());
-  return reason.empty() ? "damaged, or of a kind that is not read" : reason;
+  return reason.empty() ? "damaged, or of an unsupported kind" : reason;
 }
 
 class OpenImageIODecoder : public image::Decoder {
@@ -50,7 +50,8 @@ class OpenImageIODecoder : public image::Decoder {
     shape_ = {spec.width, spec.height, spec.nchannels, sample_of(spec.format)};
     const bool alpha = spec.alpha_channel >= 0;
     if (reader == "tiff" && alpha && spec["compression"].get() == "jpeg") {
-      throw image::DecodeError("alpha beside JPEG's compression is not read; save it with another");
+      throw image::DecodeError(
+          "alpha with JPEG compression is not supported; use another compression");
     }
     associated_ = reader == "webp" && alpha;
   }

@@ -92,7 +92,7 @@ class PHOTILE_OT_render(bpy.types.Operator):
     def _finish(self, context):
         if self._process.returncode != 0:
             self._log.seek(0)
-            lines = self._log.read().strip().splitlines() or ["it ended without a word"]
+            lines = self._log.read().strip().splitlines() or ["it ended without a message"]
             self.report({"ERROR"}, lines[-1])
             return {"CANCELLED"}
         try:
@@ -133,7 +133,7 @@ class PHOTILE_OT_render(bpy.types.Operator):
 class PHOTILE_OT_view(bpy.types.Operator):
     bl_idname = "photile.view"
     bl_label = "Walk through in photile"
-    bl_description = "Export the scene and open it in the window of photile"
+    bl_description = "Export the scene and open it on the live page of photile"
 
     def execute(self, context):
         try:

@@ -39,7 +39,7 @@ class PhotileSettings(bpy.types.PropertyGroup):
         items=(
             ("draft", "Draft", "Quick, and soft: nodes of light maps lie far apart"),
             ("good", "Good", "Clean to the eye"),
-            ("final", "Final", "More of everything, for stills"),
+            ("final", "Final", "More photons, samples and rays, for stills"),
         ),
         default="good",
     )

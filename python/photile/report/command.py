@@ -36,7 +36,7 @@ def _require(what: str, remedy: str, *modules: str) -> None:
         except ImportError:
             missing.append(_packages[module])
     if missing:
-        raise Failure(OUTPUT, f"{what} {' and '.join(missing)}, which this Python does not have: "
+        raise Failure(OUTPUT, f"{what} {' and '.join(missing)}, which this Python lacks: "
                               f"apt-get install {' '.join(missing)}{remedy}")
 
 
@@ -121,16 +121,16 @@ def _make_ugr_table(options: argparse.Namespace) -> None:
 
 def _run(arguments: Sequence[str] | None) -> None:
     parser = argparse.ArgumentParser(prog="photile.report", allow_abbrev=False, description=__doc__)
-    parser.add_argument("record", metavar="RESULTS.json", help="of photile measure")
+    parser.add_argument("record", metavar="RESULTS.json", help="results of photile measure -o")
     parser.add_argument("-o", "--output", action="append", default=[], metavar="FILE",
                         help="report (.html, .pdf) or plan (.svg) to write; repeatable")
-    parser.add_argument("--template", metavar="FOLDER", help="with templates in place of photile's")
-    parser.add_argument("--language", help="of the report: en, de, or that of FOLDER/words/NAME.json")
+    parser.add_argument("--template", metavar="FOLDER", help="folder of templates that replace photile's")
+    parser.add_argument("--language", help="language of the report: en, de, or NAME of FOLDER/words/NAME.json")
     parser.add_argument("--check", action="store_true",
-                        help="only whether everything that the outputs need is there")
+                        help="check that all that the outputs need is installed; write nothing")
     parser.add_argument("--ugr-table", action="store_true",
-                        help="the record is a luminaire's; -o is its UGR table (.csv, .json, .txt)")
-    parser.add_argument("--honeybee", metavar="FOLDER", help="write the files that Honeybee reads")
+                        help="write the UGR table of a luminaire (.csv, .json, .txt)")
+    parser.add_argument("--honeybee", metavar="FOLDER", help="folder for the files that Honeybee reads")
     options = parser.parse_args(arguments)
     if options.honeybee:
         return _make_honeybee(options)
@@ -157,7 +157,7 @@ def _run(arguments: Sequence[str] | None) -> None:
     except pages.BadInput as error:
         raise Failure(INPUT, str(error)) from None
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-        raise Failure(INPUT, f"{options.record}: these are not results as photile measure writes them: "
+        raise Failure(INPUT, f"{options.record}: these are not results of photile measure -o: "
                              f"{type(error).__name__} {error}") from error
 
 
