@@ -96,6 +96,10 @@ def row_of(name, samples):
         wall += end - begin
         alone += after - before if threads <= 1 else 0
         used += after - before
+    return forecast(name, wall, used, alone)
+
+
+def forecast(name, wall, used, alone):
     row = {"stage": name, "wall seconds": wall, "processor seconds": used, "processor seconds of one thread alone": alone}
     for cores in CORES:
         row[f"seconds on {cores} cores"] = alone + max(0.0, used - alone) / cores
@@ -115,18 +119,19 @@ def measure(command):
 
 
 def rivals():
-    """Of the kitchen of docs/measured/quality.md: name, wall and processor seconds, those of one thread alone."""
+    """Rows of the kitchen of docs/measured/quality.md."""
     results = json.loads((measured.ROOT / "docs/measured/quality/quality.json").read_text(encoding="utf-8"))["results"]
     for row in results:
         if row["view"] == "kitchen 256x192" and (row["tool"], row["setting"]) in RIVALS:
             wall, used = row["first"]["seconds"], row["first"]["processor"]
-            yield [f"kitchen, {row['tool']}, {row['setting']}", wall, used, max(0.0, 2 * wall - used)]
+            yield forecast(f"kitchen, {row['tool']}, {row['setting']}", wall, used, max(0.0, 2 * wall - used))
 
 
-def line(name, wall, used, alone):
+def line(name, row):
+    used, alone = row["processor seconds"], row["processor seconds of one thread alone"]
     part = 2 * alone / (used + alone) if used else 0
-    return (f"| {name} | {wall:.1f} | {used:.1f} | {alone:.2f} | {part:.1%} |"
-            + "".join(f" {alone + max(0.0, used - alone) / cores:.2f} |" for cores in CORES))
+    return (f"| {name} | {row['wall seconds']:.2f} | {used:.2f} | {alone:.2f} | {part:.1%} |"
+            + "".join(f" {row[f'seconds on {cores} cores']:.2f} |" for cores in CORES))
 
 
 def main():
@@ -148,18 +153,14 @@ def main():
             rows = measure([options.program, *command, "--threads", str(options.threads),
                             "-o", f"{folder}/{output}"])
         for row in rows:
-            alone, used = row["processor seconds of one thread alone"], row["processor seconds"]
-            part = 2 * alone / (used + alone) if used else 0
-            print(f"| {name} | {row['stage']} | {row['wall seconds']:.2f} | {used:.2f} | {alone:.2f} | {part:.1%} |"
-                  + "".join(f" {row[f'seconds on {cores} cores']:.2f} |" for cores in CORES), flush=True)
+            print(line(f"{name} | {row['stage']}", row), flush=True)
         results.append({"command": name, "rows": rows})
     if options.write:
-        sums = [[result["command"], *(result["rows"][-1][f"{kind}seconds{what}"] for kind, what in
-                                      (("wall ", ""), ("processor ", ""), ("processor ", " of one thread alone")))]
-                for result in results]
         head = ("| command | wall, s, on 2 cores | processor, s | of one thread alone | part of the time on 2 cores |"
                 + "".join(f" {cores} cores, s |" for cores in CORES))
-        rows = [head, "|---|" + "--:|" * (4 + len(CORES)), *(line(*row) for row in [*sums, *rivals()])]
+        rows = [head, "|---|" + "--:|" * (4 + len(CORES)),
+                *(line(result["command"], result["rows"][-1]) for result in results),
+                *(line(row["stage"], row) for row in rivals())]
         replace_section(measured.ROOT / "docs/measured/cores.md", "kernels/parallel.py", "\n".join(rows))
     if options.output:
         pathlib.Path(options.output).write_text(

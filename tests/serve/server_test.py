@@ -5,6 +5,7 @@ Usage: server_test.py attacks|ends|luminaires|maps|year PHOTILE SOURCE_FOLDER
 """
 
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -32,6 +33,7 @@ def refused(served):
     assert b"connect-src 'self'" in page and b"default-src 'none'" in page
     assert headers["X-Frame-Options"] == "DENY" and headers["Cache-Control"] == "no-store"
     assert "Content-Encoding" not in headers  # packing a page took seconds
+    check("the niceness of what computes", os.getpriority(os.PRIO_PROCESS, served.process.pid), 10)
     # Neither the address without its token, nor a part of that, nor a file.
     for path in ("/", "/events", f"/{'0' * 32}/", f"/{token[:-1]}/", f"/{token}", f"//{token}/", f"/{token}/%2e%2e/",
                  f"/{token}/../../../../etc/passwd", f"/{token}/etc/passwd", "/" + "a" * 9000, "*"):
