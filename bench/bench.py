@@ -3,14 +3,15 @@
 
     bench/bench.py list
     bench/bench.py run NAME [-o FILE.json] [--csv FILE.csv] [OPTION OF THE BENCH]...
-    bench/bench.py pairs NAME [--before FOLDER] [--turns N] [OPTION OF BOTH]... [-- OPTION OF THE SECOND]...
+    bench/bench.py pairs NAME [--before FOLDER] [--turns N] [-o FOLDER] [OPTION OF BOTH]... [-- OPTION OF THE SECOND]...
     bench/bench.py compare BEFORE.json AFTER.json
 
 `run` builds the bench first and writes build/bench-results/NAME.json unless told where. An option that the
 bench does not know, such as --repeats where nothing is repeated, is an error; where a row is a failure, as of
 a kernel that does not compile, all are written and the exit code is 1. `run NAME --help` lists its
 options. `pairs` runs a bench twice in turns, so that both see the same load, with the programs of FOLDER first (those of
-another commit) or with the options after -- the second time, writes what `compare` reads and compares.
+another commit) or with the options after -- the second time, writes NAME-before.json and NAME-after.json, which `compare`
+reads, into build/bench-results or the folder of -o, and compares them.
 docs/kernels/points.md says what the files hold, docs/kernels/bench.md what to do with them.
 """
 
@@ -133,7 +134,8 @@ def pairs(arguments):
         runs = [(0, first, arguments.options), (1, second, arguments.options + arguments.of_second)]
         for which, program, given in runs if turn % 2 == 0 else runs[::-1]:
             turns[which].append(results_of(program, given, RESULTS / "turn.json"))
-    files = [RESULTS / f"{arguments.name}-{which}.json" for which in ("before", "after")]
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    files = [arguments.output / f"{arguments.name}-{which}.json" for which in ("before", "after")]
     for file, results in zip(files, turns):
         file.write_text(json.dumps(joined(results), indent=1) + "\n")
     compare.compare_files(*files, tells_all=True)
@@ -155,6 +157,8 @@ def main():
     side_by_side.add_argument("name")
     side_by_side.add_argument("--before", type=pathlib.Path,
                               help="programs of the first: build/release/bench of another tree")
+    side_by_side.add_argument("-o", "--output", type=pathlib.Path, default=RESULTS, metavar="FOLDER",
+                              help="for the results of both; default: build/bench-results")
     for command in (one, side_by_side):
         command.add_argument("--benches", type=pathlib.Path, default=BUILD / "bench",
                              help="where the programs are; they are not built then")

@@ -82,8 +82,9 @@ time = (len(log.readlines()) + 1) // 2 + (0.5 if "--cells" in sys.argv else 0)
 row = {{"k": 50, "seconds": {{"median": time, "min": time, "max": time, "samples": [time]}}}}
 json.dump({{"bench": "knn", "results": [row]}}, open(sys.argv[2], "w"))
 """)
-        result = run("pairs", "knn", "--benches", self.folder, "--turns", 6, "-k", 50, "--", "--cells", 8)
+        result = run("pairs", "knn", "--benches", self.folder, "--turns", 6, "-o", self.folder, "-k", 50, "--", "--cells", 8)
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue((self.folder / "knn-after.json").exists())
         self.assertIn("6 pairs", result.stdout)
         self.assertIn("slower: k 50, seconds", result.stdout)
         with_cells = ["--cells" in line for line in (self.folder / "log").read_text().splitlines()]
